@@ -1,0 +1,123 @@
+"""How scenarios are found: by the name of a bundled one, by folder, or by .sumocfg file."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+from sumo_scenarios.errors import ScenarioError
+
+_ROOT = Path(__file__).parent
+_CONFIG_SUFFIX = ".sumocfg"
+_SETTINGS_SUFFIX = ".giveway.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """A SUMO scenario and the giveway settings that stand beside it; all paths are absolute."""
+
+    name: str  # the bundled name, or the stem of the .sumocfg
+    folder: Path
+    config_file: Path  # its .sumocfg
+    settings_file: Path | None  # its <stem>.giveway.toml
+    description: str  # one line, from the settings; empty without them
+
+
+def available() -> tuple[str, ...]:
+    """Name the bundled scenarios, in alphabetical order."""
+    return tuple(sorted(config.parent.name for config in _ROOT.glob(f"*/*{_CONFIG_SUFFIX}")))
+
+
+def find(name_or_path: str | Path) -> Scenario:
+    """Find a scenario by its bundled name, its folder, or its .sumocfg file.
+
+    A string that is a bundled name means that scenario, whatever lies in the current folder; for
+    a folder of the same name write ``./name``, or pass a ``Path``.
+
+    Raises:
+        ScenarioError: there is no such scenario, a folder holds no or several .sumocfg files, or
+            the settings beside the .sumocfg are not TOML.
+    """
+    text = os.fspath(name_or_path)
+    bundled = available()
+    if isinstance(name_or_path, str) and text in bundled:
+        return _from_folder(_ROOT / text)
+    path = Path(os.path.abspath(Path(text).expanduser())) if text.strip() else None  # noqa: PTH100
+    # os.path.abspath, not Path.resolve: the files that a linked .sumocfg names lie beside the link.
+    try:
+        if path is not None and path.is_dir():
+            return _from_folder(path)
+        if path is not None and path.is_file():
+            return _from_config(path)
+    except OSError as error:
+        msg = f"scenario {text!r} cannot be read: {error.strerror}"
+        raise ScenarioError(msg) from error
+    raise ScenarioError(_unknown(text, bundled))
+
+
+def _from_folder(folder: Path) -> Scenario:
+    configs = sorted(folder.glob(f"*{_CONFIG_SUFFIX}"))
+    if len(configs) == 1:
+        return _from_config(configs[0])
+    if configs:
+        names = ", ".join(config.name for config in configs)
+        msg = f"folder {folder} holds {len(configs)} {_CONFIG_SUFFIX} files ({names}): name one"
+        raise ScenarioError(msg)
+    msg = f"folder {folder} holds no {_CONFIG_SUFFIX} file: expected exactly one"
+    raise ScenarioError(msg)
+
+
+def _from_config(config_file: Path) -> Scenario:
+    if config_file.suffix != _CONFIG_SUFFIX:
+        msg = f"{config_file} is not a scenario: expected a {_CONFIG_SUFFIX} file or its folder"
+        raise ScenarioError(msg)
+    settings_file = config_file.with_name(config_file.stem + _SETTINGS_SUFFIX)
+    has_settings = settings_file.is_file()
+    return Scenario(
+        name=config_file.stem,
+        folder=config_file.parent,
+        config_file=config_file,
+        settings_file=settings_file if has_settings else None,
+        description=_description(settings_file) if has_settings else "",
+    )
+
+
+def _description(settings_file: Path) -> str:
+    try:
+        description = tomllib.loads(settings_file.read_text(encoding="utf-8")).get("description")
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        msg = f"{settings_file} is not valid TOML: {error}"
+        raise ScenarioError(msg) from error
+    if not isinstance(description, str | None):
+        msg = f"{settings_file}: description = {description!r}: expected a line of text"
+        raise ScenarioError(msg)
+    return description or ""
+
+
+def _unknown(text: str, bundled: tuple[str, ...]) -> str:
+    """Say what was not found, what may have been meant, and what there is."""
+    path = Path(text)
+    if len(path.parts) > 1 or path.suffix == _CONFIG_SUFFIX:
+        kind = f"{_CONFIG_SUFFIX} file" if path.suffix == _CONFIG_SUFFIX else "file or folder"
+        problem, candidates = f"no such {kind}: {text!r}", _neighbours(path)
+    else:
+        problem, candidates = f"unknown scenario {text!r}", {name: name for name in bundled}
+    close = difflib.get_close_matches(path.name.lower(), candidates, n=1)
+    hint = f"; did you mean {candidates[close[0]]!r}?" if close else ""
+    return f"{problem}{hint} (bundled: {', '.join(bundled)}; or a folder, or a .sumocfg file)"
+
+
+def _neighbours(path: Path) -> dict[str, str]:
+    """What lies where `path` was looked for and could be a scenario: lower-case name to path."""
+    try:
+        entries = sorted(path.parent.iterdir())
+        return {
+            entry.name.lower(): str(entry)
+            for entry in entries
+            if entry.suffix == _CONFIG_SUFFIX or entry.is_dir()
+        }
+    except OSError:
+        return {}

@@ -1,0 +1,11 @@
+"""What can go wrong here, one class per thing a user can do something about."""
+
+from __future__ import annotations
+
+
+class ScenarioError(Exception):
+    """A scenario cannot be found or read; the message says what was looked for and what to do."""
+
+
+class BuildError(ScenarioError):
+    """netconvert is missing, or refuses the sources of a scenario's road network."""
