@@ -1,8 +1,9 @@
 """Build the road networks of the scenario folders from their sources, with netconvert.
 
 ``python -m sumo_scenarios.build [NAME ...] [--out DIR]`` runs netconvert on the ``<name>.netccfg``
-of each folder. The same sources and the same netconvert give the same bytes: netconvert's header,
-which holds the date and the paths, is replaced by a line that says where the file comes from.
+of each folder; a NAME may also be the path of a folder of your own. The same sources and the same
+netconvert give the same bytes: netconvert's header, which holds the date and the paths, is replaced
+by a line that says where the file comes from.
 """
 
 from __future__ import annotations
@@ -14,20 +15,23 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sumo_scenarios.catalogue import available, find
 from sumo_scenarios.errors import BuildError, ScenarioError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 _HEADER = re.compile(r"<!-- generated on .*?-->", re.DOTALL)
 
 
 def build(name: str, out: Path | None = None) -> Path:
-    """Build the network of one bundled scenario.
+    """Build the network of one scenario.
 
     Args:
-        name: a bundled scenario, as `available` names it.
+        name: a bundled scenario or a folder, as `find` takes them.
         out: where the file goes; by default into the scenario's own folder.
 
     Returns:
@@ -50,9 +54,11 @@ def build(name: str, out: Path | None = None) -> Path:
 
 
 def _run_netconvert(config: Path, output: Path) -> None:
+    if not config.is_file():
+        msg = f"{config} is missing: it names the node and edge files that netconvert is to read"
+        raise BuildError(msg)
     home = _sumo_home()
-    # -W: "SUMO_HOME is not set" and the like; errors still come through.
-    command = [home / "bin" / "netconvert", "-c", config, "--output-file", output, "-W"]
+    command: list[str | Path] = [home / "bin" / "netconvert", "-c", config, "--output-file", output]
     environment = os.environ | {"SUMO_HOME": str(home)}
     try:
         result = subprocess.run(
@@ -65,6 +71,7 @@ def _run_netconvert(config: Path, output: Path) -> None:
         reason = " ".join(result.stderr.split())
         msg = f"netconvert refused {config}: {reason or f'exit code {result.returncode}'}"
         raise BuildError(msg)
+    sys.stderr.write(result.stderr)  # its warnings are the author's to judge
 
 
 def _sumo_home() -> Path:

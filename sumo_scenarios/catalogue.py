@@ -45,15 +45,15 @@ def find(name_or_path: str | Path) -> Scenario:
     bundled = available()
     if isinstance(name_or_path, str) and text in bundled:
         return _from_folder(_ROOT / text)
-    path = Path(os.path.abspath(Path(text).expanduser())) if text.strip() else None  # noqa: PTH100
-    # os.path.abspath, not Path.resolve: the files that a linked .sumocfg names lie beside the link.
     try:
-        if path is not None and path.is_dir():
+        # abspath, not Path.resolve: the files that a linked .sumocfg names lie beside the link.
+        path = Path(os.path.abspath(Path(text).expanduser()))  # noqa: PTH100
+        if text.strip() and path.is_dir():
             return _from_folder(path)
-        if path is not None and path.is_file():
+        if path.is_file():
             return _from_config(path)
-    except OSError as error:
-        msg = f"scenario {text!r} cannot be read: {error.strerror}"
+    except (OSError, RuntimeError) as error:  # RuntimeError: the ~user of a stranger
+        msg = f"scenario {text!r} cannot be read: {error}"
         raise ScenarioError(msg) from error
     raise ScenarioError(_unknown(text, bundled))
 

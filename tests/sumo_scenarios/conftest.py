@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from sumo_scenarios import Scenario, find
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+PROBES = Path(__file__).with_name("probes.py")
+
+
+@pytest.fixture
+def probe(tmp_path: Path) -> Callable[..., dict[str, Any]]:
+    """Run one look of probes.py at a scenario, in a process and a working folder of its own."""
+
+    def run(
+        name: str, config: Path, step_length: float | None = None, **arguments: Any
+    ) -> dict[str, Any]:
+        request = {"config": str(config), "step_length": step_length} | arguments
+        result = subprocess.run(
+            [sys.executable, PROBES, name, json.dumps(request)],
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+            cwd=tmp_path,
+        )
+        assert result.returncode == 0, f"exit code {result.returncode}: {result.stderr}"
+        seen: dict[str, Any] = json.loads(result.stdout)
+        return seen
+
+    return run
+
+
+@pytest.fixture(params=["shared_space", "street"])
+def scenario(request: pytest.FixtureRequest) -> Scenario:
+    return find(request.param)
+
+
+@pytest.fixture
+def settings() -> Callable[[Scenario], dict[str, Any]]:
+    """The giveway settings of a scenario, as they stand in its file."""
+
+    def read(scenario: Scenario) -> dict[str, Any]:
+        assert scenario.settings_file is not None
+        return tomllib.loads(scenario.settings_file.read_text(encoding="utf-8"))
+
+    return read
