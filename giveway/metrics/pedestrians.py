@@ -1,0 +1,97 @@
+"""One row per pedestrian: how it walked, and how close the ego came to it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pandas as pd
+
+from giveway.metrics.conflicts import proximity
+from giveway.metrics.encroachment import post_encroachment_time
+from giveway.metrics.fields import Quantity, columns_of
+from giveway.metrics.groups import PedestrianGroups
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
+
+
+class PedestrianRow:
+    """The columns of the table; nan (an empty cell) says that the event never occurred."""
+
+    id: Annotated[str, Quantity(None, "the pedestrian")]
+    first_seen: Annotated[float, Quantity("s", "time of its first record")]
+    last_seen: Annotated[float, Quantity("s", "time of its last record")]
+    path_length: Annotated[float, Quantity("m", "length of the path it walked")]
+    mean_speed: Annotated[float, Quantity("m/s", "path length over time seen")]
+    minimum_clearance: Annotated[
+        float, Quantity("m", "smallest distance of its circle to the ego's rectangle, < 0: overlap")
+    ]
+    time_of_minimum_clearance: Annotated[float, Quantity("s", "when that was, the first time")]
+    overlap_time: Annotated[
+        float, Quantity("s", "for how long its circle overlapped the ego's rectangle")
+    ]
+    minimum_ttc: Annotated[
+        float, Quantity("s", "smallest time to collision; empty: never on a collision course")
+    ]
+    time_of_minimum_ttc: Annotated[float, Quantity("s", "when that was, the first time")]
+    post_encroachment_time: Annotated[
+        float, Quantity("s", "smallest time between its and the ego's presence at one place")
+    ]
+    maximum_drac: Annotated[
+        float, Quantity("m/s^2", "largest deceleration that the ego needed to spare it")
+    ]
+
+
+PEDESTRIAN_FIELDS = columns_of(PedestrianRow)
+
+
+def pedestrian_metrics(
+    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
+) -> pd.DataFrame:
+    """Proximity and walking of every pedestrian; columns as in ``PEDESTRIAN_FIELDS``.
+
+    Args:
+        ego: the ego's track, T instants.
+        crowd: the crowd's track, R records of n pedestrians in time order.
+        shape: the ego's rectangle.
+        body_radius: radius of a pedestrian [m].
+
+    Returns:
+        n rows in the order of ``crowd.ids``; who was never seen has nan throughout.
+
+    Raises:
+        ValueError: a record points outside the ego's track.
+    """
+    clear, ttc, drac = proximity(ego, crowd, shape, body_radius)
+    groups = PedestrianGroups(crowd)
+    time = ego.time[crowd.step]
+    closest, soonest = groups.first_minimum(clear), groups.first_minimum(ttc)
+    minimum_ttc = groups.at(ttc, soonest)
+    on_course = np.isfinite(minimum_ttc)
+    first_seen, last_seen = groups.at(time, groups.first), groups.at(time, groups.last)
+    path = groups.total(groups.walked(crowd))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean_speed = np.where(last_seen > first_seen, path / (last_seen - first_seen), np.nan)
+    columns = {
+        "id": list(crowd.ids),
+        "first_seen": first_seen,
+        "last_seen": last_seen,
+        "path_length": path,
+        "mean_speed": mean_speed,
+        "minimum_clearance": groups.at(clear, closest),
+        "time_of_minimum_clearance": groups.at(time, closest),
+        "overlap_time": groups.total(np.where(clear < 0.0, durations(ego)[crowd.step], 0.0)),
+        "minimum_ttc": np.where(on_course, minimum_ttc, np.nan),
+        "time_of_minimum_ttc": np.where(on_course, groups.at(time, soonest), np.nan),
+        "post_encroachment_time": post_encroachment_time(ego, crowd, shape, body_radius),
+        "maximum_drac": -groups.at(-drac, groups.first_minimum(-drac)),
+    }
+    return pd.DataFrame(columns, columns=[column.name for column in PEDESTRIAN_FIELDS])
+
+
+def durations(ego: EgoTrack) -> NDArray[np.float64]:
+    """What each instant stands for: the time until the next one; nothing for the last. (T,) [s]."""
+    return np.append(np.diff(ego.time), 0.0)

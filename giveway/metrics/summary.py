@@ -1,0 +1,149 @@
+"""A run in one row: the numbers by which runs and controllers are compared."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+
+from giveway.metrics.fields import Quantity, columns_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    from giveway.tracks import EgoTrack
+
+STOP_SPEED = 0.2
+"""[m/s] Below it the ego stands: Yang & Özgüner 2019, section 2.1, treat it as an obstacle then."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The summary's columns in their order; nan says that the event never occurred."""
+
+    completed: Annotated[bool, Quantity(None, "whether the ego reached its goal")]
+    completion_time: Annotated[
+        float, Quantity("s", "from the start to the goal; empty: not reached")
+    ]
+    simulated_time: Annotated[float, Quantity("s", "from the first to the last instant")]
+    travelled_distance: Annotated[float, Quantity("m", "that the ego drove along its path")]
+    mean_speed: Annotated[float, Quantity("m/s", "travelled distance over simulated time")]
+    maximum_speed: Annotated[float, Quantity("m/s", "of the ego")]
+    stops: Annotated[int, Quantity(None, "uninterrupted periods below the stop speed")]
+    longest_wait: Annotated[float, Quantity("s", "duration of the longest stop; 0: none")]
+    total_wait: Annotated[float, Quantity("s", "duration of all stops")]
+    peak_deceleration: Annotated[float, Quantity("m/s^2", "largest braking of the ego; 0: none")]
+    rms_jerk: Annotated[
+        float, Quantity("m/s^3", "root mean square of the acceleration's difference quotient")
+    ]
+    peak_jerk: Annotated[
+        float, Quantity("m/s^3", "largest magnitude of the acceleration's difference quotient")
+    ]
+    mpc_feasibility_rate: Annotated[
+        float, Quantity(None, "share of steps in which the MPC acted; empty: run without MPC")
+    ]
+    minimum_gap: Annotated[
+        float, Quantity("m", "smallest gap to a pedestrian in front; empty: nobody was in front")
+    ]
+    share_below_safe_distance: Annotated[
+        float, Quantity(None, "share of steps with a gap smaller than the safe distance")
+    ]
+    minimum_clearance: Annotated[
+        float, Quantity("m", "smallest distance of a circle to the ego's rectangle, < 0: overlap")
+    ]
+    overlaps: Annotated[
+        int, Quantity(None, "pedestrians whose circle ever overlapped the ego's rectangle")
+    ]
+    overlap_time: Annotated[float, Quantity("s", "of all pedestrians, added up")]
+    minimum_ttc: Annotated[
+        float, Quantity("s", "smallest time to collision; empty: never on a collision course")
+    ]
+    minimum_pet: Annotated[
+        float, Quantity("s", "smallest post-encroachment time; empty: no paths crossed")
+    ]
+    maximum_drac: Annotated[
+        float, Quantity("m/s^2", "largest deceleration that the ego needed to spare somebody")
+    ]
+
+    def as_dict(self) -> dict[str, bool | int | float]:
+        """Names and values, in the order of ``SUMMARY_FIELDS``."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+SUMMARY_FIELDS = columns_of(Summary)
+
+
+def summarise(
+    ego: EgoTrack,
+    per_pedestrian: pd.DataFrame,
+    *,
+    completed: bool,
+    safe_distance: float,
+    stop_speed: float = STOP_SPEED,
+    controller: str,
+) -> Summary:
+    """Boil a run down to one row.
+
+    A step is one control instant. An instant stands for the time until the next one, so a stop
+    lasts from the first instant below ``stop_speed`` to the first one that is not, or to the end
+    of the track; one uninterrupted stop is one waiting time.
+
+    Args:
+        ego: the ego's track, at least one instant; its last is the arrival if ``completed``.
+        per_pedestrian: the table of ``pedestrian_metrics``.
+        completed: whether the ego reached its goal.
+        safe_distance: d_safe [m].
+        stop_speed: the ego stands below it [m/s].
+        controller: "mpc" (with its fallback) or "pid".
+    """
+    simulated_time = float(ego.time[-1] - ego.time[0])
+    travelled = float(ego.position[-1] - ego.position[0])
+    waits = waiting_times(ego, stop_speed)
+    jerk = np.diff(ego.acceleration) / np.diff(ego.time)
+    clearances = per_pedestrian["minimum_clearance"].to_numpy()
+    return Summary(
+        completed=completed,
+        completion_time=simulated_time if completed else np.nan,
+        simulated_time=simulated_time,
+        travelled_distance=travelled,
+        mean_speed=travelled / simulated_time if simulated_time > 0.0 else np.nan,
+        maximum_speed=float(ego.speed.max()),
+        stops=waits.size,
+        longest_wait=float(waits.max(initial=0.0)),
+        total_wait=float(waits.sum()),
+        peak_deceleration=max(0.0, -float(ego.acceleration.min())),
+        rms_jerk=float(np.sqrt(np.mean(jerk**2))) if jerk.size else np.nan,
+        peak_jerk=float(np.abs(jerk).max()) if jerk.size else np.nan,
+        mpc_feasibility_rate=(
+            float(np.mean(ego.acting == "mpc")) if controller != "pid" else np.nan
+        ),
+        minimum_gap=_extreme(ego.gap, np.min),
+        share_below_safe_distance=float(np.mean(ego.gap < safe_distance)),
+        minimum_clearance=_extreme(clearances, np.min),
+        overlaps=int(np.count_nonzero(clearances < 0.0)),
+        overlap_time=float(np.nansum(per_pedestrian["overlap_time"].to_numpy())),
+        minimum_ttc=_extreme(per_pedestrian["minimum_ttc"].to_numpy(), np.min),
+        minimum_pet=_extreme(per_pedestrian["post_encroachment_time"].to_numpy(), np.min),
+        maximum_drac=_extreme(per_pedestrian["maximum_drac"].to_numpy(), np.max),
+    )
+
+
+def waiting_times(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.float64]:
+    """Duration [s] of every stop in the order of time; see ``summarise`` for what a stop is."""
+    standing = np.concatenate(([False], ego.speed < stop_speed, [False]))
+    edges = np.diff(standing.astype(np.int8))
+    starts = np.flatnonzero(edges == 1)
+    ends = np.minimum(np.flatnonzero(edges == -1), ego.time.size - 1)
+    return np.asarray(ego.time[ends] - ego.time[starts], dtype=np.float64)
+
+
+def _extreme(
+    values: NDArray[np.float64], extreme: Callable[[NDArray[np.float64]], np.float64]
+) -> float:
+    """The smallest or largest of the finite values; nan if there is none."""
+    finite = values[np.isfinite(values)]
+    return float(extreme(finite)) if finite.size else np.nan
