@@ -1,1 +1,39 @@
-"""giveway: how should a vehicle drive through a crowd, and what happens to both?"""
+"""giveway: how should a vehicle drive through a crowd, and what happens to both?
+
+>>> import giveway
+>>> result = giveway.run({"scenario": "shared_space", "crowd": {"pedestrians": 30}, "seed": 1})
+>>> result.summary["completion_time"]
+
+The command line is ``giveway``; ``giveway --help`` lists what it does.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from giveway._environment import check_rooms, choose_kernel_cache
+from giveway.errors import GivewayError
+
+if TYPE_CHECKING:
+    from giveway.api import RunResult, run
+    from giveway.config import RunConfig
+
+__version__ = "0.1.0"
+__all__ = ["GivewayError", "RunConfig", "RunResult", "__version__", "run"]
+
+check_rooms()
+choose_kernel_cache()
+
+
+def __getattr__(name: str) -> Any:
+    """Import the API when it is first used: numba, pandas and SUMO take seconds to load."""
+    if name in {"run", "RunResult"}:
+        from giveway import api
+
+        return getattr(api, name)
+    if name == "RunConfig":
+        from giveway.config import RunConfig
+
+        return RunConfig
+    msg = f"module 'giveway' has no attribute '{name}'"
+    raise AttributeError(msg)

@@ -7,7 +7,7 @@ mathematical (radians, counter-clockwise from +x) and x, y are the network's coo
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,6 +38,8 @@ class EgoTrack:
     reference_speed: NDArray[np.float64]  # (T,) [m/s] of the controller that acted
     acting: NDArray[np.str_]  # (T,) which controller acted: "mpc" or "pid"
     reason: NDArray[np.str_]  # (T,) why it acted, e.g. "optimal", "infeasible", "selected"
+    solver_status: NDArray[np.str_]  # (T,) of the QP; empty where none ran
+    solver_iterations: NDArray[np.int64]  # (T,)
 
 
 @dataclass(frozen=True)
@@ -51,3 +53,36 @@ class CrowdTrack:
     vx: NDArray[np.float64]  # (R,) [m/s]
     vy: NDArray[np.float64]  # (R,) [m/s]
     ids: tuple[str, ...]  # one per pedestrian
+
+
+@dataclass(frozen=True)
+class BackgroundTrack:
+    """SUMO's own vehicles as flat records, at SUMO's instants, in time order."""
+
+    time: NDArray[np.float64]  # (B,) [s]
+    id: NDArray[np.str_]  # (B,)
+    type: NDArray[np.str_]  # (B,) SUMO vType
+    x: NDArray[np.float64]  # (B,) [m] front-bumper centre
+    y: NDArray[np.float64]  # (B,) [m]
+    heading: NDArray[np.float64]  # (B,) [rad]
+    speed: NDArray[np.float64]  # (B,) [m/s]
+
+
+@dataclass(frozen=True)
+class Timings:
+    """Computing times of each control step; they differ from run to run, so they stand apart."""
+
+    NAMES: ClassVar[tuple[str, ...]] = (
+        "prediction",
+        "control",
+        "vehicle",
+        "crowd",
+        "sumo",
+        "total",
+    )
+
+    seconds: NDArray[np.float64]  # (T, 6) [s], columns in the order of NAMES
+
+    def total(self, name: str) -> float:
+        """The sum over all steps of one part [s]."""
+        return float(self.seconds[:, self.NAMES.index(name)].sum())

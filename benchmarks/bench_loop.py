@@ -1,0 +1,74 @@
+"""The cost of the whole loop at 30 pedestrians, part by part, next to SUMO and the FMU alone.
+
+Run: python benchmarks/bench_loop.py [--pairs N]
+
+The baseline makes the same moves, position checks and SUMO steps as a recorded run, and the same
+FMU steps, with nothing in between. Both are timed in turn in one process; the ratio is what counts.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+from contextlib import ExitStack
+from time import perf_counter
+
+import numpy as np
+
+from giveway.api import RunResult, simulate
+from giveway.assembly import assemble
+from giveway.configfile import Layer
+from giveway.ego_path import Pose
+from giveway.loading import load
+from giveway.tables import navigational
+from giveway.tracks import Timings
+
+
+def baseline(result: RunResult) -> float:
+    """Seconds that the moves, SUMO's steps and the FMU's steps of ``result`` take alone."""
+    ego, crowd = result.ego_track, result.crowd_track
+    angle = navigational(np.arctan2(crowd.vy, crowd.vx))
+    starts = np.searchsorted(crowd.step, np.arange(len(ego.time) + 1))
+    steps = [
+        (
+            Pose(ego.front_x[k], ego.front_y[k], ego.heading[k]),
+            [crowd.ids[i] for i in crowd.pedestrian[starts[k] : starts[k + 1]]],
+            np.column_stack([crowd.x, crowd.y, angle])[starts[k] : starts[k + 1]].tolist(),
+            float(ego.force[k - 1]),
+        )
+        for k in range(1, len(ego.time))
+    ]
+    with ExitStack() as stack:
+        parts = assemble(result.config, result.scenario, stack)
+        began = perf_counter()
+        for pose, ids, rows, force in steps:
+            parts.vehicle.step(force)
+            parts.sumo.mirror(pose, ids, rows)
+        return perf_counter() - began
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--pairs", type=int, default=15, help="loop and baseline, in turn")
+    pairs = parser.parse_args().pairs
+    for controller in ("mpc", "pid"):
+        config, scenario = load([Layer("", {"controller": controller})])
+        simulate(config, scenario)  # compiles, and warms the file cache
+        results, ratios = [], []
+        for _ in range(pairs):
+            result = simulate(config, scenario)
+            results.append(result)
+            ratios.append(result.elapsed / baseline(result))
+        elapsed = statistics.median(r.elapsed for r in results)
+        steps = len(results[0].ego_track.time) - 1
+        factor = steps * config.time_step / elapsed
+        print(f"{controller}, 30 pedestrians, {steps} steps of {config.time_step} s")
+        print(f"  loop / (SUMO moves and steps + FMU steps): {statistics.median(ratios):.2f}")
+        print(f"  per step: {elapsed / steps * 1e6:.0f} us; real-time factor {factor:.0f}")
+        for name in Timings.NAMES[:-1]:
+            share = statistics.median(r.timing_summary["shares"][name] for r in results)
+            print(f"  {name:10} {100 * share:5.1f} %")
+
+
+if __name__ == "__main__":
+    main()

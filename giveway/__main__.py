@@ -1,0 +1,5 @@
+"""``python -m giveway``: the command line."""
+
+from giveway.cli import main
+
+main()

@@ -1,0 +1,56 @@
+"""What has to be right before anything else is imported."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+from giveway.errors import InstallationError
+
+ROOMS = ("controller", "pedestrian_model", "fmus", "sumo_scenarios")
+
+
+def check_rooms() -> None:
+    """Make sure that the four packages giveway imports are its own.
+
+    ``controller`` is a common name: a robotics simulator ships one too.
+
+    Raises:
+        InstallationError: a room is missing, or another package of that name comes first.
+    """
+    house = Path(__file__).resolve().parent.parent
+    for room in ROOMS:
+        spec = importlib.util.find_spec(room)
+        origin = None if spec is None or spec.origin is None else Path(spec.origin).resolve()
+        if origin is None or origin.parent.parent != house:
+            msg = (
+                f"package '{room}': found {origin or 'nothing'}; expected giveway's own in "
+                f"{house}; take the other off the path, or use a virtual environment of its own"
+            )
+            raise InstallationError(msg)
+
+
+def kernel_cache() -> Path:
+    """Where compiled kernels are kept: the user's cache, or a temporary folder without one."""
+    from platformdirs import user_cache_path
+
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    if chosen:
+        return Path(chosen)
+    folder = user_cache_path("giveway", appauthor=False) / "numba"
+    existing = next(parent for parent in (folder, *folder.parents) if parent.exists())
+    if os.access(existing, os.W_OK | os.X_OK):
+        return folder
+    user = os.getuid() if hasattr(os, "getuid") else "user"
+    return Path(tempfile.gettempdir()) / f"giveway-kernels-{user}"
+
+
+def choose_kernel_cache() -> None:
+    """Keep numba's cache out of the package folder, which may be read-only and is not ours."""
+    folder = str(kernel_cache())
+    os.environ.setdefault("NUMBA_CACHE_DIR", folder)
+    if "numba" in sys.modules:  # imported before us: it has read the environment already
+        sys.modules["numba"].config.CACHE_DIR = folder

@@ -1,0 +1,36 @@
+"""The command line: ``giveway run``, ``giveway plot``, ``giveway scenarios``.
+
+Only what the asked-for command needs is imported, so that ``giveway --help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from giveway.errors import GivewayError
+
+INTERRUPTED = 130  # 128 + SIGINT, as shells have it
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and exit with its code."""
+    from giveway.cli.app import build_app
+
+    try:
+        code = build_app()(args=arguments, standalone_mode=False)
+    except GivewayError as error:
+        code = fail(str(error), error.exit_code)
+    except KeyboardInterrupt:
+        code = fail("interrupted", INTERRUPTED)
+    except Exception as error:
+        if not hasattr(error, "format_message"):
+            raise  # a fault of ours: the traceback is wanted
+        code = fail(f"{error.format_message()} See giveway --help.", 2)  # a usage error
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def fail(message: str, code: int) -> int:
+    """Print one line on stderr and hand back the exit code."""
+    sys.stderr.write(f"error: {' '.join(message.split())}\n")
+    return code

@@ -1,0 +1,116 @@
+"""The commands and their help; what they do stands in the module of each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from giveway.cli.flags import accept_config_flags
+
+HELP = """How should a vehicle drive through a crowd, and what happens to both?
+
+A vehicle FMU, driven by MPC or PID, and a crowd of VCI pedestrians meet in a SUMO scenario.
+"""
+
+
+def build_app() -> typer.Typer:
+    """The typer application."""
+    app = typer.Typer(
+        help=HELP, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False
+    )
+    app.callback()(_version)
+    app.command("run", no_args_is_help=False)(accept_config_flags(_run))
+    app.command("scenarios")(_scenarios)
+    app.command("config")(accept_config_flags(_config))
+    app.add_typer(_build_plot(), name="plot")
+    return app
+
+
+def _version(
+    version: Annotated[
+        bool, typer.Option("--version", help="Print the version and exit.", is_eager=True)
+    ] = False,
+) -> None:
+    if version:
+        from giveway import __version__
+
+        typer.echo(f"giveway {__version__}")
+        raise typer.Exit
+
+
+def _run(
+    settings: dict[str, object],
+    scenario: Annotated[
+        str | None, typer.Argument(help="Bundled scenario, folder or .sumocfg [shared_space].")
+    ] = None,
+    config: Annotated[
+        Path | None, typer.Option(help="TOML file with options; flags override it.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Results folder [results/SCENARIO_CONTROLLER_...].")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the results there.")] = False,
+    parquet: Annotated[
+        bool, typer.Option("--parquet", help="Write the tables as Parquet too.")
+    ] = False,
+    pictures: Annotated[bool, typer.Option(help="Draw the pictures.")] = True,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Neither progress bar nor summary.")
+    ] = False,
+) -> None:
+    """Drive the ego through a crowd once; ends with a summary, CSVs and pictures."""
+    from giveway.cli.run import Outputs, run_command
+
+    outputs = Outputs(out, force=force, parquet=parquet, pictures=pictures, quiet=quiet)
+    raise typer.Exit(run_command(scenario, config, settings, outputs))
+
+
+def _config(
+    settings: dict[str, object],
+    scenario: Annotated[str | None, typer.Argument(help="As for run.")] = None,
+    config: Annotated[Path | None, typer.Option(help="As for run.")] = None,
+) -> None:
+    """Print the effective configuration as TOML, each key with its unit and meaning."""
+    from giveway.cli.run import layers_of
+    from giveway.configfile import dump_toml
+    from giveway.loading import load
+
+    typer.echo(dump_toml(load(layers_of(scenario, config, settings))[0]), nl=False)
+
+
+def _scenarios() -> None:
+    """List the bundled scenarios."""
+    from sumo_scenarios import available, find
+
+    for name in available():
+        typer.echo(f"{name:14} {find(name).description}")
+
+
+def _build_plot() -> typer.Typer:
+    plot = typer.Typer(help="Draw figures.", no_args_is_help=True)
+    plot.command("influence")(_influence)
+    plot.callback()(_plot)
+    return plot
+
+
+def _plot() -> None:
+    """Draw figures."""
+
+
+def _influence(
+    out: Annotated[
+        Path, typer.Option(help="Picture to write: .png, .svg or .pdf.")
+    ] = Path("influence.png"),
+    speeds: Annotated[
+        str, typer.Option(help="Vehicle speeds [m/s], comma-separated, one panel each.")
+    ] = "0,1,2,4",
+    preset: Annotated[str, typer.Option(help="VCI parameter set: SIM or TABLE2.")] = "SIM",
+    length: Annotated[float, typer.Option(help="Vehicle length [m].")] = 5.0,
+    width: Annotated[float, typer.Option(help="Vehicle width [m].")] = 2.0,
+) -> None:
+    """Draw the vehicle's influence on a pedestrian (figure 2 of Yang & Özgüner 2019)."""
+    from giveway.cli.plot import influence_command
+
+    influence_command(out, speeds, preset=preset, length=length, width=width)

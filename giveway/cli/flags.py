@@ -1,0 +1,93 @@
+"""Every option of the configuration as a flag, derived from its declaration."""
+
+from __future__ import annotations
+
+import inspect
+import types
+import typing
+from collections.abc import Callable
+from typing import Annotated, Any, Literal
+
+import typer
+
+from giveway.configfile import Location, Option, options
+
+_PANELS = {
+    "ego": "Ego",
+    "vehicle": "Vehicle",
+    "crowd": "Pedestrians",
+    "regulation": "Regulation",
+    "mpc": "MPC",
+    "pid": "PID",
+    "sumo": "SUMO",
+}
+
+
+def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
+    """``command`` with one flag per configuration option; those given arrive as ``settings``.
+
+    Values arrive as text: the configuration's own validation judges them, in one voice with the
+    TOML file's.
+    """
+    locations = {"__".join(o.location): o for o in options() if o.location != ("scenario",)}
+
+    def call(**arguments: Any) -> None:
+        settings: dict[str, Any] = {}
+        for name, option in locations.items():
+            value = arguments.pop(name)
+            if value is not None:
+                _put(settings, option.location, value)
+        command(settings, **arguments)
+
+    own = list(inspect.signature(command, eval_str=True).parameters.values())[1:]
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    flags = [
+        inspect.Parameter(name, keyword, default=None, annotation=_annotation(option))
+        for name, option in locations.items()
+    ]
+    call.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+        [parameter.replace(kind=keyword) for parameter in own] + flags
+    )
+    call.__doc__ = command.__doc__
+    call.__annotations__ = {p.name: p.annotation for p in (*own, *flags)}
+    return call
+
+
+def _put(settings: dict[str, Any], location: Location, value: Any) -> None:
+    *tables, key = location
+    for table in tables:
+        settings = settings.setdefault(table, {})
+    settings[key] = value
+
+
+def _annotation(option: Option) -> Any:
+    unit = f" [{option.unit}]" if option.unit else ""
+    default = option.field.get_default(call_default_factory=True)
+    shown = ",".join(map(str, default)) if isinstance(default, tuple) else default
+    known = "" if shown in (None, "") else f" (default {shown})"
+    text = f"{option.field.description}{unit}{known}"
+    text = text[0].upper() + text[1:] if not text.startswith(("x_", "dx", "u_", "v_")) else text
+    panel = _PANELS.get(option.location[0], "Run")
+    if option.field.annotation is bool:
+        name = f"{option.flag}/--no-{option.flag.removeprefix('--')}"
+        return Annotated[bool | None, typer.Option(name, help=text, rich_help_panel=panel)]
+    return Annotated[
+        str | None,
+        typer.Option(
+            option.flag,
+            help=text,
+            rich_help_panel=panel,
+            metavar=_metavar(option.field.annotation),
+        ),
+    ]
+
+
+def _metavar(annotation: Any) -> str:
+    origin = typing.get_origin(annotation)
+    if origin is Literal:
+        return "|".join(map(str, typing.get_args(annotation)))
+    if origin is tuple:
+        return "A,B,..."
+    if origin in (typing.Union, types.UnionType):
+        annotation = typing.get_args(annotation)[0]
+    return {int: "INTEGER", float: "NUMBER"}.get(annotation, "TEXT")

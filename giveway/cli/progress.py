@@ -1,0 +1,55 @@
+"""The progress bar of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from rich.progress import BarColumn, Progress, TextColumn
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from giveway.config import RunConfig
+    from giveway.simulation import Progress as State
+    from giveway.simulation import Watcher
+
+_REFRESH = 0.1  # [s] of wall clock between two redraws
+
+
+@contextmanager
+def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None]:
+    """A bar over the distance driven; it is gone when the run has ended.
+
+    Drawn from the loop itself: a refreshing thread would write while file descriptor 2 belongs
+    to SUMO.
+    """
+    if console.quiet:
+        yield None
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=None),
+        TextColumn("{task.completed:.1f}/{task.total:g} m"),
+        TextColumn("{task.fields[state]}"),
+    )
+    with Progress(*columns, console=console, auto_refresh=False, transient=True) as bar:
+        distance = config.ego.travel_distance
+        task = bar.add_task(f"{config.controller.upper()} drives", total=distance, state="")
+        drawn = -_REFRESH
+
+        def watch(state: State) -> None:
+            nonlocal drawn
+            now = perf_counter()
+            if now - drawn < _REFRESH:
+                return
+            drawn = now
+            text = (
+                f"t = {state.time:.1f} s  v = {state.speed:.1f} m/s  {state.acting}  "
+                f"{state.pedestrians} pedestrians"
+            )
+            bar.update(task, completed=min(state.position, distance), state=text, refresh=True)
+
+        yield watch

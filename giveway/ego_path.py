@@ -1,0 +1,122 @@
+"""The ego's path: a polyline along which the vehicle's one-dimensional motion is laid out.
+
+A *station* is the arc length [m] along the polyline; the ego's station is that of the centre of
+its front bumper, which is also SUMO's reference point of a vehicle. Beyond its ends the path goes
+on straight.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from giveway.errors import ScenarioError
+from giveway.jit import kernel
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+
+class Pose(NamedTuple):
+    """A place and a direction in the network's frame."""
+
+    x: float  # [m]
+    y: float  # [m]
+    heading: float  # [rad] counter-clockwise from +x
+
+
+@dataclass(frozen=True)
+class EgoPath:
+    """A polyline with its stations and headings.
+
+    Attributes:
+        vertices: (k + 1, 2) [m].
+        stations: (k + 1,) [m] arc length at each vertex, from 0.
+        headings: (k,) [rad] of each segment.
+    """
+
+    vertices: Array
+    stations: Array
+    headings: Array
+
+    @classmethod
+    def through(cls, points: ArrayLike) -> EgoPath:
+        """The path through ``points`` (k, 2) [m]; repeated points are dropped.
+
+        Raises:
+            ScenarioError: fewer than two distinct finite points.
+        """
+        vertices = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        if len(vertices):
+            moved = np.hypot(*np.diff(vertices, axis=0).T) > 1e-9
+            vertices = np.ascontiguousarray(vertices[np.concatenate([[True], moved])])
+        if len(vertices) < 2 or not np.isfinite(vertices).all():
+            msg = f"ego path: {len(vertices)} distinct points; expected at least two finite ones"
+            raise ScenarioError(msg)
+        steps = np.diff(vertices, axis=0)
+        stations = np.concatenate([[0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))])
+        return cls(vertices, stations, np.arctan2(steps[:, 1], steps[:, 0]))
+
+    @property
+    def length(self) -> float:
+        """Arc length [m]."""
+        return float(self.stations[-1])
+
+    def pose(self, station: float) -> Pose:
+        """Place and direction at ``station`` [m]."""
+        return Pose(*pose_at(self.vertices, self.stations, self.headings, station))
+
+    def project(self, points: ArrayLike) -> tuple[Array, Array]:
+        """Stations (n,) [m] and lateral offsets (n,) [m, left positive] of ``points`` (n, 2)."""
+        points = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        frenet = np.array([project(self.vertices, self.stations, x, y) for x, y in points])
+        frenet = frenet.reshape(-1, 2)
+        return frenet[:, 0], frenet[:, 1]
+
+
+@kernel
+def pose_at(
+    vertices: Array, stations: Array, headings: Array, station: float
+) -> tuple[float, float, float]:
+    """x, y [m] and heading [rad] at ``station`` [m]; straight beyond the ends."""
+    last = len(headings) - 1
+    i = 0
+    while i < last and station >= stations[i + 1]:
+        i += 1
+    along = station - stations[i]
+    heading = headings[i]
+    length = stations[i + 1] - stations[i]
+    x = vertices[i, 0] + along * ((vertices[i + 1, 0] - vertices[i, 0]) / length)
+    y = vertices[i, 1] + along * ((vertices[i + 1, 1] - vertices[i, 1]) / length)
+    return x, y, heading
+
+
+@kernel
+def project(vertices: Array, stations: Array, x: float, y: float) -> tuple[float, float]:
+    """Station and signed lateral offset [m] of the path's point nearest to (x, y)."""
+    best_distance = np.inf
+    best_station = 0.0
+    best_lateral = 0.0
+    last = len(vertices) - 2
+    for i in range(last + 1):
+        x_0, y_0 = vertices[i, 0], vertices[i, 1]
+        length = stations[i + 1] - stations[i]
+        e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
+        along = (x - x_0) * e_x + (y - y_0) * e_y
+        if along < 0.0 and i > 0:  # the first and the last segment go on for ever
+            along = 0.0
+        if along > length and i < last:
+            along = length
+        d_x, d_y = x - (x_0 + along * e_x), y - (y_0 + along * e_y)
+        distance = d_x * d_x + d_y * d_y
+        if distance < best_distance:
+            best_distance = distance
+            best_station = stations[i] + along
+            best_lateral = np.sqrt(distance)
+            if e_x * d_y - e_y * d_x < 0.0:
+                best_lateral = -best_lateral
+    return best_station, best_lateral

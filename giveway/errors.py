@@ -1,0 +1,61 @@
+"""What can go wrong, one class per thing a user can do something about.
+
+Every message is one line: the file, key or id, the value, what was expected, what to do next.
+``exit_code`` is the command line's: 2 for a request that cannot be run, 1 for a run that failed.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from giveway.api import RunResult
+
+
+class GivewayError(Exception):
+    """The root of every error that giveway raises on purpose.
+
+    Attributes:
+        result: what the run had recorded when it failed; None if it had not begun.
+    """
+
+    exit_code = 1
+    result: RunResult | None = None
+
+
+class InstallationError(GivewayError):
+    """The installation is not what giveway was built for; reinstall as the message says."""
+
+
+class ConfigError(GivewayError):
+    """A configuration key, flag or value cannot be used."""
+
+    exit_code = 2
+
+
+class ScenarioError(GivewayError):
+    """A scenario cannot be found, or does not fit what was asked of it."""
+
+    exit_code = 2
+
+
+class SumoError(GivewayError):
+    """SUMO refused something; the message carries SUMO's own reason."""
+
+
+class VehicleError(GivewayError):
+    """The vehicle FMU cannot be loaded or failed in a step."""
+
+
+class ControlError(GivewayError):
+    """The controller cannot be set up as asked, or produced an unusable command."""
+
+
+class CrowdError(GivewayError):
+    """The pedestrians cannot be placed or moved as asked."""
+
+
+class ResultsError(GivewayError):
+    """The results cannot be written, or would overwrite something."""
+
+    exit_code = 2

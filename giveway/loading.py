@@ -1,0 +1,56 @@
+"""Which settings win: the scenario's, then the user's file, then flags or arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from giveway.config import RunConfig
+from giveway.configfile import Layer, build_config, merge, read_toml
+from giveway.errors import ScenarioError
+from sumo_scenarios import ScenarioError as UnknownScenario
+from sumo_scenarios import available, find
+
+if TYPE_CHECKING:
+    from sumo_scenarios import Scenario
+
+
+def load(layers: Sequence[Layer]) -> tuple[RunConfig, Scenario]:
+    """The configuration that ``layers`` amount to on top of their scenario's own settings.
+
+    Raises:
+        ConfigError: a key or value cannot be used.
+        ScenarioError: the scenario does not exist.
+    """
+    wanted = merge(layers).get("scenario", RunConfig.model_fields["scenario"].default)
+    if not isinstance(wanted, str) or not wanted:
+        build_config(layers)  # names the layer and what was expected
+    try:
+        scenario = find(wanted)
+    except UnknownScenario as error:
+        raise ScenarioError(str(error)) from error
+    own = []
+    if scenario.settings_file is not None:
+        layer = read_toml(scenario.settings_file)
+        settings = {key: value for key, value in layer.values.items() if key != "description"}
+        own = [Layer(layer.origin, settings)]
+    return _placed(build_config([*own, *layers]), scenario), scenario
+
+
+def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
+    """``config`` with absolute paths, so that it means the same from any folder."""
+    if config.scenario not in available():
+        config = config.model_copy(update={"scenario": str(scenario.config_file)})
+    fmu = Path(config.vehicle.fmu)
+    if fmu.is_file():
+        vehicle = config.vehicle.model_copy(update={"fmu": str(fmu.absolute())})
+        config = config.model_copy(update={"vehicle": vehicle})
+    return config
+
+
+def as_layer(config: RunConfig | Mapping[str, Any]) -> Layer:
+    """What a caller of the Python API has set, and nothing of the defaults."""
+    if isinstance(config, RunConfig):
+        return Layer("RunConfig", config.model_dump(exclude_unset=True))
+    return Layer("configuration", config)

@@ -1,0 +1,51 @@
+"""What native code prints on file descriptor 2: kept, because SUMO tells its reasons only there."""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from types import TracebackType
+
+
+class NativeStderr:
+    """Redirects file descriptor 2 into a file while a native call runs.
+
+    Use the object itself as the context manager, round one call at a time; ``close`` at the end.
+    """
+
+    def __init__(self) -> None:
+        self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the session
+        self._saved = os.dup(2)
+
+    def __enter__(self) -> None:
+        sys.stderr.flush()
+        os.dup2(self._log.fileno(), 2)
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        os.dup2(self._saved, 2)
+
+    def text(self) -> str:
+        """Everything printed so far."""
+        self._log.seek(0)
+        return self._log.read().decode("utf-8", "replace")
+
+    def errors(self) -> str:
+        """The reasons among it, on one line."""
+        lines = [line.strip() for line in self.text().splitlines()]
+        reasons = [
+            line.removeprefix("Error:").strip()
+            for line in lines
+            if line and not line.startswith(("Warning", "Quitting", "Loading"))
+        ]
+        return "; ".join(dict.fromkeys(reasons))
+
+    def close(self) -> None:
+        """Forget what was printed."""
+        os.close(self._saved)
+        self._log.close()

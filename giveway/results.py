@@ -1,0 +1,186 @@
+"""The results folder: tables, summary, manifest, data package, configuration and pictures."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from giveway.errors import ResultsError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from giveway.api import RunResult
+    from giveway.schema import Column
+
+TABLES = ("ego", "trajectories", "pedestrians", "summary", "timing")
+FILES = frozenset(
+    {
+        *(f"{name}{suffix}" for name in TABLES for suffix in (".csv", ".parquet")),
+        "config.toml",
+        "summary.json",
+        "manifest.json",
+        "datapackage.json",
+        "sumo.log",
+        "state.png",
+        "top_view.png",
+    }
+)
+_DECIMALS = 6  # micrometres, microseconds: finer than anything that is compared
+
+
+def prepare_folder(folder: Path, *, force: bool) -> None:
+    """Make an empty folder for the results, or empty a former results folder.
+
+    Raises:
+        ResultsError: it exists and ``force`` is not given, it holds files that giveway did not
+            write, or it cannot be written.
+    """
+    try:
+        if folder.exists():
+            _empty(folder, force=force)
+        folder.mkdir(parents=True, exist_ok=True)
+        probe = folder / "manifest.json"
+        probe.write_text("{}\n")
+        probe.unlink()
+    except OSError as error:
+        msg = f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
+        raise ResultsError(msg) from error
+
+
+def _empty(folder: Path, *, force: bool) -> None:
+    if not folder.is_dir():
+        msg = f"{folder}: is a file; expected a folder for the results, name another with --out"
+        raise ResultsError(msg)
+    present = sorted(path.name for path in folder.iterdir())
+    foreign = [name for name in present if name not in FILES]
+    if foreign:
+        msg = (
+            f"{folder}: holds '{foreign[0]}', which giveway did not write; "
+            "name another folder with --out"
+        )
+        raise ResultsError(msg)
+    if present and not force:
+        msg = f"{folder}: results exist; replace them with --force or name another with --out"
+        raise ResultsError(msg)
+    for name in present:
+        (folder / name).unlink()
+
+
+def write_results(result: RunResult, folder: Path, *, parquet: bool = False) -> None:
+    """Write everything but the pictures into ``folder``.
+
+    Raises:
+        ResultsError: the disk is full or the folder has become unwritable.
+    """
+    frames = {name: _rounded(getattr(result, name)) for name in TABLES if name != "summary"}
+    frames["summary"] = _rounded(result.summary_table)
+    try:
+        (folder / "config.toml").write_text(result.config_text, encoding="utf-8")
+        for name in TABLES:
+            frames[name].to_csv(folder / f"{name}.csv", index=False, lineterminator="\n")
+            if parquet:
+                _write_parquet(frames[name], folder / f"{name}.parquet")
+        _write_json(folder / "summary.json", result.summary | {"timing": result.timing_summary})
+        _write_json(folder / "manifest.json", result.manifest)
+        _write_json(folder / "datapackage.json", data_package(result))
+        if result.sumo_messages:
+            (folder / "sumo.log").write_text(result.sumo_messages, encoding="utf-8")
+    except OSError as error:
+        msg = f"{error.filename or folder}: cannot be written ({error.strerror}); free the disk"
+        raise ResultsError(msg) from error
+
+
+def write_pictures(result: RunResult, folder: Path) -> None:
+    """Draw the state figure and the top view into ``folder``.
+
+    Raises:
+        ResultsError: a file cannot be written.
+    """
+    from giveway.pictures import state_picture, top_view_picture
+
+    try:
+        state_picture(result).savefig(folder / "state.png", dpi=150)
+        top_view_picture(result).savefig(folder / "top_view.png", dpi=150)
+    except OSError as error:
+        msg = f"{folder}: a picture cannot be written ({error.strerror}); free the disk"
+        raise ResultsError(msg) from error
+
+
+def require_parquet() -> None:
+    """Make sure that Parquet can be written before anything is computed.
+
+    Raises:
+        ResultsError: pyarrow is missing.
+    """
+    try:
+        import pyarrow  # noqa: F401
+    except ImportError as error:
+        msg = "--parquet needs pyarrow; install it with: pip install 'giveway[parquet]'"
+        raise ResultsError(msg) from error
+
+
+def data_package(result: RunResult) -> dict[str, Any]:
+    """The Frictionless description of the CSV files: each column's type, unit and meaning."""
+    return {
+        "profile": "tabular-data-package",
+        "name": f"giveway-{result.scenario.name}-{result.config.seed}".lower().replace("_", "-"),
+        "title": f"giveway run of {result.scenario.name}, seed {result.config.seed}",
+        "resources": [
+            {
+                "profile": "tabular-data-resource",
+                "name": name,
+                "path": f"{name}.csv",
+                "format": "csv",
+                "mediatype": "text/csv",
+                "encoding": "utf-8",
+                "schema": {"fields": _fields(columns), "missingValues": [""]},
+            }
+            for name, columns in result.schemas.items()
+        ],
+    }
+
+
+def _fields(columns: Sequence[Column]) -> list[dict[str, str]]:
+    fields = []
+    for column in columns:
+        field = {"name": column.name, "type": column.type}
+        if column.unit is not None:
+            field["unit"] = column.unit
+        fields.append(field | {"description": column.description})
+    return fields
+
+
+def _rounded(frame: pd.DataFrame) -> pd.DataFrame:
+    """Floats to six decimals, without negative zeros: short, and the same bytes everywhere."""
+    frame = frame.copy()
+    for name in frame.columns:
+        if frame[name].dtype == np.float64:
+            frame[name] = np.round(frame[name].to_numpy(), _DECIMALS) + 0.0
+    return frame
+
+
+def _write_parquet(frame: pd.DataFrame, path: Path) -> None:
+    import pyarrow
+    import pyarrow.parquet
+
+    pyarrow.parquet.write_table(pyarrow.Table.from_pandas(frame, preserve_index=False), path)
+
+
+def _write_json(path: Path, content: dict[str, Any]) -> None:
+    text = json.dumps(_json_ready(content), indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def _json_ready(value: Any) -> Any:
+    """JSON has neither NaN nor infinity: they become null."""
+    if isinstance(value, dict):
+        return {key: _json_ready(item) for key, item in value.items()}
+    if isinstance(value, float):
+        return round(value, _DECIMALS) + 0.0 if math.isfinite(value) else None
+    return value

@@ -1,0 +1,65 @@
+"""The columns of every table that giveway writes: name, type, unit and meaning, once.
+
+Recorder, CSV writer and data package all read from here. ``trajectories.csv`` keeps the names,
+the reference point and the angle convention of SUMO's floating car data (FCD).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+ColumnType = Literal["number", "integer", "string", "boolean"]
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: Frictionless type, unit (None where there is none) and meaning."""
+
+    name: str
+    type: ColumnType
+    unit: str | None
+    description: str
+
+
+_FRONT = "of the front bumper's centre (SUMO's reference point)"
+
+EGO_COLUMNS = (
+    Column("time", "number", "s", "simulation time t_k of the control instant"),
+    Column("id", "string", None, "SUMO id of the ego"),
+    Column("position", "number", "m", "distance driven along the path since departure, by the FMU"),
+    Column("x", "number", "m", f"network x {_FRONT}"),
+    Column("y", "number", "m", f"network y {_FRONT}"),
+    Column("angle", "number", "deg", "navigational angle: 0 is north, clockwise"),
+    Column("speed", "number", "m/s", "speed, by the FMU"),
+    Column("acceleration", "number", "m/s^2", "acceleration over the step before t_k, by the FMU"),
+    Column("force", "number", "N", "force command applied from t_k on; negative brakes"),
+    Column("controller", "string", None, "which controller acted: mpc or pid"),
+    Column("reason", "string", None, "why it acted"),
+    Column("solver_status", "string", None, "the QP solver's status; empty where none ran"),
+    Column("solver_iterations", "integer", None, "the QP solver's iterations"),
+    Column("gap", "number", "m", "distance to the closest pedestrian in front now; empty: nobody"),
+    Column("reference_speed", "number", "m/s", "the reference speed of the controller that acted"),
+)
+
+TRAJECTORY_COLUMNS = (
+    Column("time", "number", "s", "simulation time"),
+    Column("id", "string", None, "SUMO id of the person or vehicle"),
+    Column("type", "string", None, "pedestrian, ego, or the SUMO type of a background vehicle"),
+    Column("x", "number", "m", "network x: a person's body centre, a vehicle's front bumper"),
+    Column("y", "number", "m", "network y: a person's body centre, a vehicle's front bumper"),
+    Column("angle", "number", "deg", "navigational angle: 0 is north, clockwise"),
+    Column("speed", "number", "m/s", "speed"),
+    Column("vx", "number", "m/s", "velocity's x component"),
+    Column("vy", "number", "m/s", "velocity's y component"),
+)
+
+TIMING_COLUMNS = (
+    Column("time", "number", "s", "simulation time t_k of the control instant"),
+    Column("prediction", "number", "us", "computing time of the crowd's prediction"),
+    Column("control", "number", "us", "computing time of the controller, the QP included"),
+    Column("vehicle", "number", "us", "computing time of the vehicle FMU's step"),
+    Column("crowd", "number", "us", "computing time of the crowd's step"),
+    Column("sumo", "number", "us", "computing time of SUMO: moves, step, comparison"),
+    Column("total", "number", "us", "computing time of the whole control step"),
+)

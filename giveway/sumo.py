@@ -1,0 +1,394 @@
+"""The one object that owns libsumo.
+
+SUMO is the mirror of our own state: the ego and the pedestrians are moved to where the vehicle
+FMU and the VCI model put them, and what is exported is our state. The ways of moving were found
+by experiment on SUMO 1.28:
+
+* a person follows ``moveToXY(..., keepRoute=2, matchThreshold=-1)`` exactly; other arguments kill
+  the process when the person is mapped onto a walkingarea (SUMO issue 17257);
+* only the striping pedestrian model obeys moveToXY;
+* a pending moveToXY at ``close`` crashes the next simulation, so nothing that can raise stands
+  between the moves and ``simulationStep``.
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.ego_path import Pose
+from giveway.errors import InstallationError, ScenarioError, SumoError
+from giveway.native_stderr import NativeStderr
+from giveway.tracks import VehicleShape
+
+EGO_TYPE = "giveway_ego"
+PEDESTRIAN_TYPE = "giveway_pedestrian"
+POSITION_TOLERANCE = 1e-6  # [m] between our state and SUMO's after each step
+_DEPART_NOW = -3  # libsumo's constant for "in the next step"
+_KEEP_ROUTE = 2  # move exactly to x, y, whatever lane is there
+_NO_MATCHING = -1.0  # the "ghost" mode: no search for a lane (SUMO issue 17257)
+
+
+@dataclass(frozen=True)
+class BackgroundVehicles:
+    """SUMO's own vehicles at one instant; ``x``, ``y`` are front-bumper centres."""
+
+    ids: tuple[str, ...]
+    types: tuple[str, ...]
+    x: NDArray[np.float64]  # (m,) [m]
+    y: NDArray[np.float64]  # (m,) [m]
+    heading: NDArray[np.float64]  # (m,) [rad] counter-clockwise from +x
+    speed: NDArray[np.float64]  # (m,) [m/s]
+    length: NDArray[np.float64]  # (m,) [m]
+    width: NDArray[np.float64]  # (m,) [m]
+
+
+def heading_to_angle(heading: float) -> float:
+    """SUMO's navigational angle [deg, 0 = north, clockwise] of a heading [rad]."""
+    return (90.0 - math.degrees(heading)) % 360.0
+
+
+def angle_to_heading(angle: float) -> float:
+    """The heading [rad, counter-clockwise from +x] of SUMO's navigational angle [deg]."""
+    return math.radians(90.0 - angle)
+
+
+class SumoSession:
+    """A running simulation; one per process at a time, closed in every case.
+
+    Args:
+        config_file: the scenario's ``.sumocfg``; nothing is written beside it.
+        seed: SUMO's random seed.
+        step_length: SUMO's step [s]; None keeps the scenario's.
+        ego_shape: the ego's body, for SUMO's followers.
+
+    Raises:
+        SumoError: SUMO does not load the scenario; the message carries SUMO's reason.
+        InstallationError: libsumo cannot be imported.
+    """
+
+    _running = False
+
+    def __init__(
+        self, config_file: Path, *, seed: int, step_length: float | None, ego_shape: VehicleShape
+    ) -> None:
+        if SumoSession._running:
+            msg = "SUMO: a simulation is already running; libsumo holds one per process, close it"
+            raise SumoError(msg)
+        self._sumo = _import_libsumo()
+        self._config_file = config_file
+        self._stderr = NativeStderr()
+        self._ego_id = ""
+        self._ego_shape = ego_shape
+        self._shapes: dict[str, tuple[str, float, float]] = {}
+        with tempfile.TemporaryDirectory(prefix="giveway-") as folder:
+            types = Path(folder) / "giveway.add.xml"
+            types.write_text(_own_types(ego_shape), encoding="utf-8")
+            command = _command(config_file, types, seed=seed, step_length=step_length)
+            try:
+                with self._stderr:
+                    self._sumo.start(command)
+            except Exception as error:
+                reason = self._stderr.errors() or str(error)
+                self._stderr.close()
+                msg = f"{config_file}: SUMO cannot load this scenario: {reason}"
+                raise SumoError(msg) from error
+        SumoSession._running = True
+        self.step_length = float(self._sumo.simulation.getDeltaT())
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    # --- reading ------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """SUMO's clock [s]."""
+        return float(self._sumo.simulation.getTime())
+
+    @property
+    def end(self) -> float:
+        """The scenario's end [s]; infinite where it names none."""
+        end = float(self._sumo.simulation.getEndTime())
+        return end if end >= 0.0 else math.inf
+
+    @property
+    def version(self) -> str:
+        """SUMO's version string."""
+        return str(self._sumo.simulation.getVersion()[1])
+
+    @property
+    def messages(self) -> str:
+        """What SUMO has printed on stderr so far: warnings, mostly."""
+        return self._stderr.text()
+
+    def route_shape(self, edges: Sequence[str], lane: int) -> list[tuple[float, float]]:
+        """The polyline of the lanes along ``edges``, junctions included.
+
+        Raises:
+            ScenarioError: an edge or lane does not exist, or the lanes do not connect.
+        """
+        known = set(self._sumo.edge.getIDList())
+        for edge in edges:
+            if edge not in known:
+                msg = f"{self._config_file}: ego route: no edge '{edge}' in the network"
+                raise ScenarioError(msg)
+        lanes = int(self._sumo.edge.getLaneNumber(edges[0]))
+        if lane >= lanes:
+            msg = (
+                f"{self._config_file}: ego lane {lane}: edge '{edges[0]}' has {lanes} lane(s); "
+                f"expected 0 to {lanes - 1}"
+            )
+            raise ScenarioError(msg)
+        current = f"{edges[0]}_{lane}"
+        points = list(self._sumo.lane.getShape(current))
+        for following in edges[1:]:
+            current, via = self._next_lane(current, following)
+            for lane_id in (*via, current):
+                points.extend(self._sumo.lane.getShape(lane_id))
+        return points
+
+    def _next_lane(self, lane: str, edge: str) -> tuple[str, list[str]]:
+        """The lane of ``edge`` that ``lane`` leads to, and the junction's lanes between them."""
+        for link in self._sumo.lane.getLinks(lane):
+            target, inside = link[0], link[4]
+            if self._sumo.lane.getEdgeID(target) != edge:
+                continue
+            via = []
+            while inside:
+                via.append(inside)
+                onwards = self._sumo.lane.getLinks(inside)
+                inside = onwards[0][4] if onwards else ""
+            return target, via
+        msg = (
+            f"{self._config_file}: ego route: lane '{lane}' has no connection to edge '{edge}'; "
+            "choose another lane or route"
+        )
+        raise ScenarioError(msg)
+
+    def background_vehicles(self) -> BackgroundVehicles:
+        """Every vehicle of the scenario except the ego, as of SUMO's clock."""
+        vehicle = self._sumo.vehicle
+        ids = tuple(sorted(name for name in vehicle.getIDList() if name != self._ego_id))
+        for name in ids:
+            if name not in self._shapes:
+                size = vehicle.getLength(name), vehicle.getWidth(name)
+                self._shapes[name] = (vehicle.getTypeID(name), *size)
+        rows = np.array(
+            [
+                (
+                    *vehicle.getPosition(name),
+                    angle_to_heading(vehicle.getAngle(name)),
+                    vehicle.getSpeed(name),
+                    *self._shapes[name][1:],
+                )
+                for name in ids
+            ],
+            dtype=np.float64,
+        ).reshape(-1, 6)
+        types = tuple(self._shapes[name][0] for name in ids)
+        return BackgroundVehicles(ids, types, *np.ascontiguousarray(rows.T))
+
+    # --- adding and removing ------------------------------------------------------------------
+
+    def run_until(self, time: float) -> None:
+        """Let the scenario run by itself up to ``time`` [s]."""
+        while self.time < time - 1e-9:
+            self._step()
+
+    def add_ego(self, ego_id: str, edges: Sequence[str], *, position: float, speed: float) -> None:
+        """Insert the ego; it appears with the next :meth:`mirror`."""
+        if ego_id in self._sumo.vehicle.getIDList():
+            msg = f"ego id '{ego_id}': the scenario already has this vehicle; choose another id"
+            raise ScenarioError(msg)
+        route = f"giveway_route_{ego_id}"
+        self._call(self._sumo.route.add, route, list(edges))
+        self._call(
+            self._sumo.vehicle.add,
+            ego_id,
+            route,
+            typeID=EGO_TYPE,
+            depart="now",
+            departPos=f"{position:.3f}",
+            departSpeed=f"{speed:.3f}",
+        )
+        self._ego_id = ego_id
+
+    def add_persons(self, ids: Sequence[str], host_edge: str) -> None:
+        """Add persons who live on ``host_edge``; they appear with the next :meth:`mirror`."""
+        if host_edge not in self._sumo.edge.getIDList():
+            msg = (
+                f"{self._config_file}: host edge '{host_edge}' for the pedestrians does not exist; "
+                "name an edge that allows pedestrians with [crowd] host_edge"
+            )
+            raise ScenarioError(msg)
+        taken = set(self._sumo.person.getIDList()).intersection(ids)
+        if taken:
+            msg = f"person id '{min(taken)}': the scenario already has this person"
+            raise ScenarioError(msg)
+        for name in ids:
+            self._call(
+                self._sumo.person.add, name, host_edge, 0.0, _DEPART_NOW, PEDESTRIAN_TYPE
+            )
+            self._call(self._sumo.person.appendWalkingStage, name, [host_edge], -1.0)
+
+    def remove_persons(self, ids: Sequence[str]) -> None:
+        """Let persons arrive; they are gone with the next step."""
+        for name in ids:
+            self._call(self._sumo.person.removeStages, name)  # unlike remove: counts as arrival
+
+    # --- stepping -----------------------------------------------------------------------------
+
+    def mirror(
+        self, ego: Pose | None, ids: Sequence[str], rows: Sequence[tuple[float, float, float]]
+    ) -> None:
+        """Move ego and persons, make one SUMO step, and check that SUMO stands where we do.
+
+        Args:
+            ego: the front bumper's pose after the step.
+            ids: the persons' ids.
+            rows: x [m], y [m] and angle [deg, 0 = north, clockwise] of each person; finite.
+
+        Raises:
+            SumoError: SUMO failed, or disagrees by more than 1e-6 m.
+        """
+        move_person = self._sumo.person.moveToXY
+        try:
+            with self._stderr:
+                if ego is not None:
+                    angle = heading_to_angle(ego.heading)
+                    self._sumo.vehicle.moveToXY(
+                        self._ego_id, "", -1, ego.x, ego.y, angle, _KEEP_ROUTE
+                    )
+                for name, (x, y, angle) in zip(ids, rows, strict=True):
+                    move_person(name, "", x, y, angle, _KEEP_ROUTE, _NO_MATCHING)
+                self._sumo.simulationStep()
+        except Exception as error:
+            raise self._failure(error) from error
+        self._check(ego, ids, rows)
+
+    def _check(
+        self, ego: Pose | None, ids: Sequence[str], rows: Sequence[tuple[float, float, float]]
+    ) -> None:
+        get_position = self._sumo.person.getPosition
+        try:
+            if ego is not None:
+                x, y = self._sumo.vehicle.getPosition(self._ego_id)
+                _compare("vehicle", self._ego_id, (x, y), ego, self.time)
+            for name, row in zip(ids, rows, strict=True):
+                x, y = get_position(name)
+                if abs(x - row[0]) + abs(y - row[1]) > POSITION_TOLERANCE:
+                    _compare("person", name, (x, y), row, self.time)
+        except self._sumo.TraCIException as error:
+            raise self._failure(error) from error
+
+    def _step(self) -> None:
+        self._call(self._sumo.simulationStep)
+
+    def _call(self, function: Any, *arguments: Any, **keywords: Any) -> Any:
+        """A libsumo call whose failure becomes a :class:`SumoError` with SUMO's own reason."""
+        try:
+            with self._stderr:
+                return function(*arguments, **keywords)
+        except Exception as error:
+            raise self._failure(error) from error
+
+    def _failure(self, error: Exception) -> SumoError:
+        reasons = [part for part in (str(error).strip(), self._stderr.errors()) if part]
+        reason = "; ".join(dict.fromkeys(reasons)) or type(error).__name__
+        return SumoError(f"{self._config_file}: SUMO failed at {self.time:.3f} s: {reason}")
+
+    def close(self) -> None:
+        """End the simulation; harmless when repeated."""
+        if not SumoSession._running:
+            return
+        SumoSession._running = False
+        with self._stderr:
+            try:
+                self._sumo.simulationStep()  # carries out pending moves, which close() would leak
+            except Exception:  # noqa: BLE001, S110 - the simulation is being given up anyway
+                pass
+            self._sumo.close()
+        self._stderr.close()
+
+
+def _compare(
+    kind: str, name: str, there: tuple[float, float], here: Sequence[float], time: float
+) -> None:
+    deviation = math.hypot(there[0] - here[0], there[1] - here[1])
+    if deviation > POSITION_TOLERANCE:
+        msg = (
+            f"{kind} '{name}' at {time:.3f} s: SUMO has it {deviation:.3g} m away from our state; "
+            f"expected at most {POSITION_TOLERANCE:g} m; is it moved by somebody else?"
+        )
+        raise SumoError(msg)
+
+
+def _import_libsumo() -> Any:
+    try:
+        import libsumo  # noqa: PLC0415 - imported late: it takes half a second
+    except ImportError as error:
+        msg = f"libsumo cannot be imported ({error}); reinstall with: pip install giveway"
+        raise InstallationError(msg) from error
+    return libsumo
+
+
+def _own_types(ego: VehicleShape) -> str:
+    # timeToTeleport: an ego that waits for a crowd is not stuck. speedDev=0: a drawn speed factor
+    # would shift SUMO's random stream and with it the background traffic.
+    return f"""<additional>
+    <vType id="{EGO_TYPE}" vClass="passenger" length="{ego.length}" width="{ego.width}"
+           maxSpeed="100" speedDev="0" timeToTeleport="-1"/>
+    <vType id="{PEDESTRIAN_TYPE}" vClass="ignoring" speedDev="0"/>
+</additional>
+"""
+
+
+def _command(
+    config_file: Path, types: Path, *, seed: int, step_length: float | None
+) -> list[str]:
+    additional = [str(types), *_additional_files(config_file)]
+    command = ["sumo", "-c", str(config_file)]
+    command += ["--additional-files", ",".join(additional)]
+    command += ["--pedestrian.model", "striping", "--gui-settings-file", ""]
+    command += ["--collision.action", "warn", "--collision.check-junctions", "true"]
+    command += ["--random", "false", "--seed", str(seed)]
+    command += ["--no-step-log", "true", "--duration-log.disable", "true"]
+    if step_length is not None:
+        command += ["--step-length", f"{step_length:.6f}"]
+    return command
+
+
+def _additional_files(config_file: Path) -> list[str]:
+    """The configuration's own additional files, absolute: naming ours replaces its list."""
+    try:
+        root = ET.parse(config_file).getroot()
+    except FileNotFoundError:
+        msg = f"{config_file}: no such file; expected a SUMO configuration (.sumocfg)"
+        raise ScenarioError(msg) from None
+    except (ET.ParseError, OSError) as error:
+        msg = f"{config_file}: not readable as a SUMO configuration: {error}"
+        raise SumoError(msg) from None
+    names: list[str] = []
+    for tag in ("additional-files", "additional", "a"):
+        for element in root.iter(tag):
+            value = element.get("value", element.get("v", ""))
+            names += [name.strip() for name in value.split(",") if name.strip()]
+    return [str((config_file.parent / name).resolve()) for name in names]

@@ -1,0 +1,108 @@
+"""The run's tables as pandas frames, columns as in :mod:`giveway.schema`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from giveway.schema import EGO_COLUMNS, TIMING_COLUMNS, TRAJECTORY_COLUMNS
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings
+
+    Array = NDArray[np.float64]
+
+_STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
+
+
+def navigational(heading: Array) -> Array:
+    """SUMO's angles [deg, 0 = north, clockwise] of headings [rad]."""
+    return np.mod(90.0 - np.degrees(heading), 360.0)
+
+
+def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
+    """``ego.csv``: one row per control instant."""
+    gap = np.where(np.isfinite(track.gap), track.gap, np.nan)
+    values = (
+        track.time,
+        ego_id,
+        track.position,
+        track.front_x,
+        track.front_y,
+        navigational(track.heading),
+        track.speed,
+        track.acceleration,
+        track.force,
+        track.acting,
+        track.reason,
+        track.solver_status,
+        track.solver_iterations,
+        gap,
+        track.reference_speed,
+    )
+    names = [column.name for column in EGO_COLUMNS]
+    return pd.DataFrame(dict(zip(names, values, strict=True)), index=range(len(track.time)))
+
+
+def trajectory_table(
+    ego: EgoTrack, ego_id: str, crowd: CrowdTrack, background: BackgroundTrack
+) -> pd.DataFrame:
+    """``trajectories.csv``: at each instant the ego, SUMO's own vehicles, the pedestrians."""
+    frames = [
+        _moving(ego.time, ego_id, "ego", ego.front_x, ego.front_y, ego.heading, ego.speed),
+        _moving(
+            background.time,
+            background.id,
+            background.type,
+            background.x,
+            background.y,
+            background.heading,
+            background.speed,
+        ),
+        _walking(ego.time, crowd),
+    ]
+    frames = [frame for frame in frames if len(frame)]
+    names = [column.name for column in TRAJECTORY_COLUMNS]
+    if not frames:
+        return pd.DataFrame(columns=names)
+    table = pd.concat(frames, ignore_index=True)
+    return table.sort_values("time", kind="stable", ignore_index=True)[names]
+
+
+def _moving(
+    time: Array,
+    name: object,
+    kind: object,
+    x: Array,
+    y: Array,
+    heading: Array,
+    speed: Array,
+) -> pd.DataFrame:
+    velocity = {"vx": speed * np.cos(heading), "vy": speed * np.sin(heading)}
+    placed = {"time": time, "id": name, "type": kind, "x": x, "y": y}
+    angle = navigational(heading)
+    return pd.DataFrame({**placed, "angle": angle, "speed": speed, **velocity})
+
+
+def _walking(time: Array, crowd: CrowdTrack) -> pd.DataFrame:
+    speed = np.hypot(crowd.vx, crowd.vy)
+    angle = navigational(np.arctan2(crowd.vy, crowd.vx))
+    angle = np.where(speed < _STANDING, np.nan, angle)
+    angle = pd.Series(angle).groupby(crowd.pedestrian).ffill().fillna(0.0).to_numpy()
+    ids = np.array(crowd.ids, dtype=object)[crowd.pedestrian]
+    placed = {"time": time[crowd.step], "id": ids, "type": "pedestrian"}
+    moving = {"angle": angle, "speed": speed, "vx": crowd.vx, "vy": crowd.vy}
+    return pd.DataFrame({**placed, "x": crowd.x, "y": crowd.y, **moving})
+
+
+def timing_table(time: Array, timings: Timings) -> pd.DataFrame:
+    """``timing.csv``: computing times [us]; the only table that differs between equal runs."""
+    names = [column.name for column in TIMING_COLUMNS]
+    microseconds = np.round(timings.seconds * 1e6, 1)
+    frame = pd.DataFrame(microseconds, columns=names[1:])
+    frame.insert(0, names[0], time[: len(frame)])
+    return frame

@@ -1,0 +1,141 @@
+"""The configuration: layers, validation in one line, and the round trip through TOML."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from giveway.config import RunConfig
+from giveway.configfile import Layer, build_config, dump_toml, flag_of, options, read_toml
+from giveway.errors import ConfigError, ScenarioError
+from giveway.loading import as_layer, load
+
+
+def explain(values: dict, *, flags: bool = False) -> str:
+    with pytest.raises(ConfigError) as caught:
+        build_config([Layer("study.toml", values, from_flags=flags)])
+    message = str(caught.value)
+    assert "\n" not in message
+    return message
+
+
+def test_defaults_are_the_papers_table() -> None:
+    config = RunConfig()
+    assert (config.vehicle.mass, config.vehicle.friction, config.time_step) == (1000, 100, 0.05)
+    assert (config.mpc.force_limit, config.mpc.force_rate_limit, config.mpc.horizon) == (
+        8000,
+        1000,
+        15,
+    )
+    assert (config.mpc.speed_min, config.mpc.speed_max) == (0, 20)
+    assert (config.pid.integral_gain, config.pid.derivative_gain) == (10, 100)
+    assert (config.regulation.reference_speed, config.regulation.safe_distance) == (4, 8)
+    assert config.pid.buffer_distance == 10
+
+
+def test_toml_round_trip_is_exact() -> None:
+    config = RunConfig.model_validate(
+        {"seed": 7, "crowd": {"spawn_area": (0.1, 0.2, 3, 4)}, "sumo": {"step_length": 0.1}}
+    )
+    again = build_config([Layer("dump", tomllib.loads(dump_toml(config)))])
+    assert again == config
+
+
+@given(
+    seed=st.integers(0, 2**31 - 1),
+    mass=st.floats(1e-3, 1e6),
+    speed=st.floats(0, 70),
+    two_sided=st.booleans(),
+)
+def test_toml_round_trip_of_any_numbers(
+    seed: int, mass: float, speed: float, two_sided: bool
+) -> None:
+    values = {
+        "seed": seed,
+        "vehicle": {"mass": mass},
+        "ego": {"initial_speed": speed},
+        "crowd": {"two_sided": two_sided},
+    }
+    config = RunConfig.model_validate(values)
+    assert build_config([Layer("dump", tomllib.loads(dump_toml(config)))]) == config
+
+
+def test_every_option_has_its_own_flag_and_a_meaning() -> None:
+    flags = [option.flag for option in options()]
+    assert len(flags) == len(set(flags))
+    assert all(option.field.description for option in options())
+    assert flag_of(("crowd", "pedestrians")) == "--pedestrians"
+    assert flag_of(("mpc", "horizon")) == "--mpc-horizon"
+
+
+def test_later_layers_win_key_by_key() -> None:
+    below = Layer("a", {"seed": 1, "mpc": {"horizon": 20, "force_limit": 5000}})
+    above = Layer("b", {"mpc": {"horizon": 30}})
+    config = build_config([below, above])
+    assert (config.seed, config.mpc.horizon, config.mpc.force_limit) == (1, 30, 5000)
+
+
+@pytest.mark.parametrize(
+    ("values", "parts"),
+    [
+        (
+            {"crowd": {"pedestrians": -3}},
+            ["study.toml: [crowd] pedestrians", "-3", "equal to 0", "persons"],
+        ),
+        ({"seed": "a"}, ["study.toml: seed", "'a'", "integer"]),
+        ({"controller": "mcp"}, ["'mcp'", "'mpc' or 'pid'"]),
+        ({"mpc": {"horizon": float("nan")}}, ["[mpc] horizon", "nan", "finite"]),
+        ({"vehicle": {"mass": 0.0}}, ["[vehicle] mass", "greater than 0", "kg"]),
+        ({"ego": {"initial_speed": 1e9}}, ["[ego] initial_speed", "m/s"]),
+        ({"crowd": {"spawn_area": [1, 2, 0, 4]}}, ["spawn_area", "x_min < x_max", "[m]"]),
+        ({"crowd": {"spawn_area": "1,2,3"}}, ["spawn_area", "1", "4 values"]),
+        ({"crowd": {"spawn_area": "1,2,x,4"}}, ["spawn_area", "x", "number"]),
+        ({"crowd": {"pedestrans": 3}}, ["[crowd] pedestrans", "did you mean 'pedestrians'"]),
+        ({"crwd": {}}, ["crwd", "did you mean 'crowd'"]),
+        ({"zzz": 1}, ["zzz", "expected one of", "scenario"]),
+        ({"crowd": 3}, ["crowd", "table"]),
+    ],
+)
+def test_a_bad_value_is_explained_in_one_line(values: dict, parts: list[str]) -> None:
+    message = explain(values)
+    for part in parts:
+        assert part in message
+
+
+def test_a_bad_flag_is_named_as_a_flag() -> None:
+    assert "--pedestrians = '-1'" in explain({"crowd": {"pedestrians": "-1"}}, flags=True)
+    assert "--mpc-horizon" in explain({"mpc": {"horizon": "1.5"}}, flags=True)
+
+
+@pytest.mark.parametrize(
+    ("content", "part"),
+    [("seed = ", "not valid TOML"), ("\xff\xfe", "not UTF-8"), (None, "no such file")],
+)
+def test_an_unreadable_file_is_named(tmp_path: Path, content: str | None, part: str) -> None:
+    path = tmp_path / "study.toml"
+    if content is not None:
+        path.write_bytes(content.encode("latin-1"))
+    with pytest.raises(ConfigError, match=part) as caught:
+        read_toml(path)
+    assert str(path) in str(caught.value)
+
+
+def test_the_scenarios_settings_lie_beneath_the_users() -> None:
+    config, scenario = load([Layer("", {"scenario": "shared_space", "seed": 5})])
+    assert scenario.name == "shared_space"
+    assert config.seed == 5
+    assert config.crowd.host_edge
+    assert config.ego.route
+
+
+def test_a_run_config_object_overrides_only_what_it_sets() -> None:
+    config, _ = load([as_layer(RunConfig(seed=9))])
+    assert config.seed == 9
+    assert config.ego.route
+
+
+def test_an_unknown_scenario_is_guessed_at() -> None:
+    with pytest.raises(ScenarioError, match="shared_space"):
+        load([Layer("", {"scenario": "shared_spce"})])

@@ -1,0 +1,104 @@
+"""The ego's path and the corridor about it."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from giveway.corridor import Corridor
+from giveway.ego_path import EgoPath
+from giveway.errors import ScenarioError
+
+L_SHAPE = [(0, 0), (10, 0), (10, 20)]  # 10 m east, then 20 m north
+
+
+def corridor(points: list[tuple[float, float]], horizon: int = 3) -> Corridor:
+    return Corridor(
+        EgoPath.through(points),
+        half_width=1.25,
+        horizon=horizon,
+        time_step=0.05,
+        walking_speed_limit=2.5,
+    )
+
+
+def test_pose_along_an_l_shaped_path() -> None:
+    path = EgoPath.through(L_SHAPE)
+    assert path.length == 30
+    assert path.pose(4) == pytest.approx((4, 0, 0))
+    assert path.pose(13) == pytest.approx((10, 3, math.pi / 2))
+    assert path.pose(-2) == pytest.approx((-2, 0, 0))
+    assert path.pose(31) == pytest.approx((10, 21, math.pi / 2))
+
+
+def test_projection_gives_station_and_side() -> None:
+    path = EgoPath.through(L_SHAPE)
+    stations, laterals = path.project([(4, 1), (4, -1), (9, 5), (12, 5), (-3, 1), (10, 25)])
+    assert stations == pytest.approx([4, 4, 15, 15, -3, 35])
+    assert laterals == pytest.approx([1, -1, 1, -2, 1, 0])
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(-100, 100), st.floats(-100, 100)), min_size=2, max_size=8, unique=True
+    ),
+    st.floats(0, 1),
+)
+def test_a_point_of_the_path_has_no_lateral_offset(
+    points: list[tuple[float, float]], where: float
+) -> None:
+    try:
+        path = EgoPath.through(points)
+    except ScenarioError:  # all within a nanometre
+        return
+    x, y, _ = path.pose(where * path.length)
+    _, laterals = path.project([(x, y)])
+    assert abs(laterals[0]) < 1e-6
+
+
+def test_repeated_points_are_dropped_and_a_single_point_refused() -> None:
+    assert len(EgoPath.through([(0, 0), (0, 0), (1, 0)]).vertices) == 2
+    with pytest.raises(ScenarioError, match="at least two"):
+        EgoPath.through([(3, 3), (3, 3)])
+    with pytest.raises(ScenarioError, match="finite"):
+        EgoPath.through([(0, 0), (np.nan, 1)])
+
+
+def test_closest_in_front_is_ahead_of_the_bumper_and_in_the_corridor() -> None:
+    people = np.array([[9.0, 1.3], [12.0, -1.2], [15.0, 0.0], [4.9, 0.0], [5.0, 0.0]])
+    closest, reachable = corridor([(0, 0), (100, 0)]).closest_now(people, 5.0)
+    assert closest == 12.0
+    assert reachable
+
+
+def test_nobody_in_front_is_infinitely_far() -> None:
+    plaza = corridor([(0, 0), (100, 0)])
+    assert plaza.closest_now(np.empty((0, 2)), 5.0) == (math.inf, False)
+    assert plaza.closest_now(np.array([[9.0, 30.0]]), 5.0) == (math.inf, False)
+    assert np.isinf(plaza.nobody).all()
+
+
+def test_the_gate_opens_for_whoever_can_walk_into_the_corridor() -> None:
+    plaza = corridor([(0, 0), (100, 0)])
+    reach = 2.5 * 3 * 0.05
+    assert plaza.closest_now(np.array([[9.0, 1.25 + 0.999 * reach]]), 5.0)[1]
+    assert not plaza.closest_now(np.array([[9.0, 1.25 + 1.001 * reach]]), 5.0)[1]
+    assert not plaza.closest_now(np.array([[5.0 - 1.001 * reach, 0.0]]), 5.0)[1]
+    assert plaza.closest_now(np.array([[5.0 - 0.999 * reach, 0.0]]), 5.0)[1]
+
+
+def test_predicted_people_count_once_they_are_in_front_of_the_moved_bumper() -> None:
+    plaza = corridor([(0, 0), (100, 0)])
+    walking_in = np.array([[[8.0, 2.0]], [[8.0, 1.0]], [[5.3, 0.0]]])
+    ahead = plaza.closest_predicted(walking_in, 5.0, 2.0)  # the bumper: 5.1, 5.2, 5.3 m
+    assert ahead.tolist() == [math.inf, 8.0, math.inf]
+
+
+def test_predicted_poses_follow_the_bend() -> None:
+    bend = corridor(L_SHAPE)
+    poses = np.zeros((3, 1, 7))
+    bend.fill_poses(poses, 9.0, 20.0, 2.5)  # one metre a step
+    assert poses[0, 0, :4] == pytest.approx([6.5, 0, 0, 20])
+    assert poses[2, 0, :4] == pytest.approx([10, 1 - 2.5, math.pi / 2, 20])
