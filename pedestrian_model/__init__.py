@@ -1,0 +1,35 @@
+"""The vehicle-crowd interaction (VCI) model: a social force model of pedestrians near vehicles."""
+
+from pedestrian_model.crowd import Crowd, arrived
+from pedestrian_model.errors import (
+    CrowdError,
+    DivergenceError,
+    ParameterError,
+    PedestrianModelError,
+    VehicleError,
+)
+from pedestrian_model.influence import vehicle_influence
+from pedestrian_model.model import CrowdModel, Forces
+from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
+from pedestrian_model.prediction import Predictor
+from pedestrian_model.vehicles import Vehicles, constant_speed
+
+__all__ = [
+    "PRESETS",
+    "SIM",
+    "TABLE2",
+    "Crowd",
+    "CrowdError",
+    "CrowdModel",
+    "DivergenceError",
+    "Forces",
+    "ParameterError",
+    "PedestrianModelError",
+    "Predictor",
+    "VciParameters",
+    "VehicleError",
+    "Vehicles",
+    "arrived",
+    "constant_speed",
+    "vehicle_influence",
+]

@@ -1,0 +1,65 @@
+"""Checks of arrays that come from outside, with messages that name the index and the value."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from pedestrian_model.errors import PedestrianModelError
+
+# Beyond this, squares and differences of coordinates lose their meaning in float64.
+LARGEST = 1e9  # [m], [m/s], [rad]
+
+
+def as_floats(
+    values: ArrayLike, what: str, error: type[PedestrianModelError]
+) -> NDArray[np.float64]:
+    """A C-contiguous float64 array of ``values`` (a copy only if it must be).
+
+    Raises:
+        error: if ``values`` are not numbers.
+    """
+    try:
+        return np.asarray(values, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as cause:
+        raise error(f"{what}: expected numbers, got {values!r}") from cause
+
+
+def check_shape(
+    array: NDArray[np.generic],
+    shape: tuple[int | None, ...],
+    what: str,
+    error: type[PedestrianModelError],
+) -> None:
+    """Raise ``error`` unless ``array`` has ``shape``; None stands for any length."""
+    fits = array.ndim == len(shape) and all(
+        wanted in (None, actual) for wanted, actual in zip(shape, array.shape, strict=True)
+    )
+    if not fits:
+        wanted = "(" + ", ".join("any" if k is None else str(k) for k in shape) + ")"
+        raise error(f"{what} has shape {array.shape}, expected {wanted}")
+
+
+def check_values(array: NDArray[np.float64], what: str, error: type[PedestrianModelError]) -> None:
+    """Raise ``error``, naming the first offender, unless all values are finite and sane."""
+    bad = ~(np.abs(array) <= LARGEST)
+    if bad.any():
+        index = tuple(int(k) for k in np.argwhere(bad)[0])
+        raise error(
+            f"{what}[{', '.join(map(str, index))}] = {array[index]}, "
+            f"expected a finite number within +-{LARGEST:g}"
+        )
+
+
+def check_not_negative(
+    array: NDArray[np.float64], what: str, error: type[PedestrianModelError]
+) -> None:
+    """Raise ``error``, naming the first offender, unless all values are >= 0."""
+    bad = array < 0.0
+    if bad.any():
+        index = int(np.argmax(bad))
+        raise error(f"{what}[{index}] = {array[index]}, expected a value >= 0")

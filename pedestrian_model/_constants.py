@@ -1,0 +1,96 @@
+"""The parameters as the kernels want them: one numpy record, derived factors included."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pedestrian_model._jit import kernel
+from pedestrian_model._mathematics import (
+    COS_PI_8,
+    DEGREE,
+    SIN_PI_8,
+    angle_decay_coefficients,
+    exponential,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from pedestrian_model.parameters import VciParameters
+
+_HALF_PI, _PI_8 = 1.5707963267948966, 0.39269908169872414
+
+_NAMES = (
+    # body, pair forces
+    "m R two_R d_rep s_rep_2 k_rep a_rep b_rep d_nav s_nav_2 k_nav k_col r_max decay_half "
+    "decay_full decay_plus decay_minus cos_pi_8 sin_pi_8 "
+    # vehicle influence
+    "le dx0 alpha_x A b l_v a_v b_v cap u_static "
+    # destination, limits
+    "k_des s_des_2 F_2 inverse_F a_max v_max r_waypoint detour"
+).split()
+
+_DTYPE = np.dtype([*((name, np.float64) for name in _NAMES), ("g", np.float64, (DEGREE + 1,))])
+
+
+@kernel
+def _exp(x: float) -> float:
+    return exponential(x)
+
+
+@lru_cache(maxsize=32)
+def pack(parameters: VciParameters) -> NDArray[Any]:
+    """The constants of the kernels for ``parameters``: a read-only array of one record."""
+    p = parameters
+    l_nav = p.navigation_anisotropy
+    values = {
+        "m": p.mass,
+        "R": p.body_radius,
+        "two_R": 2.0 * p.body_radius,
+        # flm(d; d0, M, s) = M/(2 d0) ((d0 - d) + sqrt((d0 - d)^2 + s^2))
+        "d_rep": p.repulsion_distance,
+        "s_rep_2": p.repulsion_smoothing**2,
+        "k_rep": p.repulsion_strength / (2.0 * p.repulsion_distance),
+        # As(phi; l) = l + (1 - l)(1 + cos phi)/2 = a + b cos phi
+        "a_rep": (1.0 + p.repulsion_anisotropy) / 2.0,
+        "b_rep": (1.0 - p.repulsion_anisotropy) / 2.0,
+        "d_nav": p.navigation_distance,
+        "s_nav_2": p.navigation_smoothing**2,
+        "k_nav": p.navigation_strength / (2.0 * p.navigation_distance),
+        "k_col": p.collision_stiffness,
+        "r_max": p.interaction_radius,
+        # Ae(phi; l) = exp(-l phi) at phi = pi/2, pi and its change over -+pi/8
+        "decay_half": _exp(-l_nav * _HALF_PI),
+        "decay_full": _exp(-l_nav * 2.0 * _HALF_PI),
+        "decay_plus": _exp(l_nav * _PI_8),
+        "decay_minus": _exp(-l_nav * _PI_8),
+        "cos_pi_8": COS_PI_8,
+        "sin_pi_8": SIN_PI_8,
+        "le": p.vehicle_clearance,
+        "dx0": p.vehicle_nose,
+        "alpha_x": p.vehicle_lookahead,
+        "A": p.vehicle_strength,
+        "b": p.vehicle_decay,
+        "l_v": p.vehicle_anisotropy,
+        "a_v": (1.0 + p.vehicle_anisotropy) / 2.0,
+        "b_v": (1.0 - p.vehicle_anisotropy) / 2.0,
+        "cap": p.vehicle_exponent_cap,
+        "u_static": p.static_speed,
+        "k_des": p.destination_gain,
+        "s_des_2": p.destination_smoothing**2,
+        "F_2": p.influence_high,
+        "inverse_F": 1.0 / (p.influence_high - p.influence_low),
+        "a_max": p.max_acceleration,
+        "v_max": p.max_speed,
+        "r_waypoint": p.waypoint_radius,
+        "detour": p.vehicle_clearance + p.body_radius + p.detour_margin,
+    }
+    constants = np.zeros(1, dtype=_DTYPE)
+    for name in _NAMES:
+        constants[0][name] = values[name]
+    constants[0]["g"] = angle_decay_coefficients(float(l_nav))
+    constants.flags.writeable = False
+    return constants

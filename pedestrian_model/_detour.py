@@ -1,0 +1,161 @@
+"""Where to walk next: the current way-point, or a corner of a standing car that is in the way.
+
+Without this, a person who walks into the side of a standing car is pushed back along his own line
+and never gets round it: a local minimum of the force field. All of this file is ours.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from pedestrian_model._jit import inlined, kernel
+from pedestrian_model._mathematics import cosine_sine
+from pedestrian_model._rows import PX, PY, TX, TY, V0
+from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+_TOUCH = 1e-9  # [m] a path along the obstacle's edge does not cross it
+_CLEAR = 2.0  # an entry parameter beyond the segment's end: no crossing
+
+
+@inlined
+def set_targets(
+    rows: NDArray[np.float64],
+    order: NDArray[np.int64],
+    desired_speed: NDArray[np.float64],
+    waypoints: NDArray[np.float64],
+    waypoint_start: NDArray[np.int64],
+    waypoint_index: NDArray[np.int64],
+    radius: float,
+) -> None:
+    """Pass the way-points within ``radius`` (never the last) and copy the targets to the rows."""
+    for k in range(desired_speed.shape[0]):
+        i = order[k]
+        last = waypoint_start[i + 1] - waypoint_start[i] - 1
+        at = waypoint_start[i] + waypoint_index[i]
+        while waypoint_index[i] < last:
+            dx, dy = waypoints[at, 0] - rows[PX, k], waypoints[at, 1] - rows[PY, k]
+            if dx * dx + dy * dy > radius * radius:
+                break
+            waypoint_index[i] += 1
+            at += 1
+        rows[TX, k] = waypoints[at, 0]
+        rows[TY, k] = waypoints[at, 1]
+        rows[V0, k] = desired_speed[i]
+
+
+@inlined
+def _entry(x: float, y: float, dx: float, dy: float, low: float, high: float, h: float) -> float:
+    """Where in [0, 1] the segment enters the open box (low, high) x (-h, h); 2 if it does not."""
+    enter, leave = 0.0, 1.0
+    for axis in range(2):
+        p, d, a, b = (x, dx, low, high) if axis == 0 else (y, dy, -h, h)
+        if d == 0.0:
+            if p <= a or p >= b:
+                return _CLEAR
+        else:
+            first, second = (a - p) / d, (b - p) / d
+            enter = max(enter, min(first, second))
+            leave = min(leave, max(first, second))
+    return enter if enter < leave else _CLEAR
+
+
+@inlined
+def _outside(x: float, y: float, low: float, high: float, h: float) -> float:
+    """How far (in the maximum norm) a point lies outside the box; negative inside."""
+    return max(max(low - x, x - high), abs(y) - h)
+
+
+@inlined
+def _length(dx: float, dy: float) -> float:
+    """The Euclidean length, without libm's hypot."""
+    return math.sqrt(dx * dx + dy * dy)
+
+
+@inlined
+def _corner(k: int, low: float, high: float, h: float) -> tuple[float, float]:
+    """The corners 0 ... 3 of a box, counter-clockwise from (high, h)."""
+    return (high if k == 0 or k == 3 else low), (h if k < 2 else -h)
+
+
+@kernel
+def _way_round(
+    x: float, y: float, x_p: float, y_p: float, low: float, high: float, h: float,
+    margin: float, radius: float,
+) -> tuple[float, float]:
+    """The first corner of the shortest way round a box from (x, y) to (x_p, y_p), all local.
+
+    The corners are those of the box grown by ``margin``; whoever stands or wants to go closer than
+    that sees a box grown by less. A corner within ``radius`` is passed already.
+    """
+    closest = min(_outside(x, y, low, high, h), _outside(x_p, y_p, low, high, h))
+    grown = min(margin, closest) - _TOUCH
+    a, b, w = low - grown, high + grown, h + grown
+    best, best_x, best_y = math.inf, x_p, y_p
+    for turn in (1, 3):  # counter-clockwise, clockwise
+        for first in range(4):
+            c_x, c_y = _corner(first, low - margin, high + margin, h + margin)
+            if _entry(x, y, c_x - x, c_y - y, a, b, w) < _CLEAR:
+                continue
+            length = _length(c_x - x, c_y - y)
+            near = length < radius
+            next_x, next_y = c_x, c_y
+            corner = first
+            for legs in range(4):
+                if _entry(c_x, c_y, x_p - c_x, y_p - c_y, a, b, w) == _CLEAR:
+                    length += _length(x_p - c_x, y_p - c_y)
+                    if near and legs == 0:
+                        next_x, next_y = x_p, y_p
+                    break
+                corner = (corner + turn) % 4
+                d_x, d_y = _corner(corner, low - margin, high + margin, h + margin)
+                length += _length(d_x - c_x, d_y - c_y)
+                c_x, c_y = d_x, d_y
+                if near and legs == 0:
+                    next_x, next_y = c_x, c_y
+            if length < best:
+                best, best_x, best_y = length, next_x, next_y
+    return best_x, best_y
+
+
+@inlined
+def detour(rows: NDArray[np.float64], n: int, vehicles: NDArray[np.float64], c: Any) -> None:
+    """Replace the targets behind a standing vehicle by corners of its grown rectangle."""
+    standing = False
+    for v in range(vehicles.shape[0]):
+        standing |= abs(vehicles[v, SPEED]) < c.u_static
+    if not standing:
+        return
+    for k in range(n):
+        x, y, x_p, y_p = rows[PX, k], rows[PY, k], rows[TX, k], rows[TY, k]
+        first = _CLEAR
+        for v in range(vehicles.shape[0]):  # the first vehicle met on the way counts
+            if abs(vehicles[v, SPEED]) >= c.u_static:
+                continue
+            reach = vehicles[v, FRONT] + vehicles[v, REAR] + vehicles[v, WIDTH] + 2.0 * c.detour
+            v_x, v_y = vehicles[v, X], vehicles[v, Y]
+            if min(x, x_p) > v_x + reach or max(x, x_p) < v_x - reach:
+                continue
+            if min(y, y_p) > v_y + reach or max(y, y_p) < v_y - reach:
+                continue
+            cos, sin = cosine_sine(vehicles[v, HEADING])
+            at_x, at_y = cos * (x - v_x) + sin * (y - v_y), cos * (y - v_y) - sin * (x - v_x)
+            to_x = cos * (x_p - v_x) + sin * (y_p - v_y)
+            to_y = cos * (y_p - v_y) - sin * (x_p - v_x)
+            low, high, h = -vehicles[v, REAR], vehicles[v, FRONT], vehicles[v, WIDTH] / 2.0
+            room = min(_outside(at_x, at_y, low, high, h), _outside(to_x, to_y, low, high, h))
+            if room <= 0.0:
+                continue  # inside the car, or bound for its inside: no way round
+            g = min(room, c.detour) - _TOUCH
+            entry = _entry(at_x, at_y, to_x - at_x, to_y - at_y, low - g, high + g, h + g)
+            if entry < first:
+                first = entry
+                q_x, q_y = _way_round(
+                    at_x, at_y, to_x, to_y, low, high, h, c.detour, c.r_waypoint
+                )
+                rows[TX, k] = v_x + cos * q_x - sin * q_y
+                rows[TY, k] = v_y + sin * q_x + cos * q_y

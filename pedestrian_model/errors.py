@@ -1,0 +1,23 @@
+"""What can go wrong in the pedestrian model, one class per thing a user can do something about."""
+
+from __future__ import annotations
+
+
+class PedestrianModelError(Exception):
+    """Root of the errors of this room."""
+
+
+class ParameterError(PedestrianModelError):
+    """A parameter of the model, or a time step or horizon, is out of its range."""
+
+
+class CrowdError(PedestrianModelError):
+    """The state of a crowd is malformed: a shape, an index, or a value that is not finite."""
+
+
+class VehicleError(PedestrianModelError):
+    """The description of the vehicles is malformed."""
+
+
+class DivergenceError(PedestrianModelError):
+    """A step produced a state that is not finite."""

@@ -1,0 +1,54 @@
+"""The vehicle influence alone, at any point: the paper's figure 2."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pedestrian_model import _step
+from pedestrian_model._check import as_floats, check_shape, check_values
+from pedestrian_model._constants import pack
+from pedestrian_model._rows import rows_for
+from pedestrian_model.errors import CrowdError
+from pedestrian_model.parameters import SIM
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from pedestrian_model.parameters import VciParameters
+    from pedestrian_model.vehicles import Vehicles
+
+
+def vehicle_influence(
+    points: ArrayLike,
+    velocities: ArrayLike,
+    vehicles: Vehicles,
+    parameters: VciParameters = SIM,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The force of all vehicles on pedestrians at ``points``.
+
+    Args:
+        points: (k, 2) [m].
+        velocities: (k, 2) [m/s] of the pedestrians there.
+        vehicles: the vehicles.
+        parameters: the numbers of the model.
+
+    Returns:
+        Forces (k, 2) [N] and signed distances (k,) [m] to the nearest contour: negative inside,
+        inf without vehicles.
+
+    Raises:
+        CrowdError: if the points or velocities are not finite or have a wrong shape.
+    """
+    x = as_floats(points, "points", CrowdError)
+    check_shape(x, (None, 2), "points", CrowdError)
+    check_values(x, "points", CrowdError)
+    v = as_floats(velocities, "velocities", CrowdError)
+    check_shape(v, x.shape, "velocities", CrowdError)
+    check_values(v, "velocities", CrowdError)
+    out = np.empty((x.shape[0], 3))
+    if x.shape[0] > 0:
+        rows = rows_for(x.shape[0])
+        _step.influence(x, v, vehicles.array, pack(parameters), rows, out)
+    return out[:, :2].copy(), out[:, 2].copy()

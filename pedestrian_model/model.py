@@ -1,0 +1,205 @@
+"""The crowd, stepped: Newton's law under the sum of the sub-forces."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pedestrian_model import _step
+from pedestrian_model._constants import pack
+from pedestrian_model._rows import order_for, rows_for
+from pedestrian_model.errors import DivergenceError, ParameterError
+from pedestrian_model.parameters import SIM
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from pedestrian_model.crowd import Crowd
+    from pedestrian_model.parameters import VciParameters
+    from pedestrian_model.vehicles import Vehicles
+
+#: The longest step the integration takes at once: k_col dt^2 / m = 0.31 is stable.
+LONGEST_STEP = 0.05  # [s]
+#: From so many pedestrians on, neighbours are found by a cell list (benchmarks/bench_crowd.py).
+CELL_LIST_FROM = 300
+
+
+def substeps(time_step: float) -> int:
+    """How many equal sub-steps of at most ``LONGEST_STEP`` make one step of ``time_step`` [s].
+
+    Raises:
+        ParameterError: if the time step is not positive and finite.
+    """
+    if not 0.0 < time_step < math.inf:
+        raise ParameterError(f"time_step = {time_step} s, expected a finite number > 0 s")
+    return max(1, math.ceil(time_step / LONGEST_STEP - 1e-9))
+
+
+@dataclass(frozen=True, eq=False)
+class Forces:
+    """The forces on each pedestrian [N], apart; all but ``beta`` (n,) are (n, 2)."""
+
+    repulsion: NDArray[np.float64]  # sum of f_r
+    collision: NDArray[np.float64]  # sum of f_c
+    navigation: NDArray[np.float64]  # sum of f_n
+    vehicle: NDArray[np.float64]  # f_v
+    destination: NDArray[np.float64]  # f_d, without beta
+    beta: NDArray[np.float64]  # in [0, 1], what the vehicles leave of f_d
+    target: NDArray[np.float64]  # [m] where f_d pulls: a way-point, or a corner of a standing car
+
+    @property
+    def total(self) -> NDArray[np.float64]:
+        """The total force before the limits (Yang & Özgüner 2019, equation of motion)."""
+        others = self.repulsion + self.collision + self.navigation
+        return others + self.vehicle + self.beta[:, None] * self.destination
+
+
+class Workspace:
+    """The scratch of the kernels, grown when a larger crowd comes."""
+
+    def __init__(self) -> None:
+        self.capacity = -1
+        self.reserve(32)
+
+    def reserve(self, n: int) -> None:
+        """Have room for n pedestrians."""
+        if n > self.capacity:
+            self.capacity = max(n, 2 * self.capacity)
+            self.rows = rows_for(self.capacity)
+            self.index = order_for(self.capacity)
+
+
+class CrowdModel:
+    """The VCI model with a time step; it holds no state but scratch memory.
+
+    Args:
+        parameters: the numbers of the model.
+        time_step: [s]; above 0.05 s it is divided into equal sub-steps, during which the vehicles
+            drive straight on at constant speed.
+        cell_list_from: the crowd size from which neighbours are found by a cell list.
+
+    Raises:
+        ParameterError: if the time step is not positive and finite.
+    """
+
+    def __init__(
+        self,
+        parameters: VciParameters = SIM,
+        time_step: float = 0.05,
+        *,
+        cell_list_from: int = CELL_LIST_FROM,
+    ) -> None:
+        self.parameters = parameters
+        self.time_step = float(time_step)
+        self.cell_list_from = int(cell_list_from)
+        self._substeps = substeps(self.time_step)
+        self._dt = self.time_step / self._substeps
+        self._constants = pack(parameters)
+        self._workspace = Workspace()
+
+    def step(self, crowd: Crowd, vehicles: Vehicles) -> Crowd:
+        """The crowd one time step later; all forces come from the old state.
+
+        Raises:
+            DivergenceError: if a pedestrian's state is or becomes not finite.
+        """
+        after = crowd.copy()
+        self.advance(after, vehicles)
+        return after
+
+    def advance(self, crowd: Crowd, vehicles: Vehicles) -> None:
+        """Like ``step``, but changes position, velocity and waypoint_index of ``crowd`` in place.
+
+        Bit-equal to ``step``, and allocates nothing unless the crowd has grown.
+
+        Raises:
+            DivergenceError: if a pedestrian's state is or becomes not finite.
+        """
+        n = crowd.position.shape[0]
+        if n > self._workspace.capacity:
+            self._workspace.reserve(n)
+        bad = _step.advance(
+            crowd.position, crowd.velocity, crowd.desired_speed, crowd.waypoints,
+            crowd.waypoint_start, crowd.waypoint_index, vehicles.array,
+            self._workspace.rows, self._workspace.index, self._constants,
+            self._dt, self._substeps, self.cell_list_from,
+        )
+        if bad != _step.FINE:
+            raise divergence(bad, crowd, vehicles)
+
+    def forces(self, crowd: Crowd, vehicles: Vehicles) -> Forces:
+        """Each sub-force in the present state, for pictures and tests.
+
+        Raises:
+            DivergenceError: if a pedestrian's state is not finite.
+        """
+        none = replace(
+            self.parameters,
+            repulsion_strength=0.0, collision_stiffness=0.0, navigation_strength=0.0,
+        )
+        p = self.parameters
+        only = {
+            "repulsion": replace(none, repulsion_strength=p.repulsion_strength),
+            "collision": replace(none, collision_stiffness=p.collision_stiffness),
+            "navigation": replace(none, navigation_strength=p.navigation_strength),
+        }
+        # The pair forces are linear in their strengths: the kernel itself takes them apart.
+        apart = {name: self._gather(crowd, vehicles, one) for name, one in only.items()}
+        f_v = apart["repulsion"][2:4].T.copy()
+        target = self._targets(crowd, vehicles)
+        away = target - crowd.position
+        distance = np.sqrt((away**2).sum(axis=1) + p.destination_smoothing**2)
+        v_d = (crowd.desired_speed / distance)[:, None] * away
+        size = np.sqrt((f_v**2).sum(axis=1))
+        slope = (p.influence_high - size) / (p.influence_high - p.influence_low)
+        return Forces(
+            repulsion=apart["repulsion"][:2].T.copy(),
+            collision=apart["collision"][:2].T.copy(),
+            navigation=apart["navigation"][:2].T.copy(),
+            vehicle=f_v,
+            destination=p.destination_gain * (v_d - crowd.velocity),
+            beta=np.clip(slope, 0.0, 1.0),
+            target=target,
+        )
+
+    def _gather(
+        self, crowd: Crowd, vehicles: Vehicles, parameters: VciParameters
+    ) -> NDArray[np.float64]:
+        """(5, n): pair force x, y, vehicle force x, y, signed distance."""
+        n = len(crowd)
+        self._workspace.reserve(n)
+        out = np.zeros((5, n))
+        bad = _step.apart(
+            crowd.position, crowd.velocity, vehicles.array, self._workspace.rows,
+            self._workspace.index, pack(parameters), self.cell_list_from, out,
+        )
+        if bad != _step.FINE:
+            raise divergence(bad, crowd, vehicles)
+        return out
+
+    def _targets(self, crowd: Crowd, vehicles: Vehicles) -> NDArray[np.float64]:
+        """(n, 2) [m] where each walks next."""
+        out = np.zeros((len(crowd), 2))
+        _step.targets(
+            crowd.position, crowd.desired_speed, crowd.waypoints, crowd.waypoint_start,
+            crowd.waypoint_index.copy(), vehicles.array, self._workspace.rows,
+            self._workspace.index, self._constants, out,
+        )
+        return out
+
+
+def divergence(i: int, crowd: Crowd, vehicles: Vehicles) -> DivergenceError:
+    """The error of a state that is not finite, with the most likely cause."""
+    bad = np.argwhere(~np.isfinite(vehicles.array))
+    if bad.size:
+        return DivergenceError(
+            f"vehicle {bad[0, 0]}, column {bad[0, 1]} is not finite: check the vehicles given"
+        )
+    x, v = crowd.position[i], crowd.velocity[i]
+    return DivergenceError(
+        f"pedestrian {i}: the state is not finite (position {x} m, velocity {v} m/s); "
+        "check its state before the step"
+    )

@@ -1,0 +1,124 @@
+"""The numbers of the vehicle-crowd interaction (VCI) model.
+
+The decomposition of the total force and the vehicle influence are those of Yang & Özgüner 2019
+(arXiv 1907.05178), which refers for its sub-forces to Yang, Redmill & Özgüner, "A social force
+based pedestrian motion model considering multi-pedestrian interaction with a vehicle" (IV 2018
+line of work). The calibrated numbers are those of Yang, Özgüner & Redmill, "A Social Force Based
+Pedestrian Motion Model Considering Multi-Pedestrian Interaction with a Vehicle", ACM Transactions
+on Spatial Algorithms and Systems, 2020 (TSAS 2020). "ours" marks what no publication states.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from pedestrian_model.errors import ParameterError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_MAY_BE_ZERO = frozenset(
+    {
+        "repulsion_anisotropy",
+        "repulsion_strength",
+        "navigation_anisotropy",
+        "navigation_strength",
+        "collision_stiffness",
+        "vehicle_clearance",
+        "vehicle_nose",
+        "vehicle_lookahead",
+        "vehicle_strength",
+        "vehicle_anisotropy",
+        "static_speed",
+        "influence_low",
+        "waypoint_radius",
+        "detour_margin",
+    }
+)
+_UPPER_BOUND = {
+    "repulsion_anisotropy": 1.0,
+    "vehicle_anisotropy": 1.0,
+    "navigation_anisotropy": 4.0,  # up to here the kernel's polynomial is exact to 1e-12
+}
+
+
+@dataclass(frozen=True)
+class VciParameters:
+    """Parameters of the VCI model; the defaults are the simulation preset ``SIM``.
+
+    Raises:
+        ParameterError: if a value is not finite or out of its range.
+    """
+
+    # The body.
+    mass: float = 80.0  # m [kg], TSAS 2020
+    body_radius: float = 0.27  # R [m], TSAS 2020
+    desired_speed: float = 1.394293  # v0 [m/s], TSAS 2020; the default of a new crowd
+
+    # Between pedestrians, TSAS 2020.
+    repulsion_distance: float = 0.7801  # d_rep [m]
+    repulsion_smoothing: float = 0.45971243  # s_rep [m]
+    repulsion_anisotropy: float = 0.1  # l_rep [-]
+    repulsion_strength: float = 301.028  # M_rep [N]
+    navigation_distance: float = 1.5892008  # d_nav [m]
+    navigation_smoothing: float = 0.41745  # s_nav [m]
+    navigation_anisotropy: float = 1.0  # l_nav [1/rad]
+    navigation_strength: float = 410.875  # M_nav [N]
+    collision_stiffness: float = 9825.125  # k_col [N/m]
+    interaction_radius: float = 8.0  # [m] between centres: the set Q(i) (ours)
+
+    # From a vehicle: the contour and the force, TSAS 2020.
+    vehicle_clearance: float = 0.2151011  # le [m] round the body
+    vehicle_nose: float = 0.510985  # dx0 [m] more in front of a moving car
+    vehicle_lookahead: float = 1.394358  # alpha_x [s] the nose grows by alpha_x |u|
+    vehicle_strength: float = 777.5852  # A [N]
+    vehicle_decay: float = 2.613755  # b [1/m]
+    vehicle_anisotropy: float = 0.3119132  # l_v [-]
+    vehicle_exponent_cap: float = 4.0  # [-] bounds the force deep inside a contour (ours)
+    static_speed: float = 0.2  # [m/s] below, a vehicle is a rectangle (Yang & Özgüner 2019)
+
+    # To the destination, TSAS 2020.
+    destination_gain: float = 545.3125  # k_des [N s/m]
+    destination_smoothing: float = 1.0  # s_des [m]
+    influence_low: float = 199.7455  # F_1 [N] up to here beta = 1
+    influence_high: float = 672.6487  # F_2 [N] from here on beta = 0
+    waypoint_radius: float = 0.5  # [m] a way-point (not the last) counts as passed (ours)
+    detour_margin: float = 0.3  # [m] kept, besides le and R, round a standing car (ours)
+
+    # Limits, TSAS 2020.
+    max_acceleration: float = 5.0  # a_max [m/s^2]
+    max_speed: float = 2.5  # v_max [m/s]
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            name, value = field.name, getattr(self, field.name)
+            lower, upper = 0.0, _UPPER_BOUND.get(name, 1e9)
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                raise ParameterError(f"{name} = {value!r}, expected a number")
+            above = value >= lower if name in _MAY_BE_ZERO else value > lower
+            if not (math.isfinite(value) and above and value <= upper):
+                sign = ">=" if name in _MAY_BE_ZERO else ">"
+                raise ParameterError(
+                    f"{name} = {value}, expected a number {sign} {lower:g} and <= {upper:g}"
+                )
+        if self.influence_low >= self.influence_high:
+            raise ParameterError(
+                f"influence_low = {self.influence_low} N, expected less than "
+                f"influence_high = {self.influence_high} N"
+            )
+
+
+#: The preset to simulate with: head-on pedestrians never overlap.
+SIM = VciParameters()
+
+#: A second published reading of the same table, each strength one digit shorter. It predicts free
+#: walking a little better, but head-on pedestrians pass through each other.
+TABLE2 = replace(
+    SIM, repulsion_strength=30.028, navigation_strength=41.875, collision_stiffness=982.125
+)
+
+#: The presets by name.
+PRESETS: Mapping[str, VciParameters] = MappingProxyType({"SIM": SIM, "TABLE2": TABLE2})

@@ -1,0 +1,100 @@
+"""Where the crowd will be: the model itself, applied N times under given vehicle poses."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pedestrian_model import _step
+from pedestrian_model._constants import pack
+from pedestrian_model.errors import DivergenceError, ParameterError, VehicleError
+from pedestrian_model.model import CELL_LIST_FROM, Workspace, substeps
+from pedestrian_model.parameters import SIM
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from pedestrian_model.crowd import Crowd
+    from pedestrian_model.parameters import VciParameters
+
+
+class Predictor:
+    """Predicts N steps of the crowd in one compiled call (Yang & Özgüner 2019, III-C).
+
+    Args:
+        parameters: the numbers of the model.
+        time_step: [s]; above 0.05 s it is divided into sub-steps as in ``CrowdModel``.
+        horizon: N, the number of steps.
+        cell_list_from: the crowd size from which neighbours are found by a cell list.
+
+    Raises:
+        ParameterError: if the time step or the horizon is not positive.
+    """
+
+    def __init__(
+        self,
+        parameters: VciParameters = SIM,
+        time_step: float = 0.05,
+        horizon: int = 15,
+        *,
+        cell_list_from: int = CELL_LIST_FROM,
+    ) -> None:
+        if horizon < 1:
+            raise ParameterError(f"horizon = {horizon} steps, expected at least 1")
+        self.parameters = parameters
+        self.time_step = float(time_step)
+        self.horizon = int(horizon)
+        self.cell_list_from = int(cell_list_from)
+        self._substeps = substeps(self.time_step)
+        self._dt = self.time_step / self._substeps
+        self._constants = pack(parameters)
+        self._workspace = Workspace()
+        self._reserve(0)
+
+    def _reserve(self, n: int) -> None:
+        """Buffers for exactly n pedestrians: the result must be contiguous."""
+        self._workspace.reserve(n)
+        self._state = np.empty((2, n, 2))
+        self._reached = np.empty(n, dtype=np.int64)
+        self._out = np.empty((self.horizon, n, 2))
+
+    def predict(
+        self, crowd: Crowd, vehicles_trajectory: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """The positions (N, n, 2) [m] after 1 ... N steps; ``crowd`` is not changed.
+
+        Args:
+            crowd: the present state.
+            vehicles_trajectory: (N, m, 7) the vehicles at 0 ... N - 1 steps, see ``Vehicles`` and
+                ``constant_speed``.
+
+        Returns:
+            A buffer that the next call overwrites (copy it to keep it). Bit-equal to N times
+            ``CrowdModel.step`` with the same vehicles.
+
+        Raises:
+            VehicleError: if the trajectory is not C-contiguous float64 of shape (N, m, 7).
+            DivergenceError: if a pedestrian's state is or becomes not finite.
+        """
+        shape, flags = vehicles_trajectory.shape, vehicles_trajectory.flags
+        if len(shape) != 3 or shape[0] != self.horizon or shape[2] != 7:
+            raise VehicleError(
+                f"vehicles_trajectory has shape {shape}, expected ({self.horizon}, any, 7)"
+            )
+        if not flags.c_contiguous or vehicles_trajectory.dtype != np.float64:
+            raise VehicleError("vehicles_trajectory is expected to be C-contiguous float64")
+        if crowd.position.shape[0] != self._out.shape[1]:
+            self._reserve(crowd.position.shape[0])
+        bad = _step.predict(
+            crowd.position, crowd.velocity, crowd.desired_speed, crowd.waypoints,
+            crowd.waypoint_start, crowd.waypoint_index, vehicles_trajectory,
+            self._state, self._reached, self._workspace.rows, self._workspace.index,
+            self._constants, self._dt, self._substeps, self.cell_list_from, self._out,
+        )
+        if bad != _step.FINE:
+            raise DivergenceError(
+                f"pedestrian {bad}: the predicted state is not finite; check its present position "
+                f"{crowd.position[bad]} m, velocity {crowd.velocity[bad]} m/s and the vehicles"
+            )
+        return self._out
