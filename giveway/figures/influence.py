@@ -1,0 +1,156 @@
+"""The influence figure: the force by which the vehicle keeps a standing pedestrian away."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from numpy.typing import NDArray
+
+from giveway.figures.style import BLACK, styled
+from giveway.tracks import VehicleShape
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.contour import QuadContourSet
+    from matplotlib.quiver import Quiver
+
+Influence = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
+"""Points (k, 2) [m] and the vehicle's speed [m/s] to the forces (k, 2) [N] on persons there."""
+
+LEVELS = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0, 10000.0)  # [N]
+DRAWN = (10.0, 100.0, 1000.0)  # [N]
+LONGEST_ARROW = 400.0  # [N] about 80 kg x 5 m/s^2, the most that the model lets act on a person
+FAINTEST_ARROW = 20.0  # [N]
+RESOLUTION = 0.1  # [m] of the contours
+ARROW_SPACING = 0.8  # [m]
+BESIDE, BEHIND, AHEAD = 4.5, 4.0, 4.5  # [m] shown around the vehicle, ahead grows with its speed
+AHEAD_PER_SPEED = 1.4  # [s]
+
+
+@styled
+def influence_figure(
+    influence: Influence,
+    *,
+    speeds: Sequence[float] = (0.0, 1.0, 2.0, 4.0),
+    shape: VehicleShape | None = None,
+    centre: tuple[float, float] = (15.0, 15.0),
+    title: str = "Vehicle influence on a standing pedestrian",
+) -> Figure:
+    """Magnitude (contours) and direction (arrows) of f_v around the vehicle, a panel per speed.
+
+    Figure 2 of Yang & Özgüner 2019: the vehicle's centre at (15, 15), heading along +x.
+
+    Args:
+        influence: the model; its vehicle must stand at ``centre`` with heading 0.
+        speeds: of the vehicle [m/s].
+        shape: the vehicle's rectangle; the paper's 5 m x 2 m if left out.
+        centre: of the rectangle [m].
+        title: of the whole figure.
+
+    Raises:
+        ValueError: no speed is given.
+    """
+    if not speeds:
+        raise ValueError("influence figure: speeds is empty; pass at least one [m/s]")
+    shape = shape or VehicleShape()
+    ahead = AHEAD + AHEAD_PER_SPEED * max(abs(speed) for speed in speeds)
+    behind = ahead if min(speeds) < 0.0 else BEHIND
+    x = (centre[0] - shape.length / 2 - behind, centre[0] + shape.length / 2 + ahead)
+    y = (centre[1] - shape.width / 2 - BESIDE, centre[1] + shape.width / 2 + BESIDE)
+
+    columns = min(len(speeds), 2)
+    rows = -(-len(speeds) // columns)
+    panel = 4.6  # [in] wide
+    height = 0.9 * panel * (y[1] - y[0]) / (x[1] - x[0]) + 0.4
+    figure = Figure(figsize=(columns * panel + 1.1, rows * height + 0.7), layout="compressed")
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for axes, speed in zip(grid.flat, speeds, strict=False):
+        contours, lines = _draw_magnitude(axes, influence, speed, x, y)
+        arrows = _draw_arrows(axes, influence, speed, x, y, shape, centre)
+        _draw_vehicle(axes, shape, centre)
+        axes.set(aspect="equal", xlim=x, ylim=y, title=f"{speed:g} m/s")
+    for axes in grid.flat[len(speeds) :]:
+        axes.remove()
+    for axes in grid[-1]:
+        axes.set_xlabel("x [m]")
+    for axes in grid[:, 0]:
+        axes.set_ylabel("y [m]")
+    bar = figure.colorbar(contours, ax=grid, label="Magnitude [N]", shrink=0.9, aspect=30)
+    bar.add_lines(lines)
+    bar.set_ticks(LEVELS, labels=[f"{level:g}" for level in LEVELS])
+    key = f"{LONGEST_ARROW:g} N or more"
+    figure.axes[0].quiverkey(
+        arrows,
+        0.97,
+        0.96,
+        LONGEST_ARROW,
+        key,
+        labelpos="W",
+        coordinates="figure",
+        fontproperties={"size": 8},
+    )
+    figure.suptitle(title)
+    return figure
+
+
+def _sample(
+    influence: Influence, speed: float, x: NDArray[np.float64], y: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Forces on a grid: (rows, columns, 2) [N]."""
+    across, up = np.meshgrid(x, y)
+    points = np.column_stack((across.ravel(), up.ravel()))
+    return influence(points, speed).reshape(*across.shape, 2)
+
+
+def _draw_magnitude(
+    axes: Axes, influence: Influence, speed: float, x: tuple[float, float], y: tuple[float, float]
+) -> tuple[QuadContourSet, QuadContourSet]:
+    xs = np.linspace(*x, round((x[1] - x[0]) / RESOLUTION) + 1)
+    ys = np.linspace(*y, round((y[1] - y[0]) / RESOLUTION) + 1)
+    # A magnitude of exactly 0 has no logarithm; far below the lowest level it stays blank.
+    magnitude = np.maximum(np.linalg.norm(_sample(influence, speed, xs, ys), axis=2), 1e-6)
+    filled = axes.contourf(
+        xs, ys, magnitude, levels=LEVELS, norm=LogNorm(LEVELS[0], LEVELS[-1]), cmap="YlOrBr",
+        extend="max",
+    )  # fmt: skip
+    lines = axes.contour(xs, ys, magnitude, levels=DRAWN, colors=BLACK, linewidths=0.6)
+    return filled, lines
+
+
+def _draw_arrows(
+    axes: Axes,
+    influence: Influence,
+    speed: float,
+    x: tuple[float, float],
+    y: tuple[float, float],
+    shape: VehicleShape,
+    centre: tuple[float, float],
+) -> Quiver:
+    xs = np.arange(x[0] + ARROW_SPACING / 2, x[1], ARROW_SPACING)
+    half = np.arange(ARROW_SPACING / 2, y[1] - centre[1], ARROW_SPACING)
+    ys = centre[1] + np.concatenate((-half[::-1], half))  # as many to the left as to the right
+    across, up = np.meshgrid(xs, ys)
+    force = _sample(influence, speed, xs, ys)
+    magnitude = np.linalg.norm(force, axis=2)
+    outside = (abs(across - centre[0]) > shape.length / 2) | (abs(up - centre[1]) > shape.width / 2)
+    shown = outside & (magnitude >= FAINTEST_ARROW)
+    arrows = force[shown] * np.minimum(1.0, LONGEST_ARROW / magnitude[shown])[:, None]
+    return axes.quiver(
+        across[shown], up[shown], arrows[:, 0], arrows[:, 1], color="#0072B2", pivot="tail",
+        angles="xy", scale_units="xy", scale=LONGEST_ARROW / (1.2 * ARROW_SPACING), width=0.003,
+        minlength=0.5, zorder=3,
+    )  # fmt: skip
+
+
+def _draw_vehicle(axes: Axes, shape: VehicleShape, centre: tuple[float, float]) -> None:
+    corner = (centre[0] - shape.length / 2, centre[1] - shape.width / 2)
+    axes.add_patch(
+        Rectangle(corner, shape.length, shape.width, facecolor="#404040", edgecolor=BLACK, zorder=4)
+    )
+    nose = np.array([[0.9, 0.5], [0.6, 0.85], [0.6, 0.15]]) * (shape.length, shape.width)
+    axes.fill(*(nose + corner).T, color="white", zorder=5)

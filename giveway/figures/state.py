@@ -1,0 +1,192 @@
+"""The state figure: the ego's speed, gap and force over time, and who was at the wheel.
+
+After the state figure of Yang & Özgüner 2019 (section 5): one column per run, there the MPC on
+the left and the PID on the right.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from giveway.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    SKY_BLUE,
+    VERMILION,
+    quiet_grid,
+    styled,
+)
+from giveway.tracks import EgoTrack
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+SHADES = {"mpc": (SKY_BLUE, 0.14), "pid": (ORANGE, 0.28)}  # colour, opacity of a phase
+NAMES = {"mpc": "MPC acts", "pid": "PID acts"}
+SINGLE_INSTANT = 0.5  # [s] shown to either side of a run of one instant
+
+
+@styled
+def state_figure(
+    runs: EgoTrack | Sequence[tuple[str, EgoTrack]],
+    *,
+    safe_distance: float,
+    buffer_distance: float,
+    title: str = "",
+) -> Figure:
+    """Speed, gap and force of one run, or of several side by side on the same scales.
+
+    Args:
+        runs: the ego's track, or pairs of a label and a track.
+        safe_distance: d_safe [m], drawn into the gap's panel.
+        buffer_distance: d_buffer [m], drawn on top of it.
+        title: of the whole figure.
+
+    Raises:
+        ValueError: there is no run, or a run without an instant.
+    """
+    columns = [("", runs)] if isinstance(runs, EgoTrack) else list(runs)
+    if not columns or any(not ego.time.size for _, ego in columns):
+        raise ValueError("state figure: a run has no instants; pass tracks of at least one")
+    figure = Figure(figsize=(4.2 + 3.8 * len(columns), 6.2), layout="constrained")
+    grid = figure.subplots(3, len(columns), sharex=True, sharey="row", squeeze=False)
+    for column, (label, ego) in enumerate(columns):
+        speed, gap, force = grid[:, column]
+        for axes in (speed, gap, force):
+            _shade_phases(axes, ego)
+            quiet_grid(axes)
+        _draw_speed(speed, ego)
+        _draw_gap(gap, ego, safe_distance, buffer_distance)
+        _draw_force(force, ego)
+        speed.set_title(label)
+        force.set_xlabel("Time [s]")
+    _scale(grid, [ego for _, ego in columns], safe_distance + buffer_distance)
+    _name_distances(grid[1, -1], safe_distance, buffer_distance)
+    for axes, name in zip(
+        grid[:, 0], ("Speed [m/s]", "Gap to closest pedestrian\nin front [m]", "Force [kN]"),
+        strict=True,
+    ):  # fmt: skip
+        axes.set_ylabel(name)
+    figure.align_ylabels(grid[:, 0])
+    figure.suptitle(title)
+    figure.legend(handles=_legend([ego for _, ego in columns]), loc="outside lower center", ncols=6)
+    return figure
+
+
+def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
+    """Who acted from when to when [s], one entry per uninterrupted phase.
+
+    A command holds until the next instant; the last one is not carried out any more, except in a
+    run of one instant, which is shown ``SINGLE_INSTANT`` to either side.
+    """
+    edges = np.flatnonzero(ego.acting[1:] != ego.acting[:-1]) + 1
+    starts = np.concatenate(([0], edges))
+    ends = np.append(edges, ego.time.size - 1)
+    if ego.time.size == 1:
+        instant = float(ego.time[0])
+        return [(str(ego.acting[0]), instant - SINGLE_INSTANT, instant + SINGLE_INSTANT)]
+    return [
+        (str(ego.acting[start]), float(ego.time[start]), float(ego.time[end]))
+        for start, end in zip(starts, ends, strict=True)
+        if end > start
+    ]
+
+
+def _shade_phases(axes: Axes, ego: EgoTrack) -> None:
+    for acting, start, end in phases(ego):
+        colour, opacity = SHADES[acting]
+        axes.axvspan(start, end, color=colour, alpha=opacity, linewidth=0, label=acting, zorder=0)
+
+
+def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
+    axes.step(
+        ego.time, ego.reference_speed, where="post", color=BLACK, linewidth=0.9,
+        linestyle=(0, (4, 2)), label="reference speed", marker=_marker(ego), zorder=4,
+    )  # fmt: skip
+    axes.plot(ego.time, ego.speed, color=BLUE, label="speed", marker=_marker(ego), zorder=3)
+
+
+def _draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: float) -> None:
+    axes.axhline(safe_distance, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)), label="d_safe")
+    axes.axhline(
+        safe_distance + buffer_distance, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)),
+        label="d_safe + d_buffer",
+    )  # fmt: skip
+    somebody = np.isfinite(ego.gap)
+    if not somebody.any():
+        axes.text(
+            0.5, 0.25, "nobody in front", transform=axes.transAxes, ha="center", color=GREY
+        )  # fmt: skip
+    gap = np.where(somebody, ego.gap, np.nan)
+    axes.plot(ego.time, gap, color=GREEN, label="gap", zorder=3)
+    # An instant between two without anybody in front is no line: a point shows it all the same.
+    around = np.concatenate(([False], somebody, [False]))
+    alone = somebody & ~around[:-2] & ~around[2:]
+    axes.plot(ego.time[alone], gap[alone], ".", color=GREEN, markersize=4, zorder=3)
+
+
+def _draw_force(axes: Axes, ego: EgoTrack) -> None:
+    axes.axhline(0.0, color=GREY, linewidth=0.8)
+    axes.step(
+        ego.time, ego.force / 1000.0, where="post", color=VERMILION, label="force",
+        marker=_marker(ego), linewidth=1.2, zorder=3,
+    )  # fmt: skip
+
+
+def _marker(ego: EgoTrack) -> str:
+    return "o" if ego.time.size == 1 else ""
+
+
+def _scale(grid: np.ndarray, egos: Sequence[EgoTrack], distance: float) -> None:
+    """One scale for all runs, zero always on it, so that heights can be compared."""
+    starts = min(float(ego.time[0]) for ego in egos)
+    end = max(float(ego.time[-1]) for ego in egos)
+    margin = SINGLE_INSTANT if end == starts else 0.0
+    fastest = max(max(ego.speed.max(), ego.reference_speed.max()) for ego in egos)
+    gaps = np.concatenate([ego.gap[np.isfinite(ego.gap)] for ego in egos])
+    nearest, farthest = gaps.min(initial=0.0), gaps.max(initial=distance)
+    weakest = min(min(0.0, ego.force.min()) for ego in egos) / 1000.0
+    strongest = max(max(0.0, ego.force.max()) for ego in egos) / 1000.0
+    room = 0.08 * max(strongest - weakest, 0.1)
+    grid[0, 0].set_xlim(starts - margin, end + margin)
+    grid[0, 0].set_ylim(0.0, 1.1 * max(fastest, 1.0))
+    grid[1, 0].set_ylim(1.1 * nearest, 1.1 * farthest)
+    grid[2, 0].set_ylim(weakest - room, strongest + room)
+
+
+def _name_distances(axes: Axes, safe_distance: float, buffer_distance: float) -> None:
+    """Name the two lines outside the right edge, where no curve passes."""
+    names = ((safe_distance, "$d_{safe}$"), (buffer_distance, "$d_{safe} + d_{buffer}$"))
+    height = 0.0
+    for distance, name in names:
+        height += distance
+        axes.annotate(
+            f"{name}\n= {height:g} m", xy=(1.0, height), xytext=(4, 0), va="center", fontsize=8,
+            xycoords=axes.get_yaxis_transform(), textcoords="offset points", color="#505050",
+            annotation_clip=False,
+        )  # fmt: skip
+
+
+def _legend(egos: Sequence[EgoTrack]) -> list[Artist]:
+    acted = {str(name) for ego in egos for name in np.unique(ego.acting)}
+    handles: list[Artist] = [
+        Line2D([], [], color=BLUE, label="speed"),
+        Line2D([], [], color=BLACK, linewidth=0.9, linestyle=(0, (4, 2)), label="reference speed"),
+        Line2D([], [], color=GREEN, label="gap"),
+        Line2D([], [], color=VERMILION, linewidth=1.2, label="force"),
+    ]
+    for name, (colour, opacity) in SHADES.items():
+        if name in acted:
+            handles.append(Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name]))
+    return handles

@@ -1,0 +1,94 @@
+"""How giveway's pictures look, whatever the user's matplotlib is configured to.
+
+Colours are Okabe & Ito's (2008), told apart by all common kinds of colour vision; what is shaded
+differs in lightness as well, for print in black and white.
+"""
+
+from __future__ import annotations
+
+from functools import wraps
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
+
+from matplotlib import style
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+BLACK = "#000000"
+ORANGE = "#E69F00"
+SKY_BLUE = "#56B4E9"
+GREEN = "#009E73"
+BLUE = "#0072B2"
+VERMILION = "#D55E00"
+GREY = "#767676"
+LIGHT_GREY = "#ECECEC"
+
+_STYLE = {
+    "axes.axisbelow": True,
+    "axes.edgecolor": GREY,
+    "axes.labelsize": 9,
+    "axes.linewidth": 0.8,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlesize": 10,
+    "figure.titlesize": 11,
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "legend.fontsize": 8,
+    "legend.frameon": False,
+    "lines.linewidth": 1.5,
+    "lines.solid_capstyle": "round",
+    "svg.hashsalt": "giveway",
+    "xtick.color": GREY,
+    "xtick.labelcolor": BLACK,
+    "xtick.labelsize": 8,
+    "ytick.color": GREY,
+    "ytick.labelcolor": BLACK,
+    "ytick.labelsize": 8,
+}
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+
+def house_style() -> AbstractContextManager[None]:
+    """The library's own defaults and ours on top, until the context is left."""
+    return style.context(["default", _STYLE])
+
+
+def styled(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
+    """Have a function draw in the house style."""
+
+    @wraps(draw)
+    def wrapper(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
+        with house_style():
+            return draw(*args, **kwargs)
+
+    return wrapper
+
+
+def save_figure(figure: Figure, path: Path, dpi: float = 150) -> None:
+    """Write a picture whose bytes depend on nothing but what it shows.
+
+    Args:
+        figure: what to write.
+        path: its suffix says the format: .png, .svg or .pdf.
+        dpi: pixels per inch of a PNG.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    # The formats' own defaults are a creation date and, for SVG, random element ids.
+    undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    with house_style():
+        figure.savefig(path, dpi=dpi, metadata=undated.get(path.suffix.lower(), {}))
+
+
+def quiet_grid(axes: Axes) -> None:
+    """A grid that helps to read values and is otherwise not noticed."""
+    axes.grid(color=BLACK, alpha=0.08, linewidth=0.7)

@@ -1,0 +1,245 @@
+"""The top view: everybody's trajectory, and snapshots of the encounter.
+
+After the screenshots figure of Yang & Özgüner 2019 (section 5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+from numpy.typing import NDArray
+
+from giveway.figures.style import BLACK, LIGHT_GREY, VERMILION, styled
+from giveway.metrics.groups import PedestrianGroups
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
+
+Road = Sequence[NDArray[np.float64]]
+"""Lines (k, 2) [m] to draw underneath; one that ends where it starts is a filled area."""
+
+TIME_COLOURS = "viridis"
+SNAPSHOTS = 6
+ENCOUNTER = 10.0  # [m] snapshots are of the time in which somebody is this close to the ego
+MARGIN = 2.0  # [m] around all trajectories
+SURROUNDINGS = 8.0  # [m] shown around the ego's places in the snapshots
+TICK = 1.0  # [s] of walking is the length of a pedestrian's velocity tick
+NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # of the ego: parts of length and width
+SEGMENTS = 150  # at most, per trajectory
+
+
+class _Box(NamedTuple):
+    """Limits of a view [m]."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    @classmethod
+    def around(cls, points: NDArray[np.float64], margin: float) -> _Box:
+        left, bottom = points.min(axis=0) - margin
+        right, top = points.max(axis=0) + margin
+        return cls(float(left), float(bottom), float(right), float(top))
+
+    @property
+    def aspect(self) -> float:
+        """Height over width."""
+        return (self.top - self.bottom) / (self.right - self.left)
+
+    def apply(self, axes: Axes) -> None:
+        axes.set(xlim=(self.left, self.right), ylim=(self.bottom, self.top), aspect="equal")
+
+
+@styled
+def top_view_figure(
+    ego: EgoTrack,
+    crowd: CrowdTrack,
+    shape: VehicleShape,
+    body_radius: float,
+    *,
+    times: Sequence[float] | None = None,
+    road: Road | None = None,
+    title: str = "",
+) -> Figure:
+    """Whole trajectories coloured by time, and the scene at some instants, all to scale.
+
+    Args:
+        ego: the ego's track.
+        crowd: the crowd's track; may be empty.
+        shape: the ego's rectangle.
+        body_radius: radius of a pedestrian [m].
+        times: of the snapshots [s], each taken at the nearest control instant; left out: six,
+            evenly over the time in which somebody is within 10 m of the ego.
+        road: areas and lines to draw underneath.
+        title: of the whole figure.
+
+    Raises:
+        ValueError: the ego's track is empty, or ``times`` is.
+    """
+    if not ego.time.size:
+        raise ValueError("top view: the run has no instants; pass tracks of at least one")
+    steps = _encounter(ego, crowd) if times is None else _nearest_steps(ego, times)
+    corners = np.array([rectangle(ego, k, shape) for k in range(ego.time.size)])
+    walked = np.column_stack((crowd.x, crowd.y))
+    whole = _Box.around(np.concatenate((corners.reshape(-1, 2), walked)), MARGIN)
+    part = _Box.around(corners[steps].reshape(-1, 2), SURROUNDINGS)
+
+    figure, overview, panels = _arrange(whole, part, len(steps))
+    colours = Normalize(ego.time[0], max(ego.time[-1], ego.time[0] + 1e-9))
+    _draw_road(overview, road)
+    lines = _draw_trajectories(overview, ego, crowd, colours)
+    for k in steps:
+        colour = lines.cmap(colours(ego.time[k]))
+        overview.add_patch(Polygon(corners[k], fill=False, edgecolor=colour, linewidth=1.4))
+    whole.apply(overview)
+    overview.set(
+        xlabel="x [m]",
+        ylabel="y [m]",
+        title="Trajectories, begun at the circles; the ego at the snapshots",
+    )
+    figure.colorbar(lines, ax=overview, label="Time [s]", shrink=0.8, aspect=30)
+    for axes, k in zip(panels, steps, strict=True):
+        _draw_road(axes, road)
+        _draw_scene(axes, k, corners[k], crowd, body_radius)
+        part.apply(axes)
+        axes.set_title(f"t = {ego.time[k]:.2f} s", fontsize=9)
+    figure.suptitle(title)
+    return figure
+
+
+def rectangle(ego: EgoTrack, k: int, shape: VehicleShape) -> NDArray[np.float64]:
+    """The ego's corners at instant k, front left first, counter-clockwise: (4, 2) [m]."""
+    cos, sin = np.cos(ego.heading[k]), np.sin(ego.heading[k])
+    half = shape.width / 2.0
+    local = np.array([(0.0, half), (-shape.length, half), (-shape.length, -half), (0.0, -half)])
+    turned = local @ np.array([[cos, sin], [-sin, cos]])
+    front = np.array((ego.front_x[k], ego.front_y[k]))
+    return np.asarray(turned + front, dtype=np.float64)
+
+
+def _encounter(ego: EgoTrack, crowd: CrowdTrack) -> NDArray[np.int64]:
+    """Instants spread evenly over the encounter, or over the run if nobody came close."""
+    step = crowd.step
+    apart = np.hypot(crowd.x - ego.front_x[step], crowd.y - ego.front_y[step])
+    close = step[apart < ENCOUNTER]
+    first, last = (close[0], close[-1]) if close.size else (0, ego.time.size - 1)
+    count = min(SNAPSHOTS, int(last - first) + 1)
+    return np.round(np.linspace(first, last, count)).astype(np.int64)
+
+
+def _nearest_steps(ego: EgoTrack, times: Sequence[float]) -> NDArray[np.int64]:
+    if not len(times):
+        raise ValueError("top view: times is empty; leave it out or give instants [s]")
+    return np.array([np.abs(ego.time - time).argmin() for time in times], dtype=np.int64)
+
+
+def _arrange(whole: _Box, part: _Box, count: int) -> tuple[Figure, Axes, list[Axes]]:
+    """A tall overview stands beside the snapshots, a flat one above them."""
+    columns = min(count, 2)
+    rows = -(-count // columns)
+    beside = whole.aspect > 0.6
+    snapshots_width = 6.6 if beside else 9.5  # [in]
+    snapshots_height = rows * (snapshots_width / 2 * part.aspect + 0.3) + 0.4
+    figure = Figure(layout="constrained")
+    if beside:
+        height = min(max(snapshots_height, 4.5), 9.0)
+        overview_width = height / whole.aspect + 1.0
+        figure.set_size_inches(overview_width + snapshots_width, height + 0.4)
+        left, right = figure.subfigures(
+            1, 2, squeeze=False, width_ratios=(overview_width, snapshots_width)
+        ).flat
+    else:
+        overview_height = snapshots_width * whole.aspect + 0.7
+        figure.set_size_inches(snapshots_width, overview_height + snapshots_height + 0.4)
+        left, right = figure.subfigures(
+            2, 1, squeeze=False, height_ratios=(overview_height, snapshots_height)
+        ).flat
+    right.suptitle(f"Snapshots; a tick is {TICK:g} s of walking", fontsize=10)
+    grid = right.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for axes in grid.flat[count:]:
+        axes.remove()
+    for axes in grid[-1]:
+        axes.set_xlabel("x [m]")
+    for axes in grid[:, 0]:
+        axes.set_ylabel("y [m]")
+    return figure, left.subplots(), list(grid.flat[:count])
+
+
+def _draw_road(axes: Axes, road: Road | None) -> None:
+    for line in road or ():
+        if len(line) > 2 and np.array_equal(line[0], line[-1]):
+            axes.add_patch(Polygon(line, facecolor=LIGHT_GREY, edgecolor="none", zorder=0))
+        else:
+            axes.plot(*np.asarray(line).T, color="#C8C8C8", linewidth=0.8, zorder=0.5)
+
+
+def _draw_trajectories(
+    axes: Axes, ego: EgoTrack, crowd: CrowdTrack, colours: Normalize
+) -> LineCollection:
+    """Paths as short lines, each in the colour of its time; circles mark where they begin."""
+    groups = PedestrianGroups(crowd)
+    places = np.column_stack((crowd.x, crowd.y))[groups.order]
+    times = ego.time[crowd.step[groups.order]]
+    segments, ages = [np.empty((0, 2, 2))], [np.empty(0)]
+    for first, last in zip(groups.first, groups.last, strict=True):
+        kept = _thinned(int(first), int(last))
+        segments.append(np.stack((places[kept[:-1]], places[kept[1:]]), axis=1))
+        ages.append(times[kept[:-1]])
+    lines = LineCollection(
+        list(np.concatenate(segments)), array=np.concatenate(ages), norm=colours, cmap=TIME_COLOURS,
+        linewidths=1.0, capstyle="round", label="pedestrians",
+    )  # fmt: skip
+    axes.add_collection(lines, autolim=False)
+    start = places[groups.first]
+    axes.scatter(start[:, 0], start[:, 1], s=6, facecolors="none", edgecolors=BLACK, linewidths=0.5)
+
+    kept = _thinned(0, ego.time.size - 1)
+    front = np.column_stack((ego.front_x, ego.front_y))[kept]
+    driven = LineCollection(
+        list(np.stack((front[:-1], front[1:]), axis=1)), array=ego.time[kept[:-1]],
+        norm=colours, cmap=TIME_COLOURS, linewidths=3.0, capstyle="round", label="ego",
+    )  # fmt: skip
+    axes.add_collection(driven, autolim=False)
+    return lines
+
+
+def _thinned(first: int, last: int) -> NDArray[np.int64]:
+    """At most ``SEGMENTS`` + 1 of the records first to last, both ends among them."""
+    count = min(last - first, SEGMENTS) + 1
+    return np.round(np.linspace(first, last, count)).astype(np.int64)
+
+
+def _draw_scene(
+    axes: Axes, k: int, corners: NDArray[np.float64], crowd: CrowdTrack, body_radius: float
+) -> None:
+    """The ego as a rectangle with a nose, pedestrians as circles of true size with ticks."""
+    axes.add_patch(Polygon(corners, facecolor="#404040", edgecolor=BLACK, zorder=2, label="ego"))
+    _, rear_left, rear_right, front_right = corners
+    along, across = front_right - rear_right, rear_left - rear_right
+    nose = rear_right + NOSE[:, :1] * along + NOSE[:, 1:] * across
+    axes.fill(*nose.T, color="white", zorder=2.5)
+    here = crowd.step == k
+    centre = np.column_stack((crowd.x[here], crowd.y[here]))
+    ahead = centre + TICK * np.column_stack((crowd.vx[here], crowd.vy[here]))
+    size = np.full(len(centre), 2.0 * body_radius)
+    axes.add_collection(
+        EllipseCollection(
+            size, size, np.zeros(len(centre)), units="xy", offsets=centre,
+            offset_transform=axes.transData, facecolors=VERMILION, edgecolors="#8A3C00",
+            linewidths=0.5, zorder=4, label="pedestrians",
+        ),
+        autolim=False,
+    )  # fmt: skip
+    ticks = LineCollection(
+        list(np.stack((centre, ahead), axis=1)), colors="#8A3C00", linewidths=0.7, zorder=3
+    )
+    axes.add_collection(ticks, autolim=False)
