@@ -13,6 +13,7 @@ from pedestrian_model._constants import pack
 from pedestrian_model._rows import order_for, rows_for
 from pedestrian_model.errors import DivergenceError, ParameterError
 from pedestrian_model.parameters import SIM
+from pedestrian_model.vehicles import COLUMNS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -196,7 +197,7 @@ def divergence(i: int, crowd: Crowd, vehicles: Vehicles) -> DivergenceError:
     bad = np.argwhere(~np.isfinite(vehicles.array))
     if bad.size:
         return DivergenceError(
-            f"vehicle {bad[0, 0]}, column {bad[0, 1]} is not finite: check the vehicles given"
+            f"vehicle {bad[0, 0]}, column {COLUMNS[bad[0, 1]]} is not finite; check the vehicles given"
         )
     x, v = crowd.position[i], crowd.velocity[i]
     return DivergenceError(

@@ -1,0 +1,141 @@
+"""The sub-forces: golden values, and the kernel against the independent reference."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pedestrian_model import SIM, TABLE2, Crowd, CrowdModel, Vehicles
+
+
+def decay(parameters, distance, kind):
+    """|f_r| or |f_n| at a skin-to-skin distance, with every anisotropy equal to one."""
+    only = replace(
+        parameters, repulsion_anisotropy=1.0, navigation_anisotropy=0.0,
+        collision_stiffness=0.0,
+    )
+    apart = distance + 2.0 * parameters.body_radius
+    two = Crowd.create(
+        [(0.0, 0.0), (apart, 0.0)], [(0.0, 1.0), (0.0, 0.0)], 1.4, [[(9.0, 9.0)], [(9.0, 9.0)]]
+    )
+    return np.hypot(*getattr(CrowdModel(only).forces(two, Vehicles.empty()), kind)[0])
+
+
+@pytest.mark.parametrize(
+    ("kind", "distance", "size"),
+    [
+        ("repulsion", 0.0, 325.219),
+        ("repulsion", 1.0, 55.895),
+        ("navigation", 0.0, 417.844),
+        ("navigation", 2.0, 22.607),
+    ],
+)
+def test_golden_values_of_the_smoothed_linear_decay(kind, distance, size):
+    assert decay(SIM, distance, kind) == pytest.approx(size, abs=6e-4)
+
+
+@pytest.mark.parametrize("parameters", [SIM, TABLE2, replace(SIM, navigation_anisotropy=2.7)])
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("cell_list_from", [0, 1000])
+def test_every_sub_force_agrees_with_the_reference(
+    reference, random_crowd, random_vehicles, parameters, seed, cell_list_from
+):
+    crowd, vehicles = random_crowd(41, seed, density=0.3), random_vehicles(seed)
+    forces = CrowdModel(parameters, cell_list_from=cell_list_from).forces(crowd, vehicles)
+    expected = reference.forces(
+        parameters, crowd.position, crowd.velocity, crowd.desired_speed, forces.target,
+        vehicles.array,
+    )
+    names = ("repulsion", "collision", "navigation", "vehicle", "destination", "beta")
+    for name, values in zip(names, expected, strict=True):
+        np.testing.assert_allclose(
+            getattr(forces, name), values, rtol=1e-9, atol=1e-8, err_msg=name
+        )
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_step_agrees_with_the_reference(reference, random_crowd, random_vehicles, seed):
+    crowd, vehicles = random_crowd(30, seed), random_vehicles(seed + 100)
+    model = CrowdModel()
+    after = model.step(crowd, vehicles)
+    x, v = reference.step(
+        SIM, crowd.position, crowd.velocity, crowd.desired_speed,
+        model.forces(crowd, vehicles).target, vehicles.array, 0.05,
+    )
+    np.testing.assert_allclose(after.position, x, rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(after.velocity, v, rtol=0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize("n", [1, 2, 7, 8, 9, 15, 16, 17, 24, 33])
+def test_no_size_of_crowd_loses_a_pair(reference, random_crowd, n):
+    crowd = random_crowd(n, seed=n)
+    forces = CrowdModel().forces(crowd, Vehicles.empty())
+    for i in range(n):
+        expected = sum(
+            reference.pair(
+                SIM, crowd.position[i], crowd.velocity[i], crowd.position[j], crowd.velocity[j]
+            )[0]
+            for j in range(n)
+            if j != i
+        )
+        np.testing.assert_allclose(
+            forces.repulsion[i], expected if n > 1 else 0.0, rtol=1e-9, atol=1e-9
+        )
+
+
+def test_nobody_beyond_the_interaction_radius_is_felt():
+    model = CrowdModel()
+    for apart, felt in ((7.999, True), (8.0, True), (8.001, False)):
+        two = Crowd.create(
+            [(0.0, 0.0), (apart, 0.0)], [(1.0, 0.0), (0.0, 0.0)], 1.0, [[(0.0, 0.0)]] * 2
+        )
+        forces = model.forces(two, Vehicles.empty())
+        assert bool(np.any(forces.repulsion)) is felt
+
+
+def test_head_on_both_give_way_to_their_right():
+    two = Crowd.create(
+        [(0.0, 0.0), (2.0, 0.0)], [(1.0, 0.0), (-1.0, 0.0)], 1.0, [[(9.0, 0.0)], [(-9.0, 0.0)]]
+    )
+    navigation = CrowdModel().forces(two, Vehicles.empty()).navigation
+    assert navigation[0, 1] < 0.0 < navigation[1, 1]
+    np.testing.assert_array_equal(navigation[0], -navigation[1])
+
+
+def test_two_at_the_same_velocity_do_not_navigate_round_each_other():
+    two = Crowd.create(
+        [(0.0, 0.0), (1.0, 0.3)], [(1.0, 0.0), (1.0, 0.0009)], 1.0, [[(9.0, 0.0)]] * 2
+    )
+    np.testing.assert_array_equal(CrowdModel().forces(two, Vehicles.empty()).navigation, 0.0)
+
+
+@pytest.mark.parametrize("cell_list_from", [0, 1000])
+def test_coincident_pedestrians_are_parted_in_opposite_directions(cell_list_from):
+    model = CrowdModel(cell_list_from=cell_list_from)
+    place = np.array([[3.0, 3.0], [3.0, 3.0], [3.0 + 5e-7, 3.0], [9.0, 3.0]])
+    crowd = Crowd.create(place, np.zeros((4, 2)), 1.0, [[(3.0, 3.0)]] * 4)
+    collision = model.forces(crowd, Vehicles.empty()).collision
+    np.testing.assert_allclose(collision[:3].sum(axis=0), 0.0, atol=1e-9)
+    pair = model.forces(crowd.select(np.array([True, True, False, False])), Vehicles.empty())
+    np.testing.assert_array_equal(pair.collision[0], -pair.collision[1])
+    assert np.hypot(*pair.collision[0]) == pytest.approx(9825.125 * 0.54, rel=1e-12)
+
+
+def test_beta_takes_the_destination_force_away_as_the_vehicle_comes_near():
+    car = Vehicles.create(0.0, 0.0, 0.0, 0.0)
+    y = np.array([1.3, 1.7, 2.4, 9.0])
+    crowd = Crowd.create(
+        np.stack([np.zeros(4), y], axis=1), np.zeros((4, 2)), 1.4, [[(0.0, 20.0)]] * 4
+    )
+    beta = CrowdModel().forces(crowd, car).beta
+    assert beta[0] == 0.0
+    assert 0.0 < beta[1] < beta[2] <= 1.0
+    assert beta[3] == 1.0
+
+
+def test_the_total_is_the_sum_of_the_equation_of_motion(random_crowd, random_vehicles):
+    f = CrowdModel().forces(random_crowd(20, 0), random_vehicles(1))
+    total = f.repulsion + f.collision + f.navigation + f.vehicle + f.beta[:, None] * f.destination
+    np.testing.assert_allclose(f.total, total, rtol=1e-15)

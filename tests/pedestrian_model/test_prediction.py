@@ -1,0 +1,98 @@
+"""The prediction is the model itself, N times, and leaves the crowd as it is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pedestrian_model import (
+    CrowdModel,
+    DivergenceError,
+    ParameterError,
+    Predictor,
+    Vehicles,
+    VehicleError,
+    constant_speed,
+)
+
+
+@pytest.mark.parametrize("n", [0, 1, 30, 90])
+@pytest.mark.parametrize("time_step", [0.05, 0.12])
+@pytest.mark.parametrize("cell_list_from", [0, 1000])
+def test_prediction_is_stepping_bit_by_bit(
+    random_crowd, random_vehicles, n, time_step, cell_list_from
+):
+    crowd, vehicles = random_crowd(n, n), random_vehicles(n)
+    poses = constant_speed(vehicles, time_step, 15)
+    before = crowd.position.tobytes() + crowd.velocity.tobytes() + crowd.waypoint_index.tobytes()
+    predictor = Predictor(time_step=time_step, horizon=15, cell_list_from=cell_list_from)
+    predicted = predictor.predict(crowd, poses)
+    after = crowd.position.tobytes() + crowd.velocity.tobytes() + crowd.waypoint_index.tobytes()
+    assert after == before
+    assert predicted.shape == (15, n, 2)
+    model, now = CrowdModel(time_step=time_step, cell_list_from=cell_list_from), crowd
+    for k in range(15):
+        now = model.step(now, Vehicles(poses[k].copy()))
+        np.testing.assert_array_equal(predicted[k], now.position)
+
+
+def test_a_curved_path_is_followed(random_crowd):
+    crowd = random_crowd(20, 0)
+    angle = np.linspace(0.0, 0.8, 10)
+    poses = np.stack(
+        [
+            Vehicles.create(6.0 * np.sin(a), 6.0 - 6.0 * np.cos(a), a, 4.0).array for a in angle
+        ]
+    )
+    predicted = Predictor(horizon=10).predict(crowd, poses)
+    now = crowd
+    for k in range(10):
+        now = CrowdModel().step(now, Vehicles(poses[k].copy()))
+    np.testing.assert_array_equal(predicted[-1], now.position)
+
+
+def test_the_buffer_is_reused_and_the_size_of_the_crowd_may_change(random_crowd, random_vehicles):
+    vehicles = random_vehicles(0)
+    predictor = Predictor(horizon=5)
+    poses = constant_speed(vehicles, 0.05, 5)
+    first = predictor.predict(random_crowd(30, 0), poses)
+    kept = first.copy()
+    assert predictor.predict(random_crowd(30, 1), poses) is first
+    assert not np.array_equal(first, kept)
+    assert predictor.predict(random_crowd(50, 1), poses).shape == (5, 50, 2)
+    np.testing.assert_array_equal(predictor.predict(random_crowd(30, 0), poses), kept)
+
+
+def test_constant_speed_goes_straight_on():
+    poses = constant_speed(Vehicles.create([0.0, 1.0], 2.0, [0.0, np.pi / 2], [4.0, -1.0]), 0.5, 3)
+    assert poses.shape == (3, 2, 7)
+    np.testing.assert_allclose(poses[:, 0, :2], [(0.0, 2.0), (2.0, 2.0), (4.0, 2.0)], atol=1e-15)
+    np.testing.assert_allclose(poses[:, 1, :2], [(1.0, 2.0), (1.0, 1.5), (1.0, 1.0)], atol=1e-15)
+    np.testing.assert_array_equal(poses[:, :, 2:], np.broadcast_to(poses[0, :, 2:], (3, 2, 5)))
+
+
+def test_a_moving_car_is_avoided_in_the_prediction(walkers):
+    crowd = walkers([(8.0, -1.5)], [(8.0, 9.0)])
+    predictor = Predictor(horizon=30)
+    free = predictor.predict(crowd, constant_speed(Vehicles.empty(), 0.05, 30))[-1, 0, 1]
+    held = predictor.predict(
+        crowd, constant_speed(Vehicles.create(0.0, 0.0, 0.0, 4.0), 0.05, 30)
+    )[-1, 0, 1]
+    assert held < free - 0.5
+
+
+def test_bad_trajectories_horizons_and_states_are_named(random_crowd):
+    crowd, predictor = random_crowd(5, 0), Predictor(horizon=4)
+    with pytest.raises(VehicleError, match=r"expected \(4, any, 7\)"):
+        predictor.predict(crowd, np.zeros((5, 1, 7)))
+    with pytest.raises(VehicleError, match="C-contiguous float64"):
+        predictor.predict(crowd, np.zeros((4, 2, 7))[:, ::2])
+    with pytest.raises(VehicleError, match="C-contiguous float64"):
+        predictor.predict(crowd, np.zeros((4, 1, 7), dtype=np.float32))
+    with pytest.raises(ParameterError, match="horizon = 0"):
+        Predictor(horizon=0)
+    with pytest.raises(ParameterError, match="horizon = 0"):
+        constant_speed(Vehicles.empty(), 0.05, 0)
+    crowd.position[3, 0] = np.nan
+    with pytest.raises(DivergenceError, match="pedestrian 3"):
+        predictor.predict(crowd, np.zeros((4, 0, 7)))

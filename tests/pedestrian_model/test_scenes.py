@@ -1,0 +1,147 @@
+"""What one should see: people pass each other, make way for a car, walk round a standing one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pedestrian_model import SIM, TABLE2, CrowdModel, Vehicles
+
+NOBODY = Vehicles.empty()
+
+
+def lane(n, spread, seed):
+    """(n, 2) places in a block about the x axis, no two closer than 0.6 m."""
+    rng = np.random.default_rng(seed)
+    places = [np.array([8.0, 0.2])]
+    while len(places) < n:
+        place = rng.uniform((6.0, -spread), (16.0, spread))
+        if min(np.hypot(*(place - other)) for other in places) > 0.6:
+            places.append(place)
+    return np.array(places)
+
+
+def closest_approach(parameters, crowd):
+    """The least distance between the centres of two, and the crowd at the end [15 s]."""
+    model = CrowdModel(parameters)
+    closest = np.inf
+    for _ in range(300):
+        crowd = model.step(crowd, NOBODY)
+        closest = min(closest, np.hypot(*(crowd.position[0] - crowd.position[1])))
+    return closest, crowd
+
+
+@pytest.mark.parametrize("offset", [0.1, -0.1, 0.2, 0.5])
+@pytest.mark.parametrize("speed", [1.0, 1.394293])
+def test_head_on_pairs_pass_without_overlap(walkers, offset, speed):
+    crowd = walkers([(0.0, 0.0), (12.0, offset)], [(20.0, 0.0), (-8.0, offset)], speed)
+    closest, after = closest_approach(SIM, crowd)
+    assert closest > 2.0 * SIM.body_radius
+    assert after.position[0, 0] > 12.0
+    assert after.position[1, 0] < 0.0
+
+
+def test_exactly_head_on_shoulders_touch_under_sim_and_bodies_merge_under_table2(walkers):
+    """At full speed and without any offset the soft bodies are compressed by 4 cm under SIM;
+    under TABLE2 people walk through each other, which is why SIM is the preset to simulate."""
+    slow, fast = (
+        walkers([(0.0, 0.0), (12.0, 0.0)], [(20.0, 0.0), (-8.0, 0.0)], speed)
+        for speed in (1.2, 1.394293)
+    )
+    assert closest_approach(SIM, slow)[0] > 2.0 * SIM.body_radius
+    assert closest_approach(SIM, fast)[0] == pytest.approx(0.4957, abs=1e-4)
+    assert closest_approach(TABLE2, fast)[0] < 0.1
+
+
+@pytest.mark.parametrize("u", [1.0, 2.0, 4.0])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_standing_crowd_makes_way_for_a_car(walkers, clearance, u, seed):
+    places = lane(30, 3.0, seed)
+    crowd = walkers(places, places, walking=False)
+    model = CrowdModel()
+    for k in range(int(28.0 / u / 0.05)):
+        car = Vehicles.create(-6.0 + u * k * 0.05, 0.0, 0.0, u)
+        assert (clearance(crowd.position, car) > 0.0).all(), f"somebody is inside at step {k}"
+        crowd = model.step(crowd, car)
+
+
+@pytest.mark.parametrize("across", [-1.5, 0.0, 0.5, 2.4])
+@pytest.mark.parametrize("start", [-6.0, -2.5])
+def test_a_walker_gets_round_a_standing_car(walkers, clearance, across, start):
+    car = Vehicles.create(0.0, 0.0, 0.0, 0.0)
+    crowd = walkers([(across, start)], [(across, 8.0)])
+    model = CrowdModel()
+    for _ in range(500):
+        crowd = model.step(crowd, car)
+        assert clearance(crowd.position, car)[0] > 0.0
+    np.testing.assert_allclose(crowd.position[0], (across, 8.0), atol=0.2)
+
+
+def test_a_walker_gets_round_a_standing_car_lengthwise_at_any_heading(walkers, clearance):
+    for heading in (0.0, 0.6, 2.0, -1.2):
+        car = Vehicles.create(0.0, 0.0, heading, 0.1)
+        ahead = np.array([np.cos(heading), np.sin(heading)])
+        crowd = walkers([-7.0 * ahead], [7.0 * ahead])
+        model = CrowdModel()
+        for _ in range(500):
+            crowd = model.step(crowd, car)
+            assert clearance(crowd.position, car)[0] > 0.0
+        np.testing.assert_allclose(crowd.position[0], 7.0 * ahead, atol=0.2)
+
+
+def test_a_crowd_gets_round_a_standing_car(walkers, clearance):
+    rng = np.random.default_rng(4)
+    grid = np.stack(np.meshgrid(np.arange(-3.0, 3.1, 1.2), [-8.0, -6.8, -5.6]), -1).reshape(-1, 2)
+    start = grid + rng.uniform(-0.2, 0.2, grid.shape)
+    car = Vehicles.create(0.0, 0.0, 0.0, 0.0)
+    crowd = walkers(start, start + (0.0, 16.0))
+    model = CrowdModel()
+    for _ in range(600):
+        crowd = model.step(crowd, car)
+        assert (clearance(crowd.position, car) > 0.0).all()
+    assert (crowd.position[:, 1] > 4.0).all()
+
+
+def test_the_way_round_leads_over_a_corner_with_room_to_spare(walkers):
+    car = Vehicles.create(0.0, 0.0, 0.0, 0.0)
+    model = CrowdModel()
+    room = 0.2151011 + 0.27 + 0.3
+    target = model.forces(walkers([(1.0, -5.0)], [(1.0, 5.0)]), car).target[0]
+    np.testing.assert_allclose(target, (2.5 + room, -1.0 - room), atol=1e-12)  # the near end
+    clear = model.forces(walkers([(4.0, -5.0)], [(4.0, 5.0)]), car).target[0]
+    np.testing.assert_array_equal(clear, (4.0, 5.0))
+
+
+def test_nobody_walks_round_a_car_that_moves(walkers):
+    crowd = walkers([(1.0, -5.0)], [(1.0, 5.0)])
+    for speed, detours in ((0.0, True), (0.19, True), (-0.19, True), (0.2, False), (-2.0, False)):
+        target = CrowdModel().forces(crowd, Vehicles.create(0.0, 0.0, 0.0, speed)).target[0]
+        assert bool(target[1] != 5.0) is detours
+
+
+def test_the_first_of_two_standing_cars_is_walked_round_first(walkers):
+    cars = Vehicles.create([0.0, 0.0], [6.0, 0.0], 0.0, 0.0)
+    crowd = walkers([(0.5, -5.0)], [(0.5, 12.0)])
+    model = CrowdModel()
+    assert model.forces(crowd, cars).target[0, 1] == pytest.approx(-1.7851011)
+    for _ in range(700):
+        crowd = model.step(crowd, cars)
+    np.testing.assert_allclose(crowd.position[0], (0.5, 12.0), atol=0.2)
+
+
+def test_a_destination_beside_the_standing_car_is_reached(walkers, clearance):
+    car = Vehicles.create(0.0, 0.0, 0.0, 0.0)
+    crowd = walkers([(0.0, -5.0)], [(0.5, 1.75)])  # inside the margin, on the far side
+    model = CrowdModel()
+    for _ in range(600):
+        crowd = model.step(crowd, car)
+        assert clearance(crowd.position, car)[0] > 0.0
+    assert crowd.position[0, 1] > 1.0
+    assert np.hypot(*(crowd.position[0] - (0.5, 1.75))) < 0.6
+
+
+def test_whoever_is_inside_the_car_or_wants_in_just_gets_a_finite_way(walkers):
+    car = Vehicles.create(0.0, 0.0, 0.0, 0.0)
+    crowd = walkers([(0.3, 0.2), (0.0, -5.0)], [(0.0, 9.0), (0.1, 0.1)])
+    target = CrowdModel().forces(crowd, car).target
+    np.testing.assert_array_equal(target, [(0.0, 9.0), (0.1, 0.1)])

@@ -1,0 +1,164 @@
+"""Crowds, vehicles and parameters: how they are built, cut and joined, and what they refuse."""
+
+from __future__ import annotations
+
+from dataclasses import FrozenInstanceError, replace
+
+import numpy as np
+import pytest
+
+from pedestrian_model import (
+    PRESETS,
+    SIM,
+    TABLE2,
+    Crowd,
+    CrowdError,
+    CrowdModel,
+    ParameterError,
+    VciParameters,
+    VehicleError,
+    Vehicles,
+    arrived,
+)
+
+
+def three():
+    return Crowd.create(
+        [(0, 0), (2, 0), (4, 0)], np.zeros((3, 2)), [1.0, 1.2, 1.4],
+        [[(9, 9)], [(2.0, 0.1), (7, 7)], [(4, 3), (5, 3), (6, 3)]],
+    )
+
+
+def test_waypoints_of_each_stand_at_its_offsets():
+    crowd = three()
+    np.testing.assert_array_equal(crowd.waypoint_start, [0, 1, 3, 6])
+    np.testing.assert_array_equal(crowd.target, [(9, 9), (2.0, 0.1), (4, 3)])
+    np.testing.assert_array_equal(crowd.destination, [(9, 9), (7, 7), (6, 3)])
+    assert len(crowd) == 3
+
+
+def test_a_crowd_owns_its_arrays():
+    x, route = np.zeros((1, 2)), np.ones((1, 2))
+    crowd = Crowd.create(x, x, 1.0, [route])
+    CrowdModel().advance(crowd, Vehicles.empty())
+    np.testing.assert_array_equal(x, 0.0)
+    route[:] = 5.0
+    np.testing.assert_array_equal(crowd.waypoints, 1.0)
+
+
+def test_select_and_concatenate_keep_routes_and_progress():
+    crowd = CrowdModel().step(three(), Vehicles.empty())
+    np.testing.assert_array_equal(crowd.waypoint_index, [0, 1, 0])
+    rest = crowd.select(np.array([False, True, True]))
+    np.testing.assert_array_equal(rest.waypoint_start, [0, 2, 5])
+    np.testing.assert_array_equal(rest.waypoint_index, [1, 0])
+    np.testing.assert_array_equal(rest.target, [(7, 7), (4, 3)])
+    again = crowd.select(np.array([True, False, False])).concatenate(rest)
+    for name in ("position", "velocity", "desired_speed", "waypoints", "waypoint_start"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(crowd, name))
+    assert len(crowd.select(np.zeros(3, dtype=bool))) == 0
+    assert len(Crowd.empty().concatenate(crowd)) == 3
+
+
+def test_arrived_means_the_last_waypoint():
+    crowd = Crowd.create(
+        [(0, 0), (0, 0), (0, 3)], np.zeros((3, 2)), 1.0,
+        [[(0, 0.4)], [(0, 0.4), (9, 9)], [(0, 0)]],
+    )
+    np.testing.assert_array_equal(arrived(crowd, 0.5), [True, False, False])
+    assert arrived(Crowd.empty(), 1.0).shape == (0,)
+
+
+@pytest.mark.parametrize(
+    ("position", "velocity", "speed", "waypoints", "message"),
+    [
+        ([(0, 0), (np.nan, 0)], np.zeros((2, 2)), 1, [[(0, 0)]] * 2, r"position\[1, 0\] = nan"),
+        ([(0, 0)], [(0, np.inf)], 1, [[(0, 0)]], r"velocity\[0, 1\] = inf"),
+        ([(0, 2e9)], [(0, 0)], 1, [[(0, 0)]], r"position\[0, 1\] = 2000000000.0.*1e\+09"),
+        ([(0, 0)], [(0, 0)], [-1.0], [[(0, 0)]], r"desired_speed\[0\] = -1.0, expected.*>= 0"),
+        ([(0, 0)], [(0, 0)], [1.0, 2.0], [[(0, 0)]], r"desired_speed has shape \(2,\)"),
+        ([(0, 0)], [(0, 0, 0)], 1, [[(0, 0)]], r"velocity has shape \(1, 3\)"),
+        ([0, 0, 0], [(0, 0)], 1, [[(0, 0)]], r"position has shape \(3,\)"),
+        ([(0, 0)], [(0, 0)], 1, [], "waypoints has 0 entries"),
+        ([(0, 0)], [(0, 0)], 1, [np.empty((0, 2))], "pedestrian 0 has no way-point"),
+        ([(0, 0)], [(0, 0)], 1, [(1, 2)], r"waypoints\[0\] has shape \(2,\)"),
+        ([(0, 0)], [(0, 0)], 1, [[(np.nan, 2)]], r"waypoints\[0\]\[0, 0\] = nan"),
+        ([("a", 0)], [(0, 0)], 1, [[(0, 0)]], "position: expected numbers"),
+    ],
+)
+def test_a_bad_crowd_is_refused_by_index_and_value(position, velocity, speed, waypoints, message):
+    with pytest.raises(CrowdError, match=message):
+        Crowd.create(position, velocity, speed, waypoints)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"waypoint_index": np.array([0, 2, 0])}, "pedestrian 1 has a waypoint_index beyond"),
+        ({"waypoint_index": np.array([0, -1, 0])}, "pedestrian 1 has a negative waypoint_index"),
+        ({"waypoint_start": np.array([0, 1, 3, 5])}, "waypoint_start runs from 0 to 5"),
+        ({"waypoint_index": np.zeros(3)}, "waypoint_index is float64, expected"),
+        ({"position": np.zeros((3, 4))[:, ::2]}, "position is float64, expected C-contiguous"),
+    ],
+)
+def test_a_crowd_put_together_by_hand_is_checked_too(change, message):
+    with pytest.raises(CrowdError, match=message):
+        replace(three(), **change)
+
+
+def test_a_mask_must_fit():
+    with pytest.raises(CrowdError, match=r"mask is int64 of shape \(3,\)"):
+        three().select(np.array([1, 0, 1]))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"x": [0.0, np.nan]}, r"vehicles\[1, 0\] = nan"),
+        ({"width": 0.0}, "width of vehicle 0 = 0.0 m, expected > 0 m"),
+        ({"rear": [-1.0]}, "rear of vehicle 0 = -1.0 m"),
+        ({"x": [0.0, 1.0], "y": [0.0, 1.0, 2.0]}, "lengths differ"),
+        ({"speed": "fast"}, "speed: expected numbers"),
+    ],
+)
+def test_a_bad_vehicle_is_refused_by_column_and_value(change, message):
+    good = {"x": 0.0, "y": 0.0, "heading": 0.0, "speed": 1.0, "rear": 2.0, "width": 2.0}
+    with pytest.raises(VehicleError, match=message):
+        Vehicles.create(**(good | change))
+
+
+def test_one_number_serves_all_vehicles():
+    vehicles = Vehicles.create([0.0, 5.0], 1.0, 0.5, [1.0, -1.0])
+    assert len(vehicles) == 2
+    np.testing.assert_array_equal(vehicles.array[1], [5.0, 1.0, 0.5, -1.0, 2.5, 2.5, 2.0])
+    assert len(Vehicles.empty()) == 0
+
+
+def test_presets_are_frozen_and_differ_in_the_strengths_only():
+    assert dict(PRESETS) == {"SIM": SIM, "TABLE2": TABLE2}
+    assert VciParameters() == SIM
+    assert (TABLE2.repulsion_strength, TABLE2.navigation_strength) == (30.028, 41.875)
+    assert TABLE2.collision_stiffness == 982.125
+    assert replace(
+        TABLE2, repulsion_strength=301.028, navigation_strength=410.875,
+        collision_stiffness=9825.125,
+    ) == SIM
+    with pytest.raises(FrozenInstanceError):
+        SIM.mass = 70.0
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"mass": 0.0}, "mass = 0.0, expected a number > 0"),
+        ({"collision_stiffness": -1.0}, "collision_stiffness = -1.0, expected a number >= 0"),
+        ({"repulsion_anisotropy": 1.5}, "<= 1"),
+        ({"navigation_anisotropy": 5.0}, "<= 4"),
+        ({"max_speed": float("nan")}, "max_speed = nan"),
+        ({"desired_speed": "fast"}, "desired_speed = 'fast'"),
+        ({"influence_low": 700.0}, "influence_low = 700.0 N, expected less than"),
+    ],
+)
+def test_parameters_out_of_range_are_refused_by_name_and_value(change, message):
+    with pytest.raises(ParameterError, match=message):
+        replace(SIM, **change)
