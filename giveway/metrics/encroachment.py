@@ -34,9 +34,9 @@ def post_encroachment_time(
     max(t_in - t, t - t_out, 0) apart, and the smallest value over all t counts. It holds whoever
     comes first and on any curved path, since the ego's own poses are searched.
 
-    Poses and positions are interpolated linearly between control instants, and the place at which
-    a pedestrian enters or leaves the strip that the ego sweeps is found to a thousandth of a
-    control period.
+    The ego's poses are interpolated linearly between control instants, and the place at which a
+    pedestrian enters or leaves the strip that the ego sweeps is found to a thousandth of a control
+    period; within the strip its records count, which overstates the value by less than a period.
 
     Args:
         ego: the ego's track, T instants.

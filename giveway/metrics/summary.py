@@ -99,7 +99,12 @@ def summarise(
         safe_distance: d_safe [m].
         stop_speed: the ego stands below it [m/s].
         controller: "mpc" (with its fallback) or "pid".
+
+    Raises:
+        ValueError: the ego's track is empty.
     """
+    if not ego.time.size:
+        raise ValueError("ego track: no instants; a summary needs at least one")
     simulated_time = float(ego.time[-1] - ego.time[0])
     travelled = float(ego.position[-1] - ego.position[0])
     waits = waiting_times(ego, stop_speed)
