@@ -1,0 +1,47 @@
+"""Longitudinal speed regulation: MPC, PID, and the regulator that falls back from one to the other.
+
+Yang & Özgüner 2019, "Combining Social Force Model with Model Predictive Control for Vehicle's
+Longitudinal Speed Regulation in Pedestrian-Dense Scenarios" (arXiv 1907.05178).
+"""
+
+from controller.errors import (
+    ControllerError,
+    ParameterError,
+    SolverMissingError,
+    SolverSetupError,
+)
+from controller.model import LongitudinalModel
+from controller.mpc import Mpc
+from controller.parameters import (
+    CONSISTENT_PID,
+    PAPER_MPC,
+    PRINTED_PID,
+    MpcParameters,
+    PidParameters,
+)
+from controller.pid import Pid
+from controller.quadratic_program import QuadraticProgram, quadratic_program
+from controller.regulator import Decision, Observation, Regulator
+from controller.solution import MpcSolution, Outcome
+
+__all__ = [
+    "CONSISTENT_PID",
+    "PAPER_MPC",
+    "PRINTED_PID",
+    "ControllerError",
+    "Decision",
+    "LongitudinalModel",
+    "Mpc",
+    "MpcParameters",
+    "MpcSolution",
+    "Observation",
+    "Outcome",
+    "ParameterError",
+    "Pid",
+    "PidParameters",
+    "QuadraticProgram",
+    "Regulator",
+    "SolverMissingError",
+    "SolverSetupError",
+    "quadratic_program",
+]

@@ -1,0 +1,66 @@
+"""DAQP, an exact dual active-set solver: the second backend. The only file that imports daqp."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from controller.errors import SolverMissingError
+from controller.solution import Outcome
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from controller.speed_problem import SpeedProblem
+
+    Array = NDArray[np.float64]
+
+_INFINITY = 1e30  # DAQP's
+_SOLVED, _INFEASIBLE, _ITERATION_LIMIT = 1, -1, -4
+
+
+class DaqpBackend:
+    """Solves the speed problem by DAQP (Arnström, Bemporad & Axehill 2022).
+
+    Raises:
+        SolverMissingError: daqp is not installed.
+    """
+
+    name = "daqp"
+
+    def __init__(self, problem: SpeedProblem, iteration_limit: int) -> None:
+        try:
+            import daqp
+        except ImportError as error:
+            msg = "solver 'daqp' is not installed; install it with: pip install 'giveway[daqp]'"
+            raise SolverMissingError(msg) from error
+        self._problem = problem
+        self._daqp = daqp
+        self._iteration_limit = iteration_limit
+        N = problem.rows.shape[1]
+        self._P = 2.0 * np.eye(N)
+        self._q = -2.0 * problem.target
+        self._sense = np.zeros(len(problem.rows), dtype=np.int32)
+
+    def solve(self, speeds: Array, multipliers: Array) -> tuple[Outcome, int]:
+        """Solve within the problem's present bounds; as ``OsqpBackend.solve``."""
+        problem = self._problem
+        x, _, flag, info = self._daqp.solve(
+            self._P,
+            self._q,
+            problem.rows,
+            np.minimum(problem.upper, _INFINITY),
+            np.maximum(problem.lower, -_INFINITY),
+            self._sense,
+            iter_limit=self._iteration_limit,
+        )
+        iterations = int(info["iterations"])
+        if flag == _SOLVED:
+            speeds[:] = x
+            multipliers[:] = info["lam"]
+            return Outcome.SOLVED, iterations
+        if flag == _INFEASIBLE:
+            multipliers[:] = 0.0  # DAQP gives no certificate
+            return Outcome.INFEASIBLE, iterations
+        return (Outcome.ITERATION_LIMIT if flag == _ITERATION_LIMIT else Outcome.FAILED), iterations

@@ -1,0 +1,19 @@
+"""What can go wrong in the controllers, one class per thing a user can do something about."""
+
+from __future__ import annotations
+
+
+class ControllerError(Exception):
+    """The root of the controllers' errors; the message is one line."""
+
+
+class ParameterError(ControllerError):
+    """A parameter is not what it must be: name, value, unit and expectation are named."""
+
+
+class SolverMissingError(ControllerError):
+    """The QP solver asked for is not installed."""
+
+
+class SolverSetupError(ControllerError):
+    """The QP solver refuses the problem at set-up."""

@@ -1,0 +1,222 @@
+"""The model predictive controller of Yang & Özgüner 2019, section 3."""
+
+from __future__ import annotations
+
+from math import inf, isfinite, nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from controller._jit import kernel
+from controller.active_set import INFEASIBLE, solve_exactly
+from controller.daqp_backend import DaqpBackend
+from controller.errors import ParameterError
+from controller.osqp_backend import OsqpBackend
+from controller.parameters import MpcParameters, require
+from controller.solution import MpcSolution, Outcome
+from controller.speed_problem import (
+    CANNOT_HOLD_SPEED,
+    CANNOT_STOP,
+    SPEED_BOUNDS_CROSS,
+    TOO_CLOSE,
+    UNDECIDED,
+    SpeedProblem,
+)
+from controller.verification import certifies_infeasibility, refine
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from controller.model import LongitudinalModel
+
+    Array = NDArray[np.float64]
+
+_PROOFS = {
+    TOO_CLOSE: "infeasible: too close",
+    SPEED_BOUNDS_CROSS: "infeasible: speed bounds",
+    CANNOT_STOP: "infeasible: cannot stop",
+    CANNOT_HOLD_SPEED: "infeasible: cannot hold speed",
+}
+_CERTIFIED = "infeasible: certified"
+_UNVERIFIED = "not verified"
+
+
+class Mpc:
+    """Finds the forces that keep the reference speed best, behind everybody in front.
+
+    A solve goes: proofs of infeasibility that take no solve; a start from the active set of the
+    step before, made exact; the solver; the refinement of its active set to rounding; the check
+    of the plan against every constraint in physical units. A fresh instance, or one after
+    :meth:`reset`, gives the same bytes for the same sequence of problems.
+
+    Args:
+        model: the vehicle.
+        parameters: weights, limits, solver.
+
+    Raises:
+        ParameterError: the limits contradict each other.
+        SolverMissingError, SolverSetupError: the solver cannot be used.
+    """
+
+    def __init__(self, model: LongitudinalModel, parameters: MpcParameters | None = None) -> None:
+        self.model = model
+        self.parameters = parameters = parameters or MpcParameters()
+        require(model.decay >= 0.0, "friction * time_step / mass", 1 - model.decay, "at most 1")
+        self._problem = SpeedProblem(model, parameters)
+        count, N = self._problem.rows.shape
+        self._speeds = np.empty(N)
+        self._multipliers = np.zeros(count)
+        self._tolerances = np.array(
+            [
+                parameters.position_tolerance,
+                parameters.speed_tolerance,
+                parameters.force_tolerance,
+            ]
+        )
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget earlier problems."""
+        limit = self.parameters.iteration_limit
+        self._backend: OsqpBackend | DaqpBackend
+        if self.parameters.solver == "osqp":
+            self._backend = OsqpBackend(self._problem, limit)
+        else:
+            self._backend = DaqpBackend(self._problem, limit)
+        self._multipliers[:] = 0.0
+
+    def solve(
+        self,
+        position: float,
+        speed: float,
+        previous_force: float,
+        obstacle_positions: Array,
+    ) -> MpcSolution:
+        """Plan from the state at t_k.
+
+        Args:
+            position: x_1(k) [m] of whatever point must keep the safe distance.
+            speed: x_2(k) [m/s].
+            previous_force: u(k-1) [N].
+            obstacle_positions: (N,) x_p(k+1) ... x_p(k+N) [m] in the coordinate of ``position``;
+                inf where nobody is in front.
+
+        Raises:
+            ParameterError: a value is not a number, or the horizon does not fit.
+        """
+        if len(obstacle_positions) != self.parameters.horizon:
+            msg = (
+                f"obstacle_positions has {len(obstacle_positions)} entries: expected "
+                f"{self.parameters.horizon}, one per step of the horizon"
+            )
+            raise ParameterError(msg)
+        if not isfinite(position + speed + previous_force) or np.isnan(obstacle_positions).any():
+            msg = (
+                f"position = {position} m, speed = {speed} m/s, previous_force = {previous_force} "
+                "N and obstacle_positions: expected numbers"
+            )
+            raise ParameterError(msg)
+        problem = self._problem
+        code = problem.update(position, speed, previous_force, obstacle_positions)
+        if code != UNDECIDED:
+            return _no_plan(_PROOFS[code], 0)
+        if not self._start():
+            return _no_plan(_CERTIFIED, 0)
+        outcome, iterations = self._backend.solve(self._speeds, self._multipliers)
+        if outcome is Outcome.INFEASIBLE:
+            status = _CERTIFIED if self._certified() else "infeasible: by the solver"
+            self._multipliers[:] = 0.0
+            return _no_plan(status, iterations)
+        if outcome is not Outcome.SOLVED:
+            self._multipliers[:] = 0.0
+            return _no_plan(str(outcome), iterations)
+        return self._accept(position, speed, previous_force, obstacle_positions, iterations)
+
+    def _start(self) -> bool:
+        """Start the solver where the optimum should be; False if it is proved that there is none."""
+        problem = self._problem
+        bounds = (problem.rows, problem.lower, problem.upper, problem.target)
+        if refine(*bounds, self._multipliers, self._speeds) >= 0:
+            return True
+        if solve_exactly(*bounds, self._multipliers, self._speeds) == INFEASIBLE:
+            certified = self._certified()
+            self._multipliers[:] = 0.0
+            if certified:
+                return False
+            self._speeds[:] = problem.target  # leave it to the solver
+        return True
+
+    def _certified(self) -> bool:
+        problem, parameters = self._problem, self.parameters
+        return certifies_infeasibility(
+            problem.rows,
+            problem.lower,
+            problem.upper,
+            parameters.speed_min - 1.0,
+            parameters.speed_max + 1.0,
+            self._multipliers,
+        )
+
+    def _accept(
+        self,
+        position: float,
+        speed: float,
+        previous_force: float,
+        obstacle_positions: Array,
+        iterations: int,
+    ) -> MpcSolution:
+        """The refined plan, if it keeps every constraint."""
+        problem = self._problem
+        bounds = (problem.rows, problem.lower, problem.upper, problem.target)
+        if refine(*bounds, self._multipliers, self._speeds) < 0:
+            self._multipliers[:] = 0.0
+            return _no_plan(_UNVERIFIED, iterations)
+        speeds = self._speeds.copy()
+        forces = problem.forces(speeds, speed)
+        residual = plan_residual(
+            position,
+            speed,
+            previous_force,
+            obstacle_positions,
+            forces,
+            problem.limits,
+            self._tolerances,
+        )
+        if not residual <= 1.0:
+            return _no_plan(_UNVERIFIED, iterations)
+        return MpcSolution(
+            True, float(forces[0]), forces, speeds, str(Outcome.SOLVED), iterations, residual
+        )
+
+
+def _no_plan(status: str, iterations: int) -> MpcSolution:
+    return MpcSolution(False, nan, None, None, status, iterations, nan)
+
+
+@kernel
+def plan_residual(
+    position: float,
+    speed: float,
+    previous_force: float,
+    obstacle_positions: Array,
+    forces: Array,
+    limits: Array,
+    tolerances: Array,
+) -> float:
+    """The plan's largest violation of c1 to c6, driven through the model, over its tolerance."""
+    dt, decay, per_force, safe_distance = limits[0], limits[1], limits[2], limits[3]
+    v_min, v_max, u_max, du_max = limits[4], limits[5], limits[6], limits[7]
+    of_position, of_speed, of_force = tolerances[0], tolerances[1], tolerances[2]
+    worst = 0.0
+    for i in range(len(forces)):
+        u = forces[i]
+        if not np.isfinite(u):
+            return inf
+        worst = max(worst, (abs(u) - u_max) / of_force)
+        worst = max(worst, (abs(u - previous_force) - du_max) / of_force)
+        position += dt * speed
+        speed = decay * speed + per_force * u
+        worst = max(worst, (position - (obstacle_positions[i] - safe_distance)) / of_position)
+        worst = max(worst, (speed - v_max) / of_speed, (v_min - speed) / of_speed)
+        previous_force = u
+    return worst

@@ -1,0 +1,94 @@
+"""OSQP: set up once, then only bounds and start are updated. The only file that imports osqp."""
+
+from __future__ import annotations
+
+import signal
+from typing import TYPE_CHECKING
+
+import numpy as np
+import osqp
+from scipy import sparse
+
+from controller.errors import SolverSetupError
+from controller.solution import Outcome
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from controller.speed_problem import SpeedProblem
+
+    Array = NDArray[np.float64]
+
+_INFINITY = 1e30  # OSQP's
+_STATUS = {
+    osqp.SolverStatus.OSQP_SOLVED: Outcome.SOLVED,
+    osqp.SolverStatus.OSQP_PRIMAL_INFEASIBLE: Outcome.INFEASIBLE,
+    osqp.SolverStatus.OSQP_SOLVED_INACCURATE: Outcome.INACCURATE,
+    osqp.SolverStatus.OSQP_PRIMAL_INFEASIBLE_INACCURATE: Outcome.INACCURATE,
+    osqp.SolverStatus.OSQP_MAX_ITER_REACHED: Outcome.ITERATION_LIMIT,
+}
+
+
+class OsqpBackend:
+    """Solves the speed problem by OSQP (Stellato et al. 2020), warm-started.
+
+    Nothing depends on a clock: no time limit, and the step size adapts every 50 iterations.
+
+    Raises:
+        SolverSetupError: OSQP refuses the problem.
+    """
+
+    name = "osqp"
+
+    def __init__(self, problem: SpeedProblem, iteration_limit: int) -> None:
+        self._problem = problem
+        count, N = problem.rows.shape
+        solver = osqp.OSQP(algebra="builtin")
+        try:
+            solver.setup(
+                sparse.csc_matrix(2.0 * np.eye(N)),  # P
+                -2.0 * problem.target,  # q
+                sparse.csc_matrix(problem.rows),
+                np.full(count, -_INFINITY),
+                np.full(count, _INFINITY),
+                verbose=False,
+                warm_starting=True,
+                eps_abs=1e-4,
+                eps_rel=1e-4,
+                check_termination=5,
+                adaptive_rho_interval=50,
+                max_iter=iteration_limit,
+            )
+        except (osqp.OSQPException, ValueError) as error:
+            msg = f"OSQP refuses the MPC's problem at set-up ({error}); check [mpc] and [vehicle]"
+            raise SolverSetupError(msg) from error
+        self._solver = solver._solver  # the wrapper's solve() copies and checks for 20 us
+        self._lower = np.empty(count)
+        self._upper = np.empty(count)
+
+    def solve(self, speeds: Array, multipliers: Array) -> tuple[Outcome, int]:
+        """Solve within the problem's present bounds.
+
+        Args:
+            speeds: (N,) start; receives the solution.
+            multipliers: (m,) start; receives the solution's, or the certificate of infeasibility.
+
+        Returns:
+            The outcome and the number of iterations.
+        """
+        solver = self._solver
+        np.maximum(self._problem.lower, -_INFINITY, out=self._lower)
+        np.minimum(self._problem.upper, _INFINITY, out=self._upper)
+        solver.update_data_vec(q=None, l=self._lower, u=self._upper)
+        solver.warm_start(speeds, multipliers)
+        solver.solve()
+        if solver.info.status_val == osqp.SolverStatus.OSQP_SIGINT:
+            signal.raise_signal(signal.SIGINT)  # OSQP swallowed it: hand it to whose it is
+            solver.solve()
+        outcome = _STATUS.get(solver.info.status_val, Outcome.FAILED)
+        if outcome is Outcome.INFEASIBLE:
+            multipliers[:] = solver.solution.prim_inf_cert
+        else:
+            speeds[:] = solver.solution.x
+            multipliers[:] = solver.solution.y
+        return outcome, int(solver.info.iter)

@@ -1,0 +1,102 @@
+"""The controllers' parameters: Yang & Özgüner 2019, table 1, with the readings that it leaves open."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from controller.errors import ParameterError
+
+SolverName = Literal["osqp", "daqp"]
+
+
+def require(condition: bool, name: str, value: object, expected: str) -> None:
+    """Refuse a parameter.
+
+    Raises:
+        ParameterError: ``condition`` does not hold.
+    """
+    if not condition:
+        msg = f"{name} = {value}: expected {expected}"
+        raise ParameterError(msg)
+
+
+def require_positive(name: str, value: float, unit: str) -> None:
+    """Refuse a number that is not finite and greater than zero."""
+    require(math.isfinite(value) and value > 0.0, name, value, f"a finite number > 0 [{unit}]")
+
+
+def require_not_negative(name: str, value: float, unit: str) -> None:
+    """Refuse a number that is not finite and at least zero."""
+    require(math.isfinite(value) and value >= 0.0, name, value, f"a finite number >= 0 [{unit}]")
+
+
+@dataclass(frozen=True, slots=True)
+class MpcParameters:
+    """The model predictive controller (Yang & Özgüner 2019, table 1)."""
+
+    horizon: int = 15  # N [steps]
+    reference_speed: float = 4.0  # v_r [m/s]
+    safe_distance: float = 8.0  # d_safe [m]
+    speed_min: float = 0.0  # v_min [m/s]
+    speed_max: float = 20.0  # v_max [m/s]
+    force_limit: float = 8000.0  # u_max [N]
+    force_rate_limit: float = 1000.0  # du_max [N per step]
+    speed_weight: float = 1.0  # Q = speed_weight * I
+    solver: SolverName = "osqp"
+    iteration_limit: int = 4000  # of the QP solver
+    position_tolerance: float = 1e-6  # [m] by which an accepted plan may miss a constraint
+    speed_tolerance: float = 1e-6  # [m/s]
+    force_tolerance: float = 1e-2  # [N]
+
+    def __post_init__(self) -> None:
+        require(self.horizon >= 2, "horizon", self.horizon, "at least 2 [steps]")
+        require_positive("reference_speed", self.reference_speed, "m/s")
+        require_not_negative("safe_distance", self.safe_distance, "m")
+        require_not_negative("speed_min", self.speed_min, "m/s")
+        require(
+            math.isfinite(self.speed_max) and self.speed_max > self.speed_min,
+            "speed_max",
+            self.speed_max,
+            f"a finite number > speed_min = {self.speed_min} [m/s]",
+        )
+        require_positive("force_limit", self.force_limit, "N")
+        require_positive("force_rate_limit", self.force_rate_limit, "N per step")
+        require_positive("speed_weight", self.speed_weight, "-")
+        require(self.solver in ("osqp", "daqp"), "solver", self.solver, "'osqp' or 'daqp'")
+        require(self.iteration_limit >= 1, "iteration_limit", self.iteration_limit, "at least 1")
+        require_positive("position_tolerance", self.position_tolerance, "m")
+        require_positive("speed_tolerance", self.speed_tolerance, "m/s")
+        require_positive("force_tolerance", self.force_tolerance, "N")
+
+
+@dataclass(frozen=True, slots=True)
+class PidParameters:
+    """The PID controller (Yang & Özgüner 2019, section 3.4 and table 1).
+
+    The default K_p = 2400 is not the printed 300: the paper's own "steady-state error of about
+    0.16 m/s at 4 m/s", alpha v_r / (K_p + alpha), needs 2400. See ``PRINTED_PID``.
+    """
+
+    K_p: float = 2400.0  # [N s/m]
+    K_i: float = 10.0  # [N/m]
+    K_d: float = 100.0  # [N s^2/m]
+    reference_speed: float = 4.0  # v_r [m/s]
+    safe_distance: float = 8.0  # d_safe [m]
+    buffer_distance: float = 10.0  # d_buffer [m]
+    force_limit: float = 8000.0  # u_max [N]
+
+    def __post_init__(self) -> None:
+        require_not_negative("K_p", self.K_p, "N s/m")
+        require_not_negative("K_i", self.K_i, "N/m")
+        require_not_negative("K_d", self.K_d, "N s^2/m")
+        require_positive("reference_speed", self.reference_speed, "m/s")
+        require_not_negative("safe_distance", self.safe_distance, "m")
+        require_positive("buffer_distance", self.buffer_distance, "m")
+        require_positive("force_limit", self.force_limit, "N")
+
+
+PAPER_MPC = MpcParameters()
+CONSISTENT_PID = PidParameters()
+PRINTED_PID = PidParameters(K_p=300.0)

@@ -1,0 +1,61 @@
+"""The PID controller of Yang & Özgüner 2019, section 3.4: the MPC's fallback and its rival."""
+
+from __future__ import annotations
+
+from controller.parameters import PidParameters, require_positive
+
+
+class Pid:
+    """u = -(u_p + u_i + u_d) on the speed error e = v - v_ref, clipped to the force limit.
+
+    The reference speed falls linearly with the gap: v_r clip((gap - d_safe) / d_buffer, 0, 1).
+    As printed, the output is not rate-limited and the integrator has no anti-windup.
+
+    Args:
+        parameters: gains and distances.
+        time_step: dt [s].
+
+    Raises:
+        ParameterError: the time step is not positive.
+    """
+
+    def __init__(self, parameters: PidParameters | None = None, time_step: float = 0.05) -> None:
+        require_positive("time_step", time_step, "s")
+        self.parameters = parameters or PidParameters()
+        self.time_step = time_step
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the past: the next error is also the previous one, the integrator is empty."""
+        self._integral = 0.0  # u_i(k-1) [N]
+        self._error: float | None = None  # e(k-1) [m/s]
+
+    def reference_speed(self, gap: float) -> float:
+        """v_r^PID [m/s] at ``gap`` [m] to the closest pedestrian in front (the paper's figure 3)."""
+        p = self.parameters
+        return p.reference_speed * min(max((gap - p.safe_distance) / p.buffer_distance, 0.0), 1.0)
+
+    def control(self, speed: float, gap: float) -> float:
+        """The force u(k) [N].
+
+        Args:
+            speed: x_2(k) [m/s].
+            gap: x_p(k) - x_1(k) [m]; inf when nobody is in front.
+        """
+        p, dt = self.parameters, self.time_step
+        e = speed - self.reference_speed(gap)
+        before = e if self._error is None else self._error
+        u_p = p.K_p * e
+        u_i = p.K_i * e * dt + self._integral
+        u_d = p.K_d * (e - before) / dt
+        self._integral, self._error = u_i, e
+        return min(max(-(u_p + u_i + u_d), -p.force_limit), p.force_limit)
+
+    def track(self, speed: float, gap: float) -> None:
+        """While the MPC acts: empty the integrator, and keep e(k-1) at the current error.
+
+        So the PID takes over without a kick of its derivative, and without an integral of errors
+        that were not its own.
+        """
+        self._integral = 0.0
+        self._error = speed - self.reference_speed(gap)

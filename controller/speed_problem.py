@@ -1,0 +1,175 @@
+"""The paper's QP in the unknowns v(k+1) ... v(k+N): small, sparse and well conditioned.
+
+Forces follow from speeds, u(i) = M/dt (v(i+1) - a v(i)) with a = 1 - alpha dt / M, so the cost
+becomes a sum of squares, P = 2 I in m/s, whatever mass and time step are: the paper's newtons
+scale its H with (dt/M)^2, which a first-order solver does not survive.
+
+Rows, for speeds V = [v(k+1), ..., v(k+N)]:
+
+* N on the speeds themselves: c4, c5; the first also holds c1 to c3 of u(k) and c6 of x_1(k+2),
+  which all bound v(k+1) alone;
+* N - 1 on v(i+1) - a v(i) = dt/M u(i): c1;
+* N - 1 on the differences of these: c2, c3;
+* N - 2 on the sums of speeds, the distances driven to x_1(k+3) ... x_1(k+N), over dt: c6.
+
+Forward Euler makes x_1(k+1) independent of all unknowns: its row is a test before any solve.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from controller._jit import kernel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from controller.model import LongitudinalModel
+    from controller.parameters import MpcParameters
+
+    Array = NDArray[np.float64]
+
+SLACK = 1e-9  # [m/s] [m] by which all bounds are widened: a plan that touches its bounds, as those
+# that just stop do, leaves the next problem a single point, which rounding would make empty
+
+UNDECIDED = 0  # only a solve can tell
+TOO_CLOSE = 1  # x_1(k+1), which no force changes, violates c6
+SPEED_BOUNDS_CROSS = 2  # what the force limits leave of v(k+1) misses its bounds
+CANNOT_STOP = 3  # even the hardest braking at every step violates c6
+CANNOT_HOLD_SPEED = 4  # even the strongest drive at every step violates c5
+
+
+class SpeedProblem:
+    """min |V - V_r|^2 subject to lower <= rows V <= upper; the bounds change from step to step.
+
+    Attributes:
+        rows: (4N - 4, N), constant.
+        target: (N,) V_r [m/s].
+        lower, upper: (4N - 4,), filled by :meth:`update`.
+        limits: (8,) dt, decay, dt/M, d_safe, v_min, v_max, u_max, du_max.
+    """
+
+    def __init__(self, model: LongitudinalModel, parameters: MpcParameters) -> None:
+        N = parameters.horizon
+        self.model = model
+        self.parameters = parameters
+        speeds = np.eye(N)
+        accelerations = np.eye(N)[1:] - model.decay * np.eye(N)[:-1]  # dt/M u(k+1) ...
+        first = model.decay * np.eye(N)[:1]  # u(k): its constant part goes into the bounds
+        rates = accelerations.copy()
+        rates[0] -= first[0] / model.decay if model.decay else np.eye(N)[0]
+        rates[1:] -= accelerations[:-1]
+        distances = np.tril(np.ones((N, N)))[1:-1]
+        self.rows = np.ascontiguousarray(np.concatenate([speeds, accelerations, rates, distances]))
+        self.target = np.full(N, parameters.reference_speed)
+        self.lower = np.empty(len(self.rows))
+        self.upper = np.empty(len(self.rows))
+        self.limits = np.array(
+            [
+                model.time_step,
+                model.decay,
+                model.speed_per_force,
+                parameters.safe_distance,
+                parameters.speed_min,
+                parameters.speed_max,
+                parameters.force_limit,
+                parameters.force_rate_limit,
+            ]
+        )
+
+    def update(
+        self, position: float, speed: float, previous_force: float, obstacle_positions: Array
+    ) -> int:
+        """Set the bounds for a state; prove infeasibility where that takes no solve.
+
+        Returns:
+            ``UNDECIDED``, or the reason why no plan can satisfy all constraints.
+        """
+        code: int = fill_bounds(
+            position,
+            speed,
+            previous_force,
+            obstacle_positions,
+            self.limits,
+            self.lower,
+            self.upper,
+        )
+        return code
+
+    def forces(self, speeds: Array, speed: float) -> Array:
+        """(N,) [N] that lead from ``speed`` [m/s] through ``speeds`` (N,) [m/s]."""
+        before = np.concatenate([[speed], speeds[:-1]])
+        result: Array = (speeds - self.model.decay * before) / self.model.speed_per_force
+        return result
+
+
+@kernel
+def fill_bounds(
+    position: float,
+    speed: float,
+    previous_force: float,
+    obstacle_positions: Array,
+    limits: Array,
+    lower: Array,
+    upper: Array,
+) -> int:
+    """Bounds of all rows; a proof of infeasibility, or UNDECIDED."""
+    dt, decay, per_force, safe_distance = limits[0], limits[1], limits[2], limits[3]
+    v_min, v_max, u_max, du_max = limits[4], limits[5], limits[6], limits[7]
+    N = len(obstacle_positions)
+    after_one = position + dt * speed  # x_1(k+1)
+    if after_one > obstacle_positions[0] - safe_distance + SLACK:
+        return TOO_CLOSE
+
+    lower[:N] = v_min
+    upper[:N] = v_max
+    weakest = max(-u_max, previous_force - du_max)
+    strongest = min(u_max, previous_force + du_max)
+    lower[0] = max(v_min, decay * speed + per_force * weakest)
+    upper[0] = min(v_max, decay * speed + per_force * strongest)
+    upper[0] = min(upper[0], (obstacle_positions[1] - safe_distance - after_one) / dt)
+    for i in range(N, 2 * N - 1):
+        lower[i] = -per_force * u_max
+        upper[i] = per_force * u_max
+    for i in range(2 * N - 1, 3 * N - 2):
+        lower[i] = -per_force * du_max
+        upper[i] = per_force * du_max
+    lower[2 * N - 1] -= decay * speed  # u(k) = (v(k+1) - a v(k)) M/dt has a constant part
+    upper[2 * N - 1] -= decay * speed
+    for i in range(2, N):
+        lower[3 * N - 4 + i] = -np.inf
+        upper[3 * N - 4 + i] = (obstacle_positions[i] - safe_distance - after_one) / dt
+    lower -= SLACK
+    upper += SLACK
+    if lower[0] > upper[0]:
+        return SPEED_BOUNDS_CROSS
+    return prove_infeasible(speed, previous_force, limits, upper)
+
+
+@kernel
+def prove_infeasible(speed: float, previous_force: float, limits: Array, upper: Array) -> int:
+    """The slowest and the fastest speeds that the force limits allow, against c6 and c5.
+
+    Speeds grow with forces and positions with speeds (decay >= 0), so braking as hard as allowed
+    at every step, but not below v_min, bounds every feasible plan from below. The converse does
+    not hold: a plan at this bound may have to release the brake faster than allowed.
+    """
+    decay, per_force = limits[1], limits[2]
+    v_min, u_max, du_max = limits[4], limits[6], limits[7]
+    N = (len(upper) + 4) // 4
+    slowest, fastest = speed, speed
+    weakest, strongest = previous_force, previous_force
+    driven = 0.0
+    for i in range(N):
+        weakest = max(-u_max, weakest - du_max)
+        strongest = min(u_max, strongest + du_max)
+        slowest = max(v_min, decay * slowest + per_force * weakest)
+        fastest = decay * fastest + per_force * strongest
+        if fastest < v_min - SLACK:
+            return CANNOT_HOLD_SPEED
+        driven += slowest
+        if 1 <= i < N - 1 and driven > upper[3 * N - 3 + i]:
+            return CANNOT_STOP
+    return UNDECIDED
