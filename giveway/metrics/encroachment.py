@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
 
 BLOCK = 8  # ego instants that are ruled out together
-HALVINGS = 10  # of a control period, to find where a pedestrian leaves the swept strip
+SECTIONS = 16  # of a control period, to find the smallest separation in it
+GOLDEN = 0.6180339887498949
 
 
 def post_encroachment_time(
@@ -34,9 +35,8 @@ def post_encroachment_time(
     max(t_in - t, t - t_out, 0) apart, and the smallest value over all t counts. It holds whoever
     comes first and on any curved path, since the ego's own poses are searched.
 
-    The ego's poses are interpolated linearly between control instants, and the place at which a
-    pedestrian enters or leaves the strip that the ego sweeps is found to a thousandth of a control
-    period; within the strip its records count, which overstates the value by less than a period.
+    Poses and positions are interpolated linearly between control instants, and the smallest value
+    within a control period is found to less than a thousandth of it.
 
     Args:
         ego: the ego's track, T instants.
@@ -164,6 +164,44 @@ def _separation(
 
 
 @kernel
+def _smallest_between(
+    k: int,
+    x: tuple[float, float],
+    y: tuple[float, float],
+    leaving: bool,
+    cutoff: float,
+    time: NDArray[np.float64],
+    poses: NDArray[np.float64],
+    blocks: NDArray[np.float64],
+    half_length: float,
+    half_width: float,
+    radius: float,
+) -> float:
+    """The smallest separation during step k of a walk from (x[0], y[0]) to (x[1], y[1]).
+
+    Golden section: a separation has one minimum in a step, at or shortly before the edge of the
+    swept strip if the walk crosses it, because the ego's corners are rounded. Beyond the edge it
+    is inf; ``leaving`` says on which side of the edge to look while both trials are beyond.
+    """
+    body = half_length, half_width, radius
+    duration = time[k + 1] - time[k]
+    smallest = inf
+    low, high = 0.0, 1.0
+    for _ in range(SECTIONS):
+        early, late = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+        t, at_x, at_y = early * duration, x[0] + early * (x[1] - x[0]), y[0] + early * (y[1] - y[0])
+        at_early = _separation(time[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, *body)
+        t, at_x, at_y = late * duration, x[0] + late * (x[1] - x[0]), y[0] + late * (y[1] - y[0])
+        at_late = _separation(time[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, *body)
+        smallest = min(smallest, at_early, at_late)
+        if at_early < at_late or (at_early == at_late and leaving):
+            high = late
+        else:
+            low = early
+    return smallest
+
+
+@kernel
 def _smallest_separations(
     time: NDArray[np.float64],
     poses: NDArray[np.float64],
@@ -178,36 +216,29 @@ def _smallest_separations(
     """The post-encroachment times; pedestrian i has the records bounds[i] to bounds[i + 1]."""
     blocks = _blocks(poses, half_length, half_width, radius)
     body = half_length, half_width, radius
+    at_record = np.empty(x.size)
     pets = np.full(bounds.size - 1, nan)
     for i in range(pets.size):
         nearest = inf
-        before = inf  # separation at the record before
         for r in range(bounds[i], bounds[i + 1]):
             k = step[r]
-            # A period more than the best, so that a separation that ends there is noticed below.
-            cutoff = nearest + (time[k] - time[max(k - 1, 0)])
-            here = _separation(time[k], x[r], y[r], k, cutoff, time, poses, blocks, *body)
-            nearest = min(nearest, here)
-            consecutive = r > bounds[i] and step[r - 1] == k - 1
-            if consecutive and (here == inf) != (before == inf):
-                # Between the two the pedestrian crosses the edge of the swept strip, where the
-                # separation is smallest if it got out just in time: close in on the edge.
-                inside = 0.0 if here == inf else 1.0
-                outside = 1.0 - inside
-                for _ in range(HALVINGS):
-                    part = 0.5 * (inside + outside)
-                    between = _separation(
-                        time[k - 1] + part * (time[k] - time[k - 1]),
-                        x[r - 1] + part * (x[r] - x[r - 1]),
-                        y[r - 1] + part * (y[r] - y[r - 1]),
-                        k - 1, cutoff, time, poses, blocks, *body,
-                    )  # fmt: skip
-                    nearest = min(nearest, between)
-                    if between == inf:
-                        outside = part
-                    else:
-                        inside = part
-            before = here
+            # A separation shrinks by less than a period within one, hence this much is of use.
+            period = time[k] - time[max(k - 1, 0)]
+            at_record[r] = _separation(
+                time[k], x[r], y[r], k, nearest + 2.0 * period, time, poses, blocks, *body
+            )
+            nearest = min(nearest, at_record[r])
+        for r in range(bounds[i] + 1, bounds[i + 1]):
+            k = step[r - 1]
+            period = time[step[r]] - time[k]
+            ends = at_record[r - 1], at_record[r]
+            if step[r] == k + 1 and min(ends) - period < nearest and nearest > 0.0:
+                walk = (x[r - 1], x[r]), (y[r - 1], y[r])
+                cutoff = nearest + 2.0 * period
+                between = _smallest_between(
+                    k, *walk, ends[0] < ends[1], cutoff, time, poses, blocks, *body
+                )
+                nearest = min(nearest, between)
         if nearest < inf:
             pets[i] = nearest
     return pets
