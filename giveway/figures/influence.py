@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from giveway.figures.style import BLACK, styled
+from giveway.figures.style import BLACK, BLUE, keep_panels, styled
 from giveway.tracks import VehicleShape
 
 if TYPE_CHECKING:
@@ -69,22 +69,17 @@ def influence_figure(
     height = 0.9 * panel * (y[1] - y[0]) / (x[1] - x[0]) + 0.4
     figure = Figure(figsize=(columns * panel + 1.1, rows * height + 0.7), layout="compressed")
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    for axes, speed in zip(grid.flat, speeds, strict=False):
+    panels = keep_panels(grid, len(speeds))
+    for axes, speed in zip(panels, speeds, strict=True):
         contours, lines = _draw_magnitude(axes, influence, speed, x, y)
         arrows = _draw_arrows(axes, influence, speed, x, y, shape, centre)
         _draw_vehicle(axes, shape, centre)
         axes.set(aspect="equal", xlim=x, ylim=y, title=f"{speed:g} m/s")
-    for axes in grid.flat[len(speeds) :]:
-        axes.remove()
-    for axes in grid[-1]:
-        axes.set_xlabel("x [m]")
-    for axes in grid[:, 0]:
-        axes.set_ylabel("y [m]")
-    bar = figure.colorbar(contours, ax=grid, label="Magnitude [N]", shrink=0.9, aspect=30)
+    bar = figure.colorbar(contours, ax=panels, label="Magnitude [N]", shrink=0.9, aspect=30)
     bar.add_lines(lines)
     bar.set_ticks(LEVELS, labels=[f"{level:g}" for level in LEVELS])
     key = f"{LONGEST_ARROW:g} N or more"
-    figure.axes[0].quiverkey(
+    panels[0].quiverkey(
         arrows,
         0.97,
         0.96,
@@ -141,7 +136,7 @@ def _draw_arrows(
     shown = outside & (magnitude >= FAINTEST_ARROW)
     arrows = force[shown] * np.minimum(1.0, LONGEST_ARROW / magnitude[shown])[:, None]
     return axes.quiver(
-        across[shown], up[shown], arrows[:, 0], arrows[:, 1], color="#0072B2", pivot="tail",
+        across[shown], up[shown], arrows[:, 0], arrows[:, 1], color=BLUE, pivot="tail",
         angles="xy", scale_units="xy", scale=LONGEST_ARROW / (1.2 * ARROW_SPACING), width=0.003,
         minlength=0.5, zorder=3,
     )  # fmt: skip

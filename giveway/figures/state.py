@@ -112,7 +112,8 @@ def _shade_phases(axes: Axes, ego: EgoTrack) -> None:
 def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
     axes.step(
         ego.time, ego.reference_speed, where="post", color=BLACK, linewidth=0.9,
-        linestyle=(0, (4, 2)), label="reference speed", marker=_marker(ego), zorder=4,
+        linestyle=(0, (4, 2)), label="reference speed", marker=_marker(ego), markersize=9,
+        markerfacecolor="none", zorder=4,
     )  # fmt: skip
     axes.plot(ego.time, ego.speed, color=BLUE, label="speed", marker=_marker(ego), zorder=3)
 

@@ -7,7 +7,7 @@ differs in lightness as well, for print in black and white.
 from __future__ import annotations
 
 from functools import wraps
-from typing import TYPE_CHECKING, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from matplotlib import style
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
 BLACK = "#000000"
 ORANGE = "#E69F00"
@@ -92,3 +93,17 @@ def save_figure(figure: Figure, path: Path, dpi: float = 150) -> None:
 def quiet_grid(axes: Axes) -> None:
     """A grid that helps to read values and is otherwise not noticed."""
     axes.grid(color=BLACK, alpha=0.08, linewidth=0.7)
+
+
+def keep_panels(grid: NDArray[Any], count: int) -> list[Axes]:
+    """The first ``count`` map panels of a grid with shared axes, labelled along its outside."""
+    columns = grid.shape[1]
+    panels: list[Axes] = list(grid.flat)
+    for axes in panels[count:]:
+        axes.remove()
+    for axes in panels[:count:columns]:
+        axes.set_ylabel("y [m]")
+    for axes in panels[max(count - columns, 0) : count]:  # nothing is below these
+        axes.set_xlabel("x [m]")
+        axes.tick_params(labelbottom=True)
+    return panels[:count]

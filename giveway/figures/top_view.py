@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
-from giveway.figures.style import BLACK, LIGHT_GREY, VERMILION, styled
+from giveway.figures.style import BLACK, LIGHT_GREY, VERMILION, keep_panels, styled
 from giveway.metrics.groups import PedestrianGroups
 
 if TYPE_CHECKING:
@@ -163,15 +163,10 @@ def _arrange(whole: _Box, part: _Box, count: int) -> tuple[Figure, Axes, list[Ax
         left, right = figure.subfigures(
             2, 1, squeeze=False, height_ratios=(overview_height, snapshots_height)
         ).flat
+    overview = left.subplots()
     right.suptitle(f"Snapshots; a tick is {TICK:g} s of walking", fontsize=10)
     grid = right.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    for axes in grid.flat[count:]:
-        axes.remove()
-    for axes in grid[-1]:
-        axes.set_xlabel("x [m]")
-    for axes in grid[:, 0]:
-        axes.set_ylabel("y [m]")
-    return figure, left.subplots(), list(grid.flat[:count])
+    return figure, overview, keep_panels(grid, count)
 
 
 def _draw_road(axes: Axes, road: Road | None) -> None:

@@ -1,0 +1,146 @@
+"""The top view: everybody where they were, to scale."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.patches import Polygon
+
+from giveway.figures import top_view_figure
+from giveway.figures.top_view import rectangle
+from giveway.tracks import CrowdTrack, VehicleShape
+
+CAR = VehicleShape(length=5.0, width=2.0)
+R = 0.27
+
+
+def nobody():
+    none = np.empty(0)
+    index = np.empty(0, dtype=np.int64)
+    return CrowdTrack(index, index, none, none, none, none, ids=())
+
+
+def panels(figure):
+    """The overview and the snapshots; the colour bar is left out."""
+    overview, *snapshots = [axes for axes in figure.axes if axes.get_label() != "<colorbar>"]
+    return overview, snapshots
+
+
+def drawn(axes, kind, label):
+    return next(artist for artist in axes.collections + axes.patches
+                if isinstance(artist, kind) and artist.get_label() == label)  # fmt: skip
+
+
+def test_the_rectangle_hangs_behind_the_front_bumper(run):
+    ego, _ = run(0, 1, "mpc")
+    count = ego.time.size
+    turned = replace(
+        ego,
+        front_x=np.full(count, 10.0),
+        front_y=np.full(count, 20.0),
+        heading=np.full(count, pi / 2),
+    )
+    corners = rectangle(turned, 0, CAR)
+    np.testing.assert_allclose(corners, [(9, 20), (9, 15), (11, 15), (11, 20)], atol=1e-12)
+
+
+def test_snapshots_show_everybody_to_scale(run):
+    ego, crowd = run(30, 1, "mpc")
+    _, snapshots = panels(top_view_figure(ego, crowd, CAR, R, times=(2.0, 6.0)))
+    assert [axes.get_title() for axes in snapshots] == ["t = 2.00 s", "t = 6.00 s"]
+    for axes, k in zip(snapshots, (40, 120), strict=True):
+        here = crowd.step == k
+        circles = drawn(axes, EllipseCollection, "pedestrians")
+        np.testing.assert_allclose(
+            circles.get_offsets(), np.column_stack((crowd.x[here], crowd.y[here]))
+        )
+        np.testing.assert_allclose(circles.get_widths(), 2 * R)
+        assert circles.get_offset_transform() == axes.transData
+        np.testing.assert_allclose(drawn(axes, Polygon, "ego").get_xy()[:4], rectangle(ego, k, CAR))
+        assert axes.get_aspect() == 1.0
+
+
+def test_velocity_ticks_are_a_second_of_walking(run):
+    ego, crowd = run(30, 1, "mpc")
+    _, (axes,) = panels(top_view_figure(ego, crowd, CAR, R, times=[3.0]))
+    here = crowd.step == 60
+    (ticks,) = [c for c in axes.collections if isinstance(c, LineCollection)]
+    ends = np.array([segment[1] - segment[0] for segment in ticks.get_segments()])
+    np.testing.assert_allclose(ends, np.column_stack((crowd.vx[here], crowd.vy[here])))
+
+
+def test_six_snapshots_of_the_encounter(run):
+    ego, crowd = run(30, 1, "mpc")
+    _, snapshots = panels(top_view_figure(ego, crowd, CAR, R))
+    times = [float(axes.get_title().split()[2]) for axes in snapshots]
+    assert len(times) == 6
+    apart = np.hypot(crowd.x - ego.front_x[crowd.step], crowd.y - ego.front_y[crowd.step])
+    close = ego.time[crowd.step[apart < 10.0]]
+    assert (times[0], times[-1]) == pytest.approx((close.min(), close.max()), abs=0.005)
+    np.testing.assert_allclose(np.diff(times), np.mean(np.diff(times)), atol=0.06)
+
+
+def test_the_overview_holds_every_trajectory_in_the_colour_of_its_time(run):
+    ego, crowd = run(30, 1, "mpc")
+    overview, _ = panels(top_view_figure(ego, crowd, CAR, R))
+    left, right = overview.get_xlim()
+    bottom, top = overview.get_ylim()
+    assert left < min(crowd.x.min(), ego.front_x[0] - 5.0)
+    assert right > max(crowd.x.max(), ego.front_x[-1])
+    assert bottom < crowd.y.min() < crowd.y.max() < top
+    lines = drawn(overview, LineCollection, "pedestrians")
+    ends = np.array(lines.get_segments())
+    for i in range(len(crowd.ids)):
+        mine = np.flatnonzero(crowd.pedestrian == i)
+        for place, side in ((mine[0], 0), (mine[-1], 1)):
+            assert (ends[:, side] == (crowd.x[place], crowd.y[place])).all(axis=1).any()
+    assert lines.norm.vmin == ego.time[0]
+    assert lines.norm.vmax == ego.time[-1]
+
+
+def test_the_road_lies_underneath(run):
+    ego, crowd = run(5, 1, "mpc")
+    area = np.array([(0.0, -2.0), (45.0, -2.0), (45.0, 2.0), (0.0, 2.0), (0.0, -2.0)])
+    edge = np.array([(0.0, 0.0), (45.0, 0.0)])
+    overview, snapshots = panels(top_view_figure(ego, crowd, CAR, R, road=[area, edge]))
+    for axes in (overview, *snapshots):
+        filled = axes.patches[0]
+        np.testing.assert_array_equal(filled.get_xy(), area)
+        np.testing.assert_array_equal(axes.lines[0].get_xydata(), edge)
+        assert filled.get_zorder() < axes.lines[0].get_zorder() < 1.0
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("count", [1, 2, 500])
+def test_a_run_without_pedestrians_is_drawn(run, count, tmp_path):
+    ego, _ = run(0, 1, "mpc")
+    ego = replace(ego, **{name: column[:count] for name, column in vars(ego).items()})
+    top_view_figure(ego, nobody(), CAR, R).savefig(tmp_path / "top_view.png")
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_long_flat_run_and_single_records_are_drawn(run, tmp_path):
+    ego, _ = run(0, 1, "mpc", goal=200.0)
+    once = CrowdTrack(
+        np.array([3, 3]), np.array([0, 2]), *np.full((4, 2), 1.0), ids=("here", "never", "there")
+    )
+    overview, snapshots = panels(figure := top_view_figure(ego, once, CAR, R, times=[0.15]))
+    figure.savefig(tmp_path / "top_view.png")
+    assert len(snapshots) == 1
+    width, height = figure.get_size_inches()
+    assert width < 15.0
+    assert height < 15.0
+    assert overview.get_position().y0 > snapshots[0].get_position().y0  # above, not beside
+
+
+def test_nothing_to_draw_is_refused(run):
+    ego, crowd = run(0, 1, "mpc")[0], nobody()
+    with pytest.raises(ValueError, match="times is empty"):
+        top_view_figure(ego, crowd, CAR, R, times=())
+    empty = replace(ego, **{name: column[:0] for name, column in vars(ego).items()})
+    with pytest.raises(ValueError, match="no instants"):
+        top_view_figure(empty, crowd, CAR, R)
