@@ -1,8 +1,11 @@
-"""Who is near whom: everyone against everyone for a small crowd, a cell list for a large one.
+"""A cell list, for a large crowd: nobody looks further than the interaction radius.
 
-The cell list orders the crowd by cells, row by row ("strips" of cells along x), so that the
-neighbours of a pedestrian in one strip are one contiguous run. A pedestrian looks to the right in
-his own strip and at all of the strips above within reach: each pair is met once.
+The plane is cut into strips along x, each strip into columns, and the crowd is sorted by strip and
+column, so that the neighbours in one strip are contiguous. The pedestrians of a *tile* (some
+columns of a strip) share one list of candidates: the columns to the right in their own strip and
+those within reach in the strips above, so that each pair is met once. The candidates are copied
+into the buffer, met by each pedestrian of the tile in a vector loop, and the forces on them
+copied back.
 """
 
 from __future__ import annotations
@@ -10,114 +13,221 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from pedestrian_model._jit import inlined
-from pedestrian_model._pairs import PairConstants, run
-from pedestrian_model._rows import PX, PY, fill
+from pedestrian_model._jit import fma, inlined
+from pedestrian_model._pairs import COINCIDENT_2, PairConstants, add_coincident, pair
+from pedestrian_model._rows import (
+    BACK_X, BACK_Y, BLOCK, BUX, BUY, BVX, BVY, BX, BY, FX, FY, ON_X, ON_Y, PX, PY, STRIDE,
+    UX, UY, VX, VY, fill,
+)
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-# Sizes of a cell relative to the interaction radius, found by benchmarks/bench_crowd.py.
-_STRIP = 4.0  # strips per interaction radius
-_CELL = 8.0  # cells of a strip per interaction radius
-_SAFE = 1.0 + 1e-9  # reach of the search, so that rounding loses nobody
+# Sizes relative to the interaction radius, found by benchmarks/bench_crowd.py.
+_STRIPS = 4.0  # strips per interaction radius
+_COLUMNS = 16.0  # columns per interaction radius
+_TILE = 4  # columns per tile
+_SAFE = 1.0 + 1e-6  # reach of the search, so that rounding loses nobody
+_ROOM = STRIDE - 2 * BLOCK  # candidates the buffer holds
 
 
 @inlined
-def add_all_pairs(
-    rows: NDArray[np.float64],
-    index: NDArray[np.int64],
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    c: PairConstants,
-) -> None:
-    """Fill the rows in the given order and add the forces of all pairs."""
-    n = position.shape[0]
-    order = index[0]
-    for i in range(n):
-        order[i] = i
-    fill(rows, order, position, velocity)
-    for i in range(n - 1):
-        run(rows, order, i, i + 1, n, c)
-
-
-@inlined
-def _cell_sizes(
-    width: float, height: float, reach: float, most: int
-) -> tuple[float, float, int, int]:
-    """Inverse length and height of a cell, cells per strip and strips: at most ``most`` cells."""
-    per_x, per_y = _CELL / reach, _STRIP / reach
+def _cell_sizes(width: float, height: float, reach: float, most: int) -> tuple[float, float]:
+    """Columns and strips per metre, coarser than planned where they would be too many."""
+    per_x, per_y = _COLUMNS / reach, _STRIPS / reach
     while (width * per_x + 1.0) * (height * per_y + 1.0) > most:
         per_x *= 0.5
         per_y *= 0.5
-    return per_x, per_y, int(width * per_x) + 1, int(height * per_y) + 1
+    return per_x, per_y
 
 
 @inlined
-def _sort_by_cell(
-    index: NDArray[np.int64],
-    position: NDArray[np.float64],
-    x_0: float,
-    y_0: float,
-    per_x: float,
-    per_y: float,
-    columns: int,
-    strips: int,
+def _sort(
+    index: NDArray[np.int64], position: NDArray[np.float64], x_0: float, y_0: float,
+    per_x: float, per_y: float, columns: int, cells: int,
 ) -> None:
     """Counting sort: index[0] the order, index[2] the first of each cell. Stable: deterministic."""
-    n = position.shape[0]
     order, cell, first = index[0], index[1], index[2]
-    for k in range(columns * strips + 1):
+    for k in range(cells + 1):
         first[k] = 0
-    for i in range(n):
+    for i in range(position.shape[0]):
         column = int((position[i, 0] - x_0) * per_x)
-        strip = int((position[i, 1] - y_0) * per_y)
-        cell[i] = strip * columns + column
+        cell[i] = int((position[i, 1] - y_0) * per_y) * columns + column
         first[cell[i] + 1] += 1
-    for k in range(columns * strips):
+    for k in range(cells):
         first[k + 1] += first[k]
-    for i in range(n):
+    for i in range(position.shape[0]):
         order[first[cell[i]]] = i
         first[cell[i]] += 1
-    for k in range(columns * strips, 0, -1):
+    for k in range(cells, 0, -1):
         first[k] = first[k - 1]
     first[0] = 0
 
 
 @inlined
-def add_near_pairs(
-    rows: NDArray[np.float64],
-    index: NDArray[np.int64],
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    r_max: float,
+def _lane_sum(buffer: NDArray[np.float64], at: int, blocks: int) -> float:
+    """The sum of whole blocks of the buffer in one fixed order: by lanes, then pairwise."""
+    a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(at, at + blocks * BLOCK, BLOCK):
+        a += buffer[k]
+        b += buffer[k + 1]
+        c += buffer[k + 2]
+        d += buffer[k + 3]
+        e += buffer[k + 4]
+        f += buffer[k + 5]
+        g += buffer[k + 6]
+        h += buffer[k + 7]
+    return ((a + e) + (c + g)) + ((b + f) + (d + h))
+
+
+@inlined
+def _meet(
+    rows: NDArray[np.float64], i: int, buffer: NDArray[np.float64], start: int, stop: int,
     c: PairConstants,
+) -> int:
+    """The forces between row i and the candidates start ... stop - 1 of the buffer.
+
+    Returns:
+        How many of these pairs coincide and were left out.
+    """
+    x, y, vx, vy = rows[PX, i], rows[PY, i], rows[VX, i], rows[VY, i]
+    ux, uy = rows[UX, i], rows[UY, i]
+    blocks = (stop - start + BLOCK - 1) // BLOCK
+    from_start = buffer[start:]
+    coincident = 0
+    for k in range(blocks * BLOCK):
+        dx = from_start[BX + k] - x
+        dy = from_start[BY + k] - y
+        r_2 = fma(dx, dx, dy * dy)
+        r = math.sqrt(r_2)
+        apart = r_2 >= COINCIDENT_2
+        coincident += (k < stop - start) & (not apart)
+        f = pair(
+            dx, dy, r, r - c.two_R, vx - from_start[BVX + k], vy - from_start[BVY + k],
+            ux, uy, from_start[BUX + k], from_start[BUY + k],
+            (r_2 <= c.r_max_2) & apart & (k < stop - start), c,
+        )
+        from_start[ON_X + k] = f[0]
+        from_start[ON_Y + k] = f[1]
+        from_start[BACK_X + k] += f[2]
+        from_start[BACK_Y + k] += f[3]
+    rows[FX, i] += _lane_sum(from_start, ON_X, blocks)
+    rows[FY, i] += _lane_sum(from_start, ON_Y, blocks)
+    return coincident
+
+
+@inlined
+def _borrow(
+    rows: NDArray[np.float64], buffer: NDArray[np.float64], at: int, start: int, count: int
 ) -> None:
-    """Fill the rows sorted by cell and add the forces of the pairs within reach."""
+    """Copy ``count`` rows from ``start`` on to place ``at`` of the buffer."""
+    for k in range(count):
+        j, b = start + k, at + k
+        buffer[BX + b] = rows[PX, j]
+        buffer[BY + b] = rows[PY, j]
+        buffer[BVX + b] = rows[VX, j]
+        buffer[BVY + b] = rows[VY, j]
+        buffer[BUX + b] = rows[UX, j]
+        buffer[BUY + b] = rows[UY, j]
+        buffer[BACK_X + b] = 0.0
+        buffer[BACK_Y + b] = 0.0
+
+
+@inlined
+def _meet_candidates(
+    rows: NDArray[np.float64], begin: int, end: int, segments: NDArray[np.int64], count: int,
+    who: NDArray[np.int64], buffer: NDArray[np.float64], c: PairConstants,
+) -> int:
+    """The forces between the rows begin ... end - 1 and the later ones in the ``segments``.
+
+    Args:
+        rows: the workspace, sorted by cell.
+        begin: first row of the tile, and of the first segment.
+        end: last row of the tile, plus one.
+        segments: (2, at least count) first row, and last row plus one; consumed.
+        count: how many segments.
+        who: scratch.
+        buffer: what does not fit into it is met in several goes.
+        c: the constants.
+
+    Returns:
+        How many pairs coincide and were left out.
+    """
+    coincident, segment = 0, 0
+    while segment < count:
+        used = 0
+        while segment < count and used < _ROOM:
+            start = segments[0, segment]
+            take = min(segments[1, segment] - start, _ROOM - used)
+            _borrow(rows, buffer, used, start, take)
+            for k in range(take):
+                who[used + k] = start + k
+            used += take
+            segments[0, segment] += take
+            if segments[0, segment] == segments[1, segment]:
+                segment += 1
+        for i in range(begin, end):
+            start = max(0, i + 1 - who[0])  # in the own strip only those after i
+            if start < used:
+                coincident += _meet(rows, i, buffer, start, used, c)
+        for k in range(used):
+            rows[FX, who[k]] += buffer[BACK_X + k]
+            rows[FY, who[k]] += buffer[BACK_Y + k]
+    return coincident
+
+
+@inlined
+def _find_segments(
+    first: NDArray[np.int64], segments: NDArray[np.int64], strip: int, left: int, begin: int,
+    columns: int, strips: int, per_x: float, per_y: float, reach: float,
+) -> int:
+    """The rows within reach of a tile, strip by strip upwards; how many segments they make."""
+    right = min(left + _TILE, columns) - 1
+    count = 0
+    for above in range(min(int(reach * per_y) + 2, strips - strip)):
+        gap = max(0, above - 1) / per_y
+        if gap >= reach:
+            break
+        margin = int(math.sqrt(reach * reach - gap * gap) * per_x) + 1
+        base = (strip + above) * columns
+        start = begin if above == 0 else first[base + max(left - margin, 0)]
+        stop = first[base + min(right + margin, columns - 1) + 1]
+        if stop > start:
+            segments[0, count] = start
+            segments[1, count] = stop
+            count += 1
+    return count
+
+
+@inlined
+def add_near_pairs(
+    rows: NDArray[np.float64], index: NDArray[np.int64], buffer: NDArray[np.float64],
+    position: NDArray[np.float64], velocity: NDArray[np.float64], r_max: float, c: PairConstants,
+) -> None:
+    """Fill the rows sorted by cell and add the forces of the pairs within ``r_max``."""
     n = position.shape[0]
     reach = r_max * _SAFE
     x_0, x_1, y_0, y_1 = position[0, 0], position[0, 0], position[0, 1], position[0, 1]
     for i in range(n):
         x_0, x_1 = min(x_0, position[i, 0]), max(x_1, position[i, 0])
         y_0, y_1 = min(y_0, position[i, 1]), max(y_1, position[i, 1])
-    per_x, per_y, columns, strips = _cell_sizes(
-        x_1 - x_0, y_1 - y_0, reach, index.shape[1] - 2
-    )
-    _sort_by_cell(index, position, x_0, y_0, per_x, per_y, columns, strips)
+    per_x, per_y = _cell_sizes(x_1 - x_0, y_1 - y_0, reach, index.shape[1] - 2)
+    columns, strips = int((x_1 - x_0) * per_x) + 1, int((y_1 - y_0) * per_y) + 1
+    _sort(index, position, x_0, y_0, per_x, per_y, columns, columns * strips)
     order, first = index[0], index[2]
+    # after the sort, the cell of each pedestrian is no longer needed
+    segments, who = index[1, :16].reshape(2, 8), index[1, 16 : 16 + STRIDE]
     fill(rows, order, position, velocity)
-    for i in range(n):
-        x, y = rows[PX, i], rows[PY, i]
-        strip = int((y - y_0) * per_y)
-        last = min(int((x - x_0 + reach) * per_x), columns - 1)
-        run(rows, order, i, i + 1, first[strip * columns + last + 1], c)
-        highest = min(int((y - y_0 + reach) * per_y), strips - 1)
-        for above in range(strip + 1, highest + 1):
-            gap = max(0.0, above / per_y + y_0 - y - reach * 1e-6)
-            half = math.sqrt(max(0.0, reach * reach - gap * gap)) + reach * 1e-6
-            left = max(int((x - x_0 - half) * per_x), 0)
-            right = min(int((x - x_0 + half) * per_x), columns - 1)
-            start, stop = first[above * columns + left], first[above * columns + right + 1]
-            if stop > start:
-                run(rows, order, i, start, stop, c)
+    for strip in range(strips):
+        for left in range(0, columns, _TILE):
+            begin = first[strip * columns + left]
+            end = first[strip * columns + min(left + _TILE, columns)]
+            if begin == end:
+                continue
+            count = _find_segments(
+                first, segments, strip, left, begin, columns, strips, per_x, per_y, reach
+            )
+            if _meet_candidates(rows, begin, end, segments, count, who, buffer, c) > 0:
+                for i in range(begin, end):
+                    add_coincident(rows, order, i, n, c)

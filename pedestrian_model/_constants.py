@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
     from pedestrian_model.parameters import VciParameters
 
-_HALF_PI, _PI_8 = 1.5707963267948966, 0.39269908169872414
+_PI_8 = 0.39269908169872414
 
 _NAMES = (
     # body, pair forces
-    "m R two_R d_rep s_rep_2 k_rep a_rep b_rep d_nav s_nav_2 k_nav k_col r_max decay_half "
-    "decay_full decay_plus decay_minus cos_pi_8 sin_pi_8 "
+    "m R two_R r_max d_rep s_rep_2 a_rep b_rep k_col d_nav s_nav_2 "
+    "decay_0 decay_1 decay_2 decay_3 cos_pi_8 sin_pi_8 "
     # vehicle influence
     "le dx0 alpha_x A b l_v a_v b_v cap u_static "
     # destination, limits
@@ -46,27 +46,26 @@ def pack(parameters: VciParameters) -> NDArray[Any]:
     """The constants of the kernels for ``parameters``: a read-only array of one record."""
     p = parameters
     l_nav = p.navigation_anisotropy
+    # flm(d; d0, M, s) = M/(2 d0) ((d0 - d) + sqrt((d0 - d)^2 + s^2)), Ae(phi; l) = exp(-l phi)
+    k_rep = p.repulsion_strength / (2.0 * p.repulsion_distance)
+    k_nav = p.navigation_strength / (2.0 * p.navigation_distance)
     values = {
         "m": p.mass,
         "R": p.body_radius,
         "two_R": 2.0 * p.body_radius,
-        # flm(d; d0, M, s) = M/(2 d0) ((d0 - d) + sqrt((d0 - d)^2 + s^2))
+        "r_max": p.interaction_radius,
+        # As(phi; l) = l + (1 - l)(1 + cos phi)/2 = a + b cos phi, times the factor of flm
         "d_rep": p.repulsion_distance,
         "s_rep_2": p.repulsion_smoothing**2,
-        "k_rep": p.repulsion_strength / (2.0 * p.repulsion_distance),
-        # As(phi; l) = l + (1 - l)(1 + cos phi)/2 = a + b cos phi
-        "a_rep": (1.0 + p.repulsion_anisotropy) / 2.0,
-        "b_rep": (1.0 - p.repulsion_anisotropy) / 2.0,
+        "a_rep": k_rep * (1.0 + p.repulsion_anisotropy) / 2.0,
+        "b_rep": k_rep * (1.0 - p.repulsion_anisotropy) / 2.0,
+        "k_col": p.collision_stiffness,
         "d_nav": p.navigation_distance,
         "s_nav_2": p.navigation_smoothing**2,
-        "k_nav": p.navigation_strength / (2.0 * p.navigation_distance),
-        "k_col": p.collision_stiffness,
-        "r_max": p.interaction_radius,
-        # Ae(phi; l) = exp(-l phi) at phi = pi/2, pi and its change over -+pi/8
-        "decay_half": _exp(-l_nav * _HALF_PI),
-        "decay_full": _exp(-l_nav * 2.0 * _HALF_PI),
-        "decay_plus": _exp(l_nav * _PI_8),
-        "decay_minus": _exp(-l_nav * _PI_8),
+        "decay_0": k_nav * _exp(-l_nav * _PI_8),
+        "decay_1": k_nav * _exp(-l_nav * 3.0 * _PI_8),
+        "decay_2": k_nav * _exp(-l_nav * 5.0 * _PI_8),
+        "decay_3": k_nav * _exp(-l_nav * 7.0 * _PI_8),
         "cos_pi_8": COS_PI_8,
         "sin_pi_8": SIN_PI_8,
         "le": p.vehicle_clearance,

@@ -1,7 +1,8 @@
-"""The workspace of a step: one row per quantity, so that every loop reads contiguous memory.
+"""The scratch memory of a step: one row per quantity, so that every loop reads contiguous memory.
 
-Pedestrians are copied in (sorted by cell when there are many) and the rows are padded with
-far-away dummies, so that vector loops need no scalar tail.
+Pedestrians are copied into the rows (sorted by cell when there are many), which are padded with
+far-away dummies, so that vector loops need no scalar tail. The pair loops work in a small buffer
+whose rows lie a constant ``STRIDE`` apart: the compiler then sees that they do not overlap.
 """
 
 from __future__ import annotations
@@ -21,35 +22,46 @@ if TYPE_CHECKING:
 BLOCK = 8
 
 # fmt: off
-(PX, PY, VX, VY, UX, UY,        # position, velocity, direction of the velocity
- FX, FY,                        # force from the other pedestrians
- VFX, VFY, S,                   # force from the vehicles, signed distance to their contours
- TX, TY, V0,                    # target, desired speed
- PAIR_X, PAIR_Y, LANE_X, LANE_Y,  # scratch of the pair loop
- NX, NY, NVX, NVY,              # next state
- ROWS) = range(23)
+#: The rows of the workspace.
+(PX, PY, VX, VY, UX, UY,  # position, velocity, direction of the velocity
+ FX, FY,                  # force from the other pedestrians
+ VFX, VFY, S,             # force from the vehicles, signed distance to their contours
+ TX, TY, V0,              # target, desired speed
+ NX, NY, NVX, NVY,        # next state
+ ROWS) = range(19)
 # fmt: on
+
+#: Distance of the buffer's rows, not a multiple of 4096 bytes (cache sets).
+STRIDE = 680
+#: The largest crowd whose ring fits in the buffer, twice and padded.
+LARGEST_RING = (STRIDE - 2 * BLOCK) // 2
+#: Offsets of the buffer's rows: as PX ... UY above, then forces on the one and on the others.
+BX, BY, BVX, BVY, BUX, BUY, ON_X, ON_Y, BACK_X, BACK_Y = (k * STRIDE for k in range(10))
+
+#: The cell list never has more cells than this times the number of pedestrians (plus 62).
+CELLS_PER_PEDESTRIAN = 16
 
 _FAR = 1e12  # [m] a dummy's coordinates: beyond any cut-off, its square far from overflow
 
 
-def row_length(n: int) -> int:
-    """Length of the rows for n pedestrians: whole blocks, and one more for a run that overshoots."""
-    return (n + BLOCK - 1) // BLOCK * BLOCK + 2 * BLOCK
+class Workspace:
+    """The scratch of the kernels, grown when a larger crowd comes."""
 
+    rows: NDArray[np.float64]  # (ROWS, padded n)
+    index: NDArray[np.int64]  # (3, cells): order of the pedestrians, cell of each, first of each
 
-def rows_for(n: int) -> NDArray[np.float64]:
-    """A workspace for n pedestrians."""
-    return np.zeros((ROWS, row_length(n)))
+    def __init__(self) -> None:
+        self.capacity = -1
+        self.buffer = np.zeros(10 * STRIDE)
+        self.back = np.zeros(2 * STRIDE)
+        self.reserve(64)
 
-
-def order_for(n: int) -> NDArray[np.int64]:
-    """Scratch of the cell list for n pedestrians: order, cell of each, first of each cell."""
-    return np.zeros((3, CELLS_PER_PEDESTRIAN * n + 64), dtype=np.int64)
-
-
-#: The cell list never has more cells than this times the number of pedestrians (plus 62).
-CELLS_PER_PEDESTRIAN = 8
+    def reserve(self, n: int) -> None:
+        """Have room for n pedestrians."""
+        if n > self.capacity:
+            self.capacity = max(n, 2 * self.capacity)
+            self.rows = np.zeros((ROWS, self.capacity + 2 * BLOCK))
+            self.index = np.zeros((3, CELLS_PER_PEDESTRIAN * self.capacity + 64), dtype=np.int64)
 
 
 @inlined

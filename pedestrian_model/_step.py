@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pedestrian_model._cells import add_all_pairs, add_near_pairs
+from pedestrian_model._cells import add_near_pairs
 from pedestrian_model._detour import detour, set_targets
 from pedestrian_model._jit import fma, inlined, kernel
 from pedestrian_model._mathematics import cosine_sine
 from pedestrian_model._pairs import pair_constants
+from pedestrian_model._ring import add_all_pairs
 from pedestrian_model._rows import (
-    BLOCK, FX, FY, NVX, NVY, NX, NY, PX, PY, TX, TY, V0, VFX, VFY, VX, VY, S,
+    BLOCK, LARGEST_RING, FX, FY, NVX, NVY, NX, NY, PX, PY, TX, TY, V0, VFX, VFY, VX, VY, S,
 )
 from pedestrian_model._vehicles import HEADING, SPEED, X, Y, add_vehicle
 
@@ -43,16 +44,18 @@ def _gather_forces(
     travelled: float,
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
+    buffer: NDArray[np.float64],
+    back: NDArray[np.float64],
     constants: NDArray[Any],
     cell_list_from: int,
 ) -> None:
     """Fill the rows and their pair and vehicle forces from the state."""
     c = constants[0]
     n = position.shape[0]
-    if n >= cell_list_from:
-        add_near_pairs(rows, index, position, velocity, c.r_max, pair_constants(c))
+    if n >= cell_list_from or n > LARGEST_RING:
+        add_near_pairs(rows, index, buffer, position, velocity, c.r_max, pair_constants(c))
     else:
-        add_all_pairs(rows, index, position, velocity, pair_constants(c))
+        add_all_pairs(rows, index, buffer, back, position, velocity, pair_constants(c))
     padded = (n + BLOCK - 1) // BLOCK * BLOCK
     for v in range(vehicles.shape[0]):
         add_vehicle(rows, padded, vehicles[v], travelled, c)
@@ -104,6 +107,8 @@ def advance(
     vehicles: NDArray[np.float64],
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
+    buffer: NDArray[np.float64],
+    back: NDArray[np.float64],
     constants: NDArray[Any],
     dt: float,
     substeps: int,
@@ -117,7 +122,8 @@ def advance(
         return insane
     for step in range(substeps):
         _gather_forces(
-            position, velocity, vehicles, step * dt, rows, index, constants, cell_list_from
+            position, velocity, vehicles, step * dt, rows, index, buffer, back, constants,
+            cell_list_from,
         )
         order = index[0]
         set_targets(
@@ -145,6 +151,8 @@ def predict(
     reached: NDArray[np.int64],
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
+    buffer: NDArray[np.float64],
+    back: NDArray[np.float64],
     constants: NDArray[Any],
     dt: float,
     substeps: int,
@@ -164,7 +172,7 @@ def predict(
     for k in range(out.shape[0]):
         insane = advance(
             x, v, desired_speed, waypoints, waypoint_start, reached, vehicles[k],
-            rows, index, constants, dt, substeps, cell_list_from,
+            rows, index, buffer, back, constants, dt, substeps, cell_list_from,
         )
         if insane != FINE:
             return insane
@@ -180,6 +188,8 @@ def apart(
     vehicles: NDArray[np.float64],
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
+    buffer: NDArray[np.float64],
+    back: NDArray[np.float64],
     constants: NDArray[Any],
     cell_list_from: int,
     out: NDArray[np.float64],
@@ -189,7 +199,9 @@ def apart(
     insane = _first_insane(position, velocity)
     if n == 0 or insane != FINE:
         return insane
-    _gather_forces(position, velocity, vehicles, 0.0, rows, index, constants, cell_list_from)
+    _gather_forces(
+        position, velocity, vehicles, 0.0, rows, index, buffer, back, constants, cell_list_from
+    )
     for k in range(n):
         i = index[0, k]
         out[0, i], out[1, i] = rows[FX, k], rows[FY, k]

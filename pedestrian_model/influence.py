@@ -9,7 +9,7 @@ import numpy as np
 from pedestrian_model import _step
 from pedestrian_model._check import as_floats, check_shape, check_values
 from pedestrian_model._constants import pack
-from pedestrian_model._rows import rows_for
+from pedestrian_model._rows import Workspace
 from pedestrian_model.errors import CrowdError
 from pedestrian_model.parameters import SIM
 
@@ -49,6 +49,7 @@ def vehicle_influence(
     check_values(v, "velocities", CrowdError)
     out = np.empty((x.shape[0], 3))
     if x.shape[0] > 0:
-        rows = rows_for(x.shape[0])
-        _step.influence(x, v, vehicles.array, pack(parameters), rows, out)
+        work = Workspace()
+        work.reserve(x.shape[0])
+        _step.influence(x, v, vehicles.array, pack(parameters), work.rows, out)
     return out[:, :2].copy(), out[:, 2].copy()

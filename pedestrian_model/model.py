@@ -10,7 +10,7 @@ import numpy as np
 
 from pedestrian_model import _step
 from pedestrian_model._constants import pack
-from pedestrian_model._rows import order_for, rows_for
+from pedestrian_model._rows import Workspace
 from pedestrian_model.errors import DivergenceError, ParameterError
 from pedestrian_model.parameters import SIM
 from pedestrian_model.vehicles import COLUMNS
@@ -56,21 +56,6 @@ class Forces:
         """The total force before the limits (Yang & Özgüner 2019, equation of motion)."""
         others = self.repulsion + self.collision + self.navigation
         return others + self.vehicle + self.beta[:, None] * self.destination
-
-
-class Workspace:
-    """The scratch of the kernels, grown when a larger crowd comes."""
-
-    def __init__(self) -> None:
-        self.capacity = -1
-        self.reserve(32)
-
-    def reserve(self, n: int) -> None:
-        """Have room for n pedestrians."""
-        if n > self.capacity:
-            self.capacity = max(n, 2 * self.capacity)
-            self.rows = rows_for(self.capacity)
-            self.index = order_for(self.capacity)
 
 
 class CrowdModel:
@@ -119,13 +104,12 @@ class CrowdModel:
         Raises:
             DivergenceError: if a pedestrian's state is or becomes not finite.
         """
-        n = crowd.position.shape[0]
-        if n > self._workspace.capacity:
-            self._workspace.reserve(n)
+        work = self._workspace
+        work.reserve(crowd.position.shape[0])
         bad = _step.advance(
             crowd.position, crowd.velocity, crowd.desired_speed, crowd.waypoints,
             crowd.waypoint_start, crowd.waypoint_index, vehicles.array,
-            self._workspace.rows, self._workspace.index, self._constants,
+            work.rows, work.index, work.buffer, work.back, self._constants,
             self._dt, self._substeps, self.cell_list_from,
         )
         if bad != _step.FINE:
@@ -170,12 +154,12 @@ class CrowdModel:
         self, crowd: Crowd, vehicles: Vehicles, parameters: VciParameters
     ) -> NDArray[np.float64]:
         """(5, n): pair force x, y, vehicle force x, y, signed distance."""
-        n = len(crowd)
-        self._workspace.reserve(n)
+        work, n = self._workspace, len(crowd)
+        work.reserve(n)
         out = np.zeros((5, n))
         bad = _step.apart(
-            crowd.position, crowd.velocity, vehicles.array, self._workspace.rows,
-            self._workspace.index, pack(parameters), self.cell_list_from, out,
+            crowd.position, crowd.velocity, vehicles.array, work.rows, work.index, work.buffer,
+            work.back, pack(parameters), self.cell_list_from, out,
         )
         if bad != _step.FINE:
             raise divergence(bad, crowd, vehicles)

@@ -9,7 +9,8 @@ import numpy as np
 from pedestrian_model import _step
 from pedestrian_model._constants import pack
 from pedestrian_model.errors import DivergenceError, ParameterError, VehicleError
-from pedestrian_model.model import CELL_LIST_FROM, Workspace, substeps
+from pedestrian_model._rows import Workspace
+from pedestrian_model.model import CELL_LIST_FROM, substeps
 from pedestrian_model.parameters import SIM
 
 if TYPE_CHECKING:
@@ -86,10 +87,11 @@ class Predictor:
             raise VehicleError("vehicles_trajectory is expected to be C-contiguous float64")
         if crowd.position.shape[0] != self._out.shape[1]:
             self._reserve(crowd.position.shape[0])
+        work = self._workspace
         bad = _step.predict(
             crowd.position, crowd.velocity, crowd.desired_speed, crowd.waypoints,
             crowd.waypoint_start, crowd.waypoint_index, vehicles_trajectory,
-            self._state, self._reached, self._workspace.rows, self._workspace.index,
+            self._state, self._reached, work.rows, work.index, work.buffer, work.back,
             self._constants, self._dt, self._substeps, self.cell_list_from, self._out,
         )
         if bad != _step.FINE:
