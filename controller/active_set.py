@@ -31,7 +31,9 @@ def solve_exactly(
     """Minimise |V - target|^2 within the bounds, from the unconstrained optimum on.
 
     Args:
-        rows: (m, N); lower, upper: (m,).
+        rows: (m, N).
+        lower: (m,); -inf where there is none.
+        upper: (m,); inf where there is none.
         target: (N,).
         multipliers: (m,) receives the optimum's, or a certificate of infeasibility.
         solution: (N,) receives the minimiser.

@@ -34,12 +34,12 @@ class LongitudinalModel:
 
     @property
     def decay(self) -> float:
-        """1 - alpha dt / M: what a free step leaves of the speed."""
+        """What a free step leaves of the speed: 1 - alpha dt / M."""
         return 1.0 - self.friction * self.time_step / self.mass
 
     @property
     def speed_per_force(self) -> float:
-        """dt / M [(m/s)/N]: what a step of unit force adds to the speed."""
+        """What a step of unit force adds to the speed: dt / M [(m/s)/N]."""
         return self.time_step / self.mass
 
     @property

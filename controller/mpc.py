@@ -17,6 +17,7 @@ from controller.solution import MpcSolution, Outcome
 from controller.speed_problem import (
     CANNOT_HOLD_SPEED,
     CANNOT_STOP,
+    SLACK,
     SPEED_BOUNDS_CROSS,
     TOO_CLOSE,
     UNDECIDED,
@@ -70,7 +71,7 @@ class Mpc:
             [
                 parameters.position_tolerance,
                 parameters.speed_tolerance,
-                parameters.force_tolerance,
+                max(parameters.force_tolerance, 2.0 * SLACK / model.speed_per_force),
             ]
         )
         self.reset()
@@ -133,7 +134,7 @@ class Mpc:
         return self._accept(position, speed, previous_force, obstacle_positions, iterations)
 
     def _start(self) -> bool:
-        """Start the solver where the optimum should be; False if it is proved that there is none."""
+        """Start the solver at the optimum; False if it is proved that there is none."""
         problem = self._problem
         bounds = (problem.rows, problem.lower, problem.upper, problem.target)
         if refine(*bounds, self._multipliers, self._speeds) >= 0:
@@ -168,7 +169,8 @@ class Mpc:
         """The refined plan, if it keeps every constraint."""
         problem = self._problem
         bounds = (problem.rows, problem.lower, problem.upper, problem.target)
-        if refine(*bounds, self._multipliers, self._speeds) < 0:
+        exact = refine(*bounds, self._multipliers, self._speeds) >= 0
+        if not exact and solve_exactly(*bounds, self._multipliers, self._speeds) < 0:
             self._multipliers[:] = 0.0
             return _no_plan(_UNVERIFIED, iterations)
         speeds = self._speeds.copy()

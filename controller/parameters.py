@@ -1,4 +1,4 @@
-"""The controllers' parameters: Yang & Özgüner 2019, table 1, with the readings that it leaves open."""
+"""The controllers' parameters: Yang & Özgüner 2019, table 1, and the readings it leaves open."""
 
 from __future__ import annotations
 
@@ -51,7 +51,8 @@ class MpcParameters:
     force_tolerance: float = 1e-2  # [N]
 
     def __post_init__(self) -> None:
-        require(self.horizon >= 2, "horizon", self.horizon, "at least 2 [steps]")
+        whole = isinstance(self.horizon, int)
+        require(whole and self.horizon >= 2, "horizon", self.horizon, "a whole number >= 2 [steps]")
         require_positive("reference_speed", self.reference_speed, "m/s")
         require_not_negative("safe_distance", self.safe_distance, "m")
         require_not_negative("speed_min", self.speed_min, "m/s")

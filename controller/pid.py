@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
+from controller.errors import ParameterError
 from controller.parameters import PidParameters, require_positive
 
 
@@ -31,7 +34,7 @@ class Pid:
         self._error: float | None = None  # e(k-1) [m/s]
 
     def reference_speed(self, gap: float) -> float:
-        """v_r^PID [m/s] at ``gap`` [m] to the closest pedestrian in front (the paper's figure 3)."""
+        """v_r^PID [m/s] at ``gap`` [m] to the closest pedestrian in front (figure 3)."""
         p = self.parameters
         return p.reference_speed * min(max((gap - p.safe_distance) / p.buffer_distance, 0.0), 1.0)
 
@@ -41,9 +44,15 @@ class Pid:
         Args:
             speed: x_2(k) [m/s].
             gap: x_p(k) - x_1(k) [m]; inf when nobody is in front.
+
+        Raises:
+            ParameterError: speed or gap is not a number.
         """
         p, dt = self.parameters, self.time_step
         e = speed - self.reference_speed(gap)
+        if not isfinite(e):
+            msg = f"speed = {speed} m/s, gap = {gap} m: expected numbers"
+            raise ParameterError(msg)
         before = e if self._error is None else self._error
         u_p = p.K_p * e
         u_i = p.K_i * e * dt + self._integral

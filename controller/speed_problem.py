@@ -57,9 +57,8 @@ class SpeedProblem:
         self.parameters = parameters
         speeds = np.eye(N)
         accelerations = np.eye(N)[1:] - model.decay * np.eye(N)[:-1]  # dt/M u(k+1) ...
-        first = model.decay * np.eye(N)[:1]  # u(k): its constant part goes into the bounds
         rates = accelerations.copy()
-        rates[0] -= first[0] / model.decay if model.decay else np.eye(N)[0]
+        rates[0, 0] -= 1.0  # dt/M u(k) = v(k+1) - a v(k): the constant part goes into the bounds
         rates[1:] -= accelerations[:-1]
         distances = np.tril(np.ones((N, N)))[1:-1]
         self.rows = np.ascontiguousarray(np.concatenate([speeds, accelerations, rates, distances]))
@@ -154,20 +153,23 @@ def prove_infeasible(speed: float, previous_force: float, limits: Array, upper: 
 
     Speeds grow with forces and positions with speeds (decay >= 0), so braking as hard as allowed
     at every step, but not below v_min, bounds every feasible plan from below. The converse does
-    not hold: a plan at this bound may have to release the brake faster than allowed.
+    not hold: a plan at this bound may have to release the brake faster than allowed. All bounds
+    are as wide as the solver's, or the proof would refuse plans that just stop.
     """
     decay, per_force = limits[1], limits[2]
-    v_min, u_max, du_max = limits[4], limits[6], limits[7]
+    v_min = limits[4] - SLACK
+    change_max = per_force * limits[6] + SLACK  # [m/s] by u_max in one step
+    rate_max = per_force * limits[7] + SLACK
     N = (len(upper) + 4) // 4
     slowest, fastest = speed, speed
-    weakest, strongest = previous_force, previous_force
+    weakest, strongest = per_force * previous_force, per_force * previous_force  # [m/s] a step
     driven = 0.0
     for i in range(N):
-        weakest = max(-u_max, weakest - du_max)
-        strongest = min(u_max, strongest + du_max)
-        slowest = max(v_min, decay * slowest + per_force * weakest)
-        fastest = decay * fastest + per_force * strongest
-        if fastest < v_min - SLACK:
+        weakest = max(-change_max, weakest - rate_max)
+        strongest = min(change_max, strongest + rate_max)
+        slowest = max(v_min, decay * slowest + weakest)
+        fastest = decay * fastest + strongest
+        if fastest < v_min:
             return CANNOT_HOLD_SPEED
         driven += slowest
         if 1 <= i < N - 1 and driven > upper[3 * N - 3 + i]:

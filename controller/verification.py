@@ -30,7 +30,9 @@ def refine(
     """The exact minimiser of |V - target|^2 within the bounds, from approximate multipliers.
 
     Args:
-        rows: (m, N); lower, upper: (m,).
+        rows: (m, N).
+        lower: (m,); -inf where there is none.
+        upper: (m,); inf where there is none.
         target: (N,).
         multipliers: (m,) of an approximate solve: > 0 where the upper bound binds, < 0 the lower;
             receives the exact ones.
