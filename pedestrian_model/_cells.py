@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from pedestrian_model._jit import fma, inlined
+from pedestrian_model._jit import add_block, fma, inlined
 from pedestrian_model._pairs import COINCIDENT_2, PairConstants, add_coincident, pair
 from pedestrian_model._rows import (
     BACK_X, BACK_Y, BLOCK, BUX, BUY, BVX, BVY, BX, BY, FX, FY, ON_X, ON_Y, PX, PY, STRIDE,
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 # Sizes relative to the interaction radius, found by benchmarks/bench_crowd.py.
-_STRIPS = 4.0  # strips per interaction radius
-_COLUMNS = 16.0  # columns per interaction radius
+_STRIPS = 3.0  # strips per interaction radius
+_COLUMNS = 12.0  # columns per interaction radius
 _TILE = 4  # columns per tile
 _SAFE = 1.0 + 1e-6  # reach of the search, so that rounding loses nobody
 _ROOM = STRIDE - 2 * BLOCK  # candidates the buffer holds
@@ -66,19 +66,13 @@ def _sort(
 
 
 @inlined
-def _lane_sum(buffer: NDArray[np.float64], at: int, blocks: int) -> float:
+def _sum(buffer: NDArray[np.float64], at: int, blocks: int) -> float:
     """The sum of whole blocks of the buffer in one fixed order: by lanes, then pairwise."""
-    a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for k in range(at, at + blocks * BLOCK, BLOCK):
-        a += buffer[k]
-        b += buffer[k + 1]
-        c += buffer[k + 2]
-        d += buffer[k + 3]
-        e += buffer[k + 4]
-        f += buffer[k + 5]
-        g += buffer[k + 6]
-        h += buffer[k + 7]
-    return ((a + e) + (c + g)) + ((b + f) + (d + h))
+    for k in range(1, blocks):
+        add_block(buffer, at, at + k * BLOCK)
+    a, b = (buffer[at], buffer[at + 1]), (buffer[at + 2], buffer[at + 3])
+    c, d = (buffer[at + 4], buffer[at + 5]), (buffer[at + 6], buffer[at + 7])
+    return ((a[0] + c[0]) + (b[0] + d[0])) + ((a[1] + c[1]) + (b[1] + d[1]))
 
 
 @inlined
@@ -112,26 +106,46 @@ def _meet(
         from_start[ON_Y + k] = f[1]
         from_start[BACK_X + k] += f[2]
         from_start[BACK_Y + k] += f[3]
-    rows[FX, i] += _lane_sum(from_start, ON_X, blocks)
-    rows[FY, i] += _lane_sum(from_start, ON_Y, blocks)
+    rows[FX, i] += _sum(from_start, ON_X, blocks)
+    rows[FY, i] += _sum(from_start, ON_Y, blocks)
     return coincident
 
 
 @inlined
+def _bounds(
+    rows: NDArray[np.float64], begin: int, end: int
+) -> tuple[float, float, float, float]:
+    """The box round the rows begin ... end - 1: x from, x to, y from, y to."""
+    x_0, x_1, y_0, y_1 = rows[PX, begin], rows[PX, begin], rows[PY, begin], rows[PY, begin]
+    for i in range(begin + 1, end):
+        x_0, x_1 = min(x_0, rows[PX, i]), max(x_1, rows[PX, i])
+        y_0, y_1 = min(y_0, rows[PY, i]), max(y_1, rows[PY, i])
+    return x_0, x_1, y_0, y_1
+
+
+@inlined
 def _borrow(
-    rows: NDArray[np.float64], buffer: NDArray[np.float64], at: int, start: int, count: int
-) -> None:
-    """Copy ``count`` rows from ``start`` on to place ``at`` of the buffer."""
-    for k in range(count):
-        j, b = start + k, at + k
-        buffer[BX + b] = rows[PX, j]
-        buffer[BY + b] = rows[PY, j]
-        buffer[BVX + b] = rows[VX, j]
-        buffer[BVY + b] = rows[VY, j]
-        buffer[BUX + b] = rows[UX, j]
-        buffer[BUY + b] = rows[UY, j]
-        buffer[BACK_X + b] = 0.0
-        buffer[BACK_Y + b] = 0.0
+    rows: NDArray[np.float64], buffer: NDArray[np.float64], who: NDArray[np.int64], at: int,
+    start: int, stop: int, box: tuple[float, float, float, float], reach_2: float,
+) -> int:
+    """Copy the rows start ... stop - 1 that lie within reach of a box to place ``at`` and on.
+
+    Returns:
+        The place after the last one.
+    """
+    for j in range(start, stop):
+        x, y = rows[PX, j], rows[PY, j]
+        buffer[BX + at] = x
+        buffer[BY + at] = y
+        buffer[BVX + at] = rows[VX, j]
+        buffer[BVY + at] = rows[VY, j]
+        buffer[BUX + at] = rows[UX, j]
+        buffer[BUY + at] = rows[UY, j]
+        who[at] = j
+        dx = max(max(box[0] - x, x - box[1]), 0.0)
+        dy = max(max(box[2] - y, y - box[3]), 0.0)
+        at += dx * dx + dy * dy <= reach_2  # the next one overwrites whom nobody can feel
+    return at
 
 
 @inlined
@@ -154,19 +168,19 @@ def _meet_candidates(
     Returns:
         How many pairs coincide and were left out.
     """
+    box = _bounds(rows, begin, end)
     coincident, segment = 0, 0
     while segment < count:
         used = 0
         while segment < count and used < _ROOM:
             start = segments[0, segment]
-            take = min(segments[1, segment] - start, _ROOM - used)
-            _borrow(rows, buffer, used, start, take)
-            for k in range(take):
-                who[used + k] = start + k
-            used += take
-            segments[0, segment] += take
-            if segments[0, segment] == segments[1, segment]:
-                segment += 1
+            stop = min(segments[1, segment], start + _ROOM - used)
+            used = _borrow(rows, buffer, who, used, start, stop, box, c.r_max_2 * _SAFE)
+            segments[0, segment] = stop
+            segment += stop == segments[1, segment]
+        for k in range(used + BLOCK):
+            buffer[BACK_X + k] = 0.0
+            buffer[BACK_Y + k] = 0.0
         for i in range(begin, end):
             start = max(0, i + 1 - who[0])  # in the own strip only those after i
             if start < used:
