@@ -18,7 +18,6 @@ import numpy as np
 from giveway.api import RunResult, simulate
 from giveway.assembly import assemble
 from giveway.configfile import Layer
-from giveway.ego_path import Pose
 from giveway.loading import load
 from giveway.tables import navigational
 from giveway.tracks import Timings
@@ -26,36 +25,44 @@ from giveway.tracks import Timings
 
 def baseline(result: RunResult) -> float:
     """Seconds that the moves, SUMO's steps and the FMU's steps of ``result`` take alone."""
+    import libsumo
+
     ego, crowd = result.ego_track, result.crowd_track
     angle = navigational(np.arctan2(crowd.vy, crowd.vx))
-    starts = np.searchsorted(crowd.step, np.arange(len(ego.time) + 1))
+    everybody = np.column_stack([crowd.x, crowd.y, angle])
+    bounds = np.searchsorted(crowd.step, np.arange(len(ego.time) + 1))
     steps = [
         (
-            Pose(ego.front_x[k], ego.front_y[k], ego.heading[k]),
-            [crowd.ids[i] for i in crowd.pedestrian[starts[k] : starts[k + 1]]],
-            np.column_stack([crowd.x, crowd.y, angle])[starts[k] : starts[k + 1]].tolist(),
+            (float(ego.front_x[k]), float(ego.front_y[k])),
+            [crowd.ids[i] for i in crowd.pedestrian[bounds[k] : bounds[k + 1]]],
+            everybody[bounds[k] : bounds[k + 1]].tolist(),
             float(ego.force[k - 1]),
         )
         for k in range(1, len(ego.time))
     ]
     with ExitStack() as stack:
         parts = assemble(result.config, result.scenario, stack)
+        move_ego, move_person = libsumo.vehicle.moveToXY, libsumo.person.moveToXY
         began = perf_counter()
-        for pose, ids, rows, force in steps:
+        for (x, y), ids, rows, force in steps:
             parts.vehicle.step(force)
-            parts.sumo.mirror(pose, ids, rows)
+            move_ego("ego", "", -1, x, y, 90.0, 2)
+            for name, (p_x, p_y, p_angle) in zip(ids, rows, strict=True):
+                move_person(name, "", p_x, p_y, p_angle, 2, -1.0)
+            libsumo.simulationStep()
         return perf_counter() - began
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seed", type=int, default=4, help="4 meets the crowd and keeps moving")
     parser.add_argument("--pairs", type=int, default=15, help="loop and baseline, in turn")
-    pairs = parser.parse_args().pairs
+    options = parser.parse_args()
     for controller in ("mpc", "pid"):
-        config, scenario = load([Layer("", {"controller": controller})])
+        config, scenario = load([Layer("", {"controller": controller, "seed": options.seed})])
         simulate(config, scenario)  # compiles, and warms the file cache
         results, ratios = [], []
-        for _ in range(pairs):
+        for _ in range(options.pairs):
             result = simulate(config, scenario)
             results.append(result)
             ratios.append(result.elapsed / baseline(result))

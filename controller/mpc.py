@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, isfinite, nan
+from math import inf, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +17,7 @@ from controller.solution import MpcSolution, Outcome
 from controller.speed_problem import (
     CANNOT_HOLD_SPEED,
     CANNOT_STOP,
+    NOT_A_NUMBER,
     SLACK,
     SPEED_BOUNDS_CROSS,
     TOO_CLOSE,
@@ -111,14 +112,14 @@ class Mpc:
                 f"{self.parameters.horizon}, one per step of the horizon"
             )
             raise ParameterError(msg)
-        if not isfinite(position + speed + previous_force) or np.isnan(obstacle_positions).any():
+        problem = self._problem
+        code = problem.update(position, speed, previous_force, obstacle_positions)
+        if code == NOT_A_NUMBER:
             msg = (
                 f"position = {position} m, speed = {speed} m/s, previous_force = {previous_force} "
                 "N and obstacle_positions: expected numbers"
             )
             raise ParameterError(msg)
-        problem = self._problem
-        code = problem.update(position, speed, previous_force, obstacle_positions)
         if code != UNDECIDED:
             return _no_plan(_PROOFS[code], 0)
         if not self._start():
@@ -174,12 +175,13 @@ class Mpc:
             self._multipliers[:] = 0.0
             return _no_plan(_UNVERIFIED, iterations)
         speeds = self._speeds.copy()
-        forces = problem.forces(speeds, speed)
-        residual = plan_residual(
+        forces = np.empty_like(speeds)
+        residual = check_plan(
             position,
             speed,
             previous_force,
             obstacle_positions,
+            speeds,
             forces,
             problem.limits,
             self._tolerances,
@@ -196,22 +198,30 @@ def _no_plan(status: str, iterations: int) -> MpcSolution:
 
 
 @kernel
-def plan_residual(
+def check_plan(
     position: float,
     speed: float,
     previous_force: float,
     obstacle_positions: Array,
+    speeds: Array,
     forces: Array,
     limits: Array,
     tolerances: Array,
 ) -> float:
-    """The plan's largest violation of c1 to c6, driven through the model, over its tolerance."""
+    """Fill the forces that lead through ``speeds``, and drive them through the model.
+
+    Returns:
+        The plan's largest violation of c1 to c6 over its tolerance; inf if it is not finite.
+    """
     dt, decay, per_force, safe_distance = limits[0], limits[1], limits[2], limits[3]
     v_min, v_max, u_max, du_max = limits[4], limits[5], limits[6], limits[7]
     of_position, of_speed, of_force = tolerances[0], tolerances[1], tolerances[2]
     worst = 0.0
-    for i in range(len(forces)):
-        u = forces[i]
+    before = speed
+    for i in range(len(speeds)):
+        u = (speeds[i] - decay * before) / per_force
+        before = speeds[i]
+        forces[i] = u
         if not np.isfinite(u):
             return inf
         worst = max(worst, (abs(u) - u_max) / of_force)

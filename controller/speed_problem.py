@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 SLACK = 1e-9  # [m/s] [m] by which all bounds are widened: a plan that touches its bounds, as those
 # that just stop do, leaves the next problem a single point, which rounding would make empty
 
+NOT_A_NUMBER = -1  # an input is not finite; only obstacles may be infinitely far
 UNDECIDED = 0  # only a solve can tell
 TOO_CLOSE = 1  # x_1(k+1), which no force changes, violates c6
 SPEED_BOUNDS_CROSS = 2  # what the force limits leave of v(k+1) misses its bounds
@@ -84,7 +85,7 @@ class SpeedProblem:
         """Set the bounds for a state; prove infeasibility where that takes no solve.
 
         Returns:
-            ``UNDECIDED``, or the reason why no plan can satisfy all constraints.
+            ``UNDECIDED``, ``NOT_A_NUMBER``, or why no plan can satisfy all constraints.
         """
         code: int = fill_bounds(
             position,
@@ -96,12 +97,6 @@ class SpeedProblem:
             self.upper,
         )
         return code
-
-    def forces(self, speeds: Array, speed: float) -> Array:
-        """(N,) [N] that lead from ``speed`` [m/s] through ``speeds`` (N,) [m/s]."""
-        before = np.concatenate([[speed], speeds[:-1]])
-        result: Array = (speeds - self.model.decay * before) / self.model.speed_per_force
-        return result
 
 
 @kernel
@@ -118,6 +113,11 @@ def fill_bounds(
     dt, decay, per_force, safe_distance = limits[0], limits[1], limits[2], limits[3]
     v_min, v_max, u_max, du_max = limits[4], limits[5], limits[6], limits[7]
     N = len(obstacle_positions)
+    if not np.isfinite(position + speed + previous_force):
+        return NOT_A_NUMBER
+    for i in range(N):
+        if np.isnan(obstacle_positions[i]):
+            return NOT_A_NUMBER
     after_one = position + dt * speed  # x_1(k+1)
     if after_one > obstacle_positions[0] - safe_distance + SLACK:
         return TOO_CLOSE

@@ -10,7 +10,9 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from giveway.assembly import assemble
 from giveway.config import RunConfig
@@ -44,6 +46,7 @@ class RunResult:
         ego_track, crowd_track, background_track: the rows as arrays, in SI units.
         manifest: versions, hashes, seeds, the pedestrians' ledger.
         sumo_messages: what SUMO printed.
+        lanes: centre line (k, 2) [m] and width [m] of the network's lanes.
     """
 
     config: RunConfig
@@ -57,6 +60,7 @@ class RunResult:
     elapsed: float  # [s] wall clock of the loop
     manifest: dict[str, Any]
     sumo_messages: str
+    lanes: tuple[tuple[NDArray[np.float64], float], ...]
 
     @property
     def completed(self) -> bool:
@@ -115,7 +119,7 @@ class RunResult:
         figures = summarise(
             self.ego_track,
             self.pedestrians,
-            completed=self.completed,
+            goal=config.ego.travel_distance,
             safe_distance=config.regulation.safe_distance,
             controller=config.controller,
         )
@@ -144,7 +148,7 @@ class RunResult:
         return {
             "ego": EGO_COLUMNS,
             "trajectories": TRAJECTORY_COLUMNS,
-            "pedestrians": tuple(PEDESTRIAN_FIELDS),
+            "pedestrians": PEDESTRIAN_FIELDS,
             "summary": (*_SUMMARY_HEAD, *SUMMARY_FIELDS),
             "timing": TIMING_COLUMNS,
         }
@@ -261,4 +265,5 @@ def simulate(config: RunConfig, scenario: Scenario, watcher: Watcher | None = No
                 error=None if error is None else str(error),
             ),
             sumo_messages=parts.sumo.messages,
+            lanes=tuple(parts.sumo.lanes()),
         )

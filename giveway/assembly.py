@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import dataclasses
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,14 +20,14 @@ from controller import (
     PidParameters,
     Regulator,
 )
-from fmus import FmuError, VehicleFmu, bundled_fmu
+from fmus import FmuError, VehicleFmu, bundled_fmu, describe
 from giveway.corridor import Corridor
 from giveway.ego_path import EgoPath
 from giveway.errors import ConfigError, ControlError, ScenarioError, VehicleError
 from giveway.spawn import Spawned, spawn
 from giveway.sumo import SumoSession
 from giveway.tracks import VehicleShape
-from pedestrian_model import PRESETS, Crowd, CrowdModel, Predictor, VciParameters
+from pedestrian_model import PRESETS, Crowd, CrowdModel, Predictor, VciParameters, arrived
 
 if TYPE_CHECKING:
     from giveway.config import RunConfig
@@ -58,7 +58,7 @@ class Parts:
 
     def arrived(self, crowd: Crowd) -> NDArray[np.bool_]:
         """(n,) who of ``crowd`` has reached the last way-point."""
-        return crowd.arrived(ARRIVAL_RADIUS)
+        return arrived(crowd, ARRIVAL_RADIUS)
 
 
 def assemble(config: RunConfig, scenario: Scenario, stack: ExitStack) -> Parts:
@@ -105,14 +105,14 @@ def assemble(config: RunConfig, scenario: Scenario, stack: ExitStack) -> Parts:
         departure=config.ego.depart_position,
         shape=shape,
         vehicle=vehicle,
-        vehicle_description=_description(vehicle.path),
+        vehicle_description=_description(vehicle),
         regulator=regulator,
         corridor=Corridor(
             path,
             half_width=config.regulation.corridor_half_width,
             horizon=horizon,
             time_step=config.time_step,
-            walking_speed_limit=parameters.speed_limit,
+            walking_speed_limit=parameters.max_speed,
         ),
         horizon=horizon,
         predictor=_predictor(config, parameters),
@@ -193,6 +193,11 @@ def _vehicle(config: RunConfig, stack: ExitStack) -> VehicleFmu:
     except FmuError as error:
         raise VehicleError(str(error)) from error
     return vehicle
+
+
+def _description(vehicle: VehicleFmu) -> dict[str, object]:
+    """What the manifest says of the FMU."""
+    return dataclasses.asdict(describe(vehicle.path))
 
 
 def _substeps(time_step: float, step_length: float) -> int:

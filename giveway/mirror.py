@@ -47,7 +47,7 @@ class Mirror:
         self._horizon = parts.horizon
         people = len(parts.spawned.ids)
         self._angles = np.zeros(people)
-        self._rows = np.empty((people, 3))
+        self._row = np.empty(people)
         self._leaving: list[str] = []
         self._read_background(parts.crowd.position)
 
@@ -76,8 +76,8 @@ class Mirror:
         if not all(map(math.isfinite, pose)):
             msg = f"ego at step {k}: pose {tuple(pose)}; expected finite numbers from the FMU"
             raise VehicleError(msg)
-        rows = self._rows[: len(present)]
-        bad = mirror_rows(crowd.position, crowd.velocity, present, self._angles, rows)
+        angles = self._row[: len(present)]
+        bad = walking_angles(crowd.position, crowd.velocity, present, self._angles, angles)
         if bad >= 0:
             name = parts.spawned.ids[present[bad]]
             msg = (
@@ -90,7 +90,8 @@ class Mirror:
             self._leaving.clear()
         names = parts.spawned.ids
         ids = names if len(present) == len(names) else [names[i] for i in present]
-        parts.sumo.mirror(pose, ids, rows.tolist())
+        x, y = crowd.position.T.tolist()
+        parts.sumo.mirror(pose, ids, x, y, angles.tolist())
         self._read_background(crowd.position)
 
     def _read_background(self, people: Array) -> None:
@@ -102,7 +103,7 @@ class Mirror:
         if not hasattr(self, "poses") or self.poses.shape[1] != count:
             self.poses = np.zeros((self._horizon, count, 7))
             half = self._parts.shape.length / 2
-            self.poses[:, 0, 4:] = half, half, self._parts.shape.width
+            self.poses[:, :, 4:] = half, half, self._parts.shape.width
             self.vehicles = Vehicles(self.poses[0])
         if len(near):
             half_length = background.length[near] / 2
@@ -149,18 +150,18 @@ def carry_on(poses: Array, time_step: float) -> None:
 
 
 @kernel
-def mirror_rows(
-    position: Array, velocity: Array, present: NDArray[np.int64], angles: Array, rows: Array
+def walking_angles(
+    position: Array, velocity: Array, present: NDArray[np.int64], memory: Array, angles: Array
 ) -> int:
-    """Fill x, y [m] and angle [deg, 0 = north, clockwise] per person; the first bad one, or -1."""
+    """Fill each one's angle [deg, 0 = north, clockwise]; the first not finite state, or -1.
+
+    ``memory`` holds the angles of all pedestrians: who stands keeps the last one.
+    """
     for j in range(len(present)):
         v_x, v_y = velocity[j, 0], velocity[j, 1]
-        finite = np.isfinite(position[j, 0] + position[j, 1] + v_x + v_y)
-        if not finite:
+        if not np.isfinite(position[j, 0] + position[j, 1] + v_x + v_y):
             return j
         if v_x * v_x + v_y * v_y > _STANDING * _STANDING:
-            angles[present[j]] = (90.0 - np.degrees(np.arctan2(v_y, v_x))) % 360.0
-        rows[j, 0] = position[j, 0]
-        rows[j, 1] = position[j, 1]
-        rows[j, 2] = angles[present[j]]
+            memory[present[j]] = (90.0 - np.degrees(np.arctan2(v_y, v_x))) % 360.0
+        angles[j] = memory[present[j]]
     return -1

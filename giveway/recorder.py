@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.jit import kernel
 from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings
 
 if TYPE_CHECKING:
@@ -78,11 +79,8 @@ class Recorder:
 
     def crowd(self, present: NDArray[np.int64], position: Array, velocity: Array) -> None:
         """Record the pedestrians ``present`` at the instant of the latest ego row."""
-        block = self._crowd.block(len(present))
-        block[:, 0] = len(self._ego) - 1
-        block[:, 1] = present
-        block[:, 2:4] = position
-        block[:, 4:6] = velocity
+        step = len(self._ego) - 1
+        fill_block(step, present, position, velocity, self._crowd.block(len(present)))
 
     def background(self, time: float, vehicles: BackgroundVehicles) -> None:
         """Record SUMO's own vehicles at ``time`` [s]."""
@@ -134,3 +132,17 @@ class Recorder:
     def timings(self) -> Timings:
         """The computing times as an array."""
         return Timings(self._timings.filled.copy())
+
+
+@kernel
+def fill_block(
+    step: int, present: NDArray[np.int64], position: Array, velocity: Array, block: Array
+) -> None:
+    """Fill the crowd's rows of one step."""
+    for j in range(len(present)):
+        block[j, 0] = step
+        block[j, 1] = present[j]
+        block[j, 2] = position[j, 0]
+        block[j, 3] = position[j, 1]
+        block[j, 4] = velocity[j, 0]
+        block[j, 5] = velocity[j, 1]

@@ -102,11 +102,10 @@ def write_pictures(result: RunResult, folder: Path) -> None:
     Raises:
         ResultsError: a file cannot be written.
     """
-    from giveway.pictures import state_picture, top_view_picture
+    from giveway.pictures import save_run_pictures
 
     try:
-        state_picture(result).savefig(folder / "state.png", dpi=150)
-        top_view_picture(result).savefig(folder / "top_view.png", dpi=150)
+        save_run_pictures(result, folder)
     except OSError as error:
         msg = f"{folder}: a picture cannot be written ({error.strerror}); free the disk"
         raise ResultsError(msg) from error

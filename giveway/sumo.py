@@ -13,6 +13,8 @@ by experiment on SUMO 1.28:
 
 from __future__ import annotations
 
+import collections
+import itertools
 import math
 import tempfile
 import xml.etree.ElementTree as ET
@@ -35,7 +37,9 @@ PEDESTRIAN_TYPE = "giveway_pedestrian"
 POSITION_TOLERANCE = 1e-6  # [m] between our state and SUMO's after each step
 _DEPART_NOW = -3  # libsumo's constant for "in the next step"
 _KEEP_ROUTE = 2  # move exactly to x, y, whatever lane is there
-_NO_MATCHING = -1.0  # the "ghost" mode: no search for a lane (SUMO issue 17257)
+_NO_EDGE = itertools.repeat("")
+_EXACTLY = itertools.repeat(_KEEP_ROUTE)
+_WITHOUT_MATCHING = itertools.repeat(-1.0)  # the "ghost" mode: no lane is sought (issue 17257)
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,9 @@ class BackgroundVehicles:
     speed: NDArray[np.float64]  # (m,) [m/s]
     length: NDArray[np.float64]  # (m,) [m]
     width: NDArray[np.float64]  # (m,) [m]
+
+
+_NO_VEHICLES = BackgroundVehicles((), (), *(np.empty(0) for _ in range(6)))
 
 
 def heading_to_angle(heading: float) -> float:
@@ -103,6 +110,11 @@ class SumoSession:
                 msg = f"{config_file}: SUMO cannot load this scenario: {reason}"
                 raise SumoError(msg) from error
         SumoSession._running = True
+        # The wrapper's methods only pass their arguments on, which takes as long as a move.
+        direct = getattr(self._sumo.libsumo, "_libsumo", None)
+        person = self._sumo.person
+        self._move_person = getattr(direct, "person_moveToXY", person.moveToXY)
+        self._person_position = getattr(direct, "person_getPosition", person.getPosition)
         self.step_length = float(self._sumo.simulation.getDeltaT())
 
     def __enter__(self) -> Self:
@@ -183,10 +195,18 @@ class SumoSession:
         )
         raise ScenarioError(msg)
 
+    def lanes(self) -> list[tuple[NDArray[np.float64], float]]:
+        """Centre line (k, 2) [m] and width [m] of every lane outside of junctions."""
+        lane = self._sumo.lane
+        names = [name for name in lane.getIDList() if not name.startswith(":")]
+        return [(np.array(lane.getShape(name)), float(lane.getWidth(name))) for name in names]
+
     def background_vehicles(self) -> BackgroundVehicles:
         """Every vehicle of the scenario except the ego, as of SUMO's clock."""
         vehicle = self._sumo.vehicle
         ids = tuple(sorted(name for name in vehicle.getIDList() if name != self._ego_id))
+        if not ids:
+            return _NO_VEHICLES
         for name in ids:
             if name not in self._shapes:
                 size = vehicle.getLength(name), vehicle.getWidth(name)
@@ -257,19 +277,24 @@ class SumoSession:
     # --- stepping -----------------------------------------------------------------------------
 
     def mirror(
-        self, ego: Pose | None, ids: Sequence[str], rows: Sequence[tuple[float, float, float]]
+        self,
+        ego: Pose | None,
+        ids: Sequence[str],
+        x: Sequence[float],
+        y: Sequence[float],
+        angles: Sequence[float],
     ) -> None:
         """Move ego and persons, make one SUMO step, and check that SUMO stands where we do.
 
         Args:
             ego: the front bumper's pose after the step.
             ids: the persons' ids.
-            rows: x [m], y [m] and angle [deg, 0 = north, clockwise] of each person; finite.
+            x, y: of each person [m], finite.
+            angles: of each person [deg, 0 = north, clockwise], finite.
 
         Raises:
             SumoError: SUMO failed, or disagrees by more than 1e-6 m.
         """
-        move_person = self._sumo.person.moveToXY
         try:
             with self._stderr:
                 if ego is not None:
@@ -277,27 +302,28 @@ class SumoSession:
                     self._sumo.vehicle.moveToXY(
                         self._ego_id, "", -1, ego.x, ego.y, angle, _KEEP_ROUTE
                     )
-                for name, (x, y, angle) in zip(ids, rows, strict=True):
-                    move_person(name, "", x, y, angle, _KEEP_ROUTE, _NO_MATCHING)
+                moves = map(
+                    self._move_person, ids, _NO_EDGE, x, y, angles, _EXACTLY, _WITHOUT_MATCHING
+                )
+                collections.deque(moves, maxlen=0)  # the fastest loop that Python has
                 self._sumo.simulationStep()
         except Exception as error:
             raise self._failure(error) from error
-        self._check(ego, ids, rows)
+        self._check(ego, ids, list(zip(x, y, strict=True)))
 
     def _check(
-        self, ego: Pose | None, ids: Sequence[str], rows: Sequence[tuple[float, float, float]]
+        self, ego: Pose | None, ids: Sequence[str], points: list[tuple[float, float]]
     ) -> None:
-        get_position = self._sumo.person.getPosition
         try:
             if ego is not None:
-                x, y = self._sumo.vehicle.getPosition(self._ego_id)
-                _compare("vehicle", self._ego_id, (x, y), ego, self.time)
-            for name, row in zip(ids, rows, strict=True):
-                x, y = get_position(name)
-                if abs(x - row[0]) + abs(y - row[1]) > POSITION_TOLERANCE:
-                    _compare("person", name, (x, y), row, self.time)
+                there = self._sumo.vehicle.getPosition(self._ego_id)
+                _compare("vehicle", self._ego_id, there, ego, self.time)
+            mirrored = list(map(self._person_position, ids))
         except self._sumo.TraCIException as error:
             raise self._failure(error) from error
+        if mirrored != points:  # as a rule they are the same to the bit
+            for name, there, here in zip(ids, mirrored, points, strict=True):
+                _compare("person", name, there, here, self.time)
 
     def _step(self) -> None:
         self._call(self._sumo.simulationStep)

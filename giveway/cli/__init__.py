@@ -17,8 +17,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit with its code."""
     from giveway.cli.app import build_app
 
+    words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        code = build_app()(args=arguments, standalone_mode=False)
+        code = build_app(words)(args=words, standalone_mode=False)
     except GivewayError as error:
         code = fail(str(error), error.exit_code)
     except KeyboardInterrupt:

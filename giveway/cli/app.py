@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
-
-from giveway.cli.flags import accept_config_flags
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
 
@@ -15,17 +14,38 @@ A vehicle FMU, driven by MPC or PID, and a crowd of VCI pedestrians meet in a SU
 """
 
 
-def build_app() -> typer.Typer:
-    """The typer application."""
+def build_app(arguments: Sequence[str]) -> typer.Typer:
+    """The typer application that ``arguments`` need.
+
+    The configuration's flags and the framed help take a quarter of a second to load, so they are
+    there only when a command is named: a bare ``giveway --help`` answers at once.
+    """
+    command = next((word for word in arguments if not word.startswith("-")), None)
     app = typer.Typer(
-        help=HELP, no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False
+        help=HELP,
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode="rich" if command else None,
     )
     app.callback()(_version)
-    app.command("run", no_args_is_help=False)(accept_config_flags(_run))
+    app.command("run")(_with_flags(_run, command))
     app.command("scenarios")(_scenarios)
-    app.command("config")(accept_config_flags(_config))
+    app.command("config")(_with_flags(_config, command))
     app.add_typer(_build_plot(), name="plot")
     return app
+
+
+def _with_flags(function: Callable[..., None], command: str | None) -> Callable[..., None]:
+    if command != function.__name__.removeprefix("_"):
+
+        def not_called() -> None: ...
+
+        not_called.__doc__ = function.__doc__
+        return not_called
+    from giveway.cli.flags import accept_config_flags
+
+    return accept_config_flags(function)
 
 
 def _version(
@@ -43,13 +63,13 @@ def _version(
 def _run(
     settings: dict[str, object],
     scenario: Annotated[
-        str | None, typer.Argument(help="Bundled scenario, folder or .sumocfg [shared_space].")
+        str | None, typer.Argument(help="Bundled scenario, folder or .sumocfg (default shared_space).")
     ] = None,
     config: Annotated[
         Path | None, typer.Option(help="TOML file with options; flags override it.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Results folder [results/SCENARIO_CONTROLLER_...].")
+        Path | None, typer.Option(help="Results folder (default results/SCENARIO_CONTROLLER_...).")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the results there.")] = False,
     parquet: Annotated[
@@ -60,7 +80,7 @@ def _run(
         bool, typer.Option("--quiet", "-q", help="Neither progress bar nor summary.")
     ] = False,
 ) -> None:
-    """Drive the ego through a crowd once; ends with a summary, CSVs and pictures."""
+    """Drive the ego through a crowd once: summary, CSVs, pictures."""
     from giveway.cli.run import Outputs, run_command
 
     outputs = Outputs(out, force=force, parquet=parquet, pictures=pictures, quiet=quiet)
@@ -72,7 +92,7 @@ def _config(
     scenario: Annotated[str | None, typer.Argument(help="As for run.")] = None,
     config: Annotated[Path | None, typer.Option(help="As for run.")] = None,
 ) -> None:
-    """Print the effective configuration as TOML, each key with its unit and meaning."""
+    """Print the effective configuration as TOML, with units."""
     from giveway.cli.run import layers_of
     from giveway.configfile import dump_toml
     from giveway.loading import load
@@ -104,11 +124,11 @@ def _influence(
         Path, typer.Option(help="Picture to write: .png, .svg or .pdf.")
     ] = Path("influence.png"),
     speeds: Annotated[
-        str, typer.Option(help="Vehicle speeds [m/s], comma-separated, one panel each.")
+        str, typer.Option(help="Vehicle speeds in m/s, comma-separated, one panel each.")
     ] = "0,1,2,4",
     preset: Annotated[str, typer.Option(help="VCI parameter set: SIM or TABLE2.")] = "SIM",
-    length: Annotated[float, typer.Option(help="Vehicle length [m].")] = 5.0,
-    width: Annotated[float, typer.Option(help="Vehicle width [m].")] = 2.0,
+    length: Annotated[float, typer.Option(help="Vehicle length in m.")] = 5.0,
+    width: Annotated[float, typer.Option(help="Vehicle width in m.")] = 2.0,
 ) -> None:
     """Draw the vehicle's influence on a pedestrian (figure 2 of Yang & Özgüner 2019)."""
     from giveway.cli.plot import influence_command

@@ -61,12 +61,11 @@ def _put(settings: dict[str, Any], location: Location, value: Any) -> None:
 
 
 def _annotation(option: Option) -> Any:
-    unit = f" [{option.unit}]" if option.unit else ""
     default = option.field.get_default(call_default_factory=True)
     shown = ",".join(map(str, default)) if isinstance(default, tuple) else default
-    known = "" if shown in (None, "") else f" (default {shown})"
-    text = f"{option.field.description}{unit}{known}"
-    text = text[0].upper() + text[1:] if not text.startswith(("x_", "dx", "u_", "v_")) else text
+    known = "" if shown in (None, "") else f"default {shown}"
+    remarks = "; ".join(part for part in (option.unit, known) if part)
+    text = f"{option.field.description} ({remarks})" if remarks else option.field.description
     panel = _PANELS.get(option.location[0], "Run")
     if option.field.annotation is bool:
         name = f"{option.flag}/--no-{option.flag.removeprefix('--')}"

@@ -81,7 +81,7 @@ def summarise(
     ego: EgoTrack,
     per_pedestrian: pd.DataFrame,
     *,
-    completed: bool,
+    goal: float,
     safe_distance: float,
     stop_speed: float = STOP_SPEED,
     controller: str,
@@ -93,9 +93,10 @@ def summarise(
     of the track; one uninterrupted stop is one waiting time.
 
     Args:
-        ego: the ego's track, at least one instant; its last is the arrival if ``completed``.
+        ego: the ego's track, at least one instant.
         per_pedestrian: the table of ``pedestrian_metrics``.
-        completed: whether the ego reached its goal.
+        goal: the position that ends the run [m]; the time at which it is reached is interpolated
+            between control instants.
         safe_distance: d_safe [m].
         stop_speed: the ego stands below it [m/s].
         controller: "mpc" (with its fallback) or "pid".
@@ -111,8 +112,8 @@ def summarise(
     jerk = np.diff(ego.acceleration) / np.diff(ego.time)
     clearances = per_pedestrian["minimum_clearance"].to_numpy()
     return Summary(
-        completed=completed,
-        completion_time=simulated_time if completed else np.nan,
+        completed=bool(ego.position[-1] >= goal),
+        completion_time=_time_at(ego, goal),
         simulated_time=simulated_time,
         travelled_distance=travelled,
         mean_speed=travelled / simulated_time if simulated_time > 0.0 else np.nan,
@@ -135,6 +136,18 @@ def summarise(
         minimum_pet=_extreme(per_pedestrian["post_encroachment_time"].to_numpy(), np.min),
         maximum_drac=_extreme(per_pedestrian["maximum_drac"].to_numpy(), np.max),
     )
+
+
+def _time_at(ego: EgoTrack, goal: float) -> float:
+    """Time [s] since the start at which ``goal`` [m] is reached; nan if it is not."""
+    if ego.position[-1] < goal:
+        return float("nan")
+    k = int(np.argmax(ego.position >= goal))
+    if k == 0:
+        return 0.0
+    before, after = ego.position[k - 1], ego.position[k]
+    share = (goal - before) / (after - before)
+    return float(ego.time[k - 1] - ego.time[0] + share * (ego.time[k] - ego.time[k - 1]))
 
 
 def waiting_times(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.float64]:

@@ -106,7 +106,7 @@ def test_one_uninterrupted_stop_is_one_waiting_time(ego, case, speed, expected):
 
 
 def summary_of(track, table=NOBODY, **arguments):
-    arguments = {"completed": True, "safe_distance": 8.0, "controller": "mpc"} | arguments
+    arguments = {"goal": 4.0, "safe_distance": 8.0, "controller": "mpc"} | arguments
     return summarise(track, table, **arguments)
 
 
@@ -133,8 +133,16 @@ def test_the_summary_of_a_drive(ego):
     assert summary.share_below_safe_distance == 0.2  # 8.0 m is not below 8 m
 
 
+def test_the_goal_is_reached_between_two_instants(ego):
+    places = np.column_stack(([0.0, 2.0, 3.0, 3.0, 4.0], np.zeros(5)))
+    track = ego(2.0 + 0.5 * np.arange(5), places)
+    assert summary_of(track, goal=3.25).completion_time == 1.625
+    assert summary_of(track, goal=2.0).completion_time == 0.5
+    assert not summary_of(track, goal=4.001).completed
+
+
 def test_what_never_occurred_is_empty(ego):
-    summary = summary_of(ego(TIME), completed=False, controller="pid")
+    summary = summary_of(ego(TIME), goal=1e9, controller="pid")
     never = {name for name, value in summary.as_dict().items() if np.isnan(value)}
     assert never == {
         "completion_time",

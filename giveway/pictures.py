@@ -1,0 +1,93 @@
+"""The two pictures of a run, and how a lane's centre line becomes an area to draw."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.figures import influence_figure, save_figure, state_figure, top_view_figure
+from pedestrian_model import Vehicles, vehicle_influence
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from giveway.api import RunResult
+    from giveway.tracks import VehicleShape
+    from pedestrian_model import VciParameters
+
+    Array = NDArray[np.float64]
+
+_CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
+
+
+def save_run_pictures(result: RunResult, folder: Path) -> None:
+    """Write ``state.png`` and ``top_view.png``.
+
+    Raises:
+        OSError: a file cannot be written.
+    """
+    save_figure(state_picture(result), folder / "state.png")
+    save_figure(top_view_picture(result), folder / "top_view.png")
+
+
+def state_picture(result: RunResult) -> Figure:
+    """Speed, force and gap over time, MPC and PID phases marked (the paper's state figure)."""
+    config = result.config
+    return state_figure(
+        result.ego_track,
+        safe_distance=config.regulation.safe_distance,
+        buffer_distance=config.pid.buffer_distance,
+        title=_title(result),
+    )
+
+
+def top_view_picture(result: RunResult) -> Figure:
+    """Trajectories and snapshots from above (the paper's screenshots figure)."""
+    return top_view_figure(
+        result.ego_track,
+        result.crowd_track,
+        result.shape,
+        result.body_radius,
+        road=[lane_area(line, width) for line, width in result.lanes],
+        title=_title(result),
+    )
+
+
+def _title(result: RunResult) -> str:
+    config = result.config
+    return (
+        f"{result.scenario.name}, {config.controller.upper()}, "
+        f"{config.crowd.pedestrians} pedestrians, seed {config.seed}"
+    )
+
+
+def influence_picture(
+    speeds: Sequence[float], shape: VehicleShape, parameters: VciParameters
+) -> Figure:
+    """The vehicle's influence on a standing pedestrian (the paper's figure 2)."""
+
+    def influence(points: Array, speed: float) -> Array:
+        half = shape.length / 2
+        vehicle = Vehicles.create(*_CENTRE, 0.0, speed, half, half, shape.width)
+        return vehicle_influence(points, np.zeros_like(points), vehicle, parameters)[0]
+
+    return influence_figure(influence, speeds=speeds, shape=shape, centre=_CENTRE)
+
+
+def lane_area(centre_line: Array, width: float) -> Array:
+    """The closed outline (2k + 1, 2) [m] of a lane.
+
+    Args:
+        centre_line: (k, 2) [m], k >= 2.
+        width: [m].
+    """
+    along = np.gradient(centre_line, axis=0)
+    length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-12)
+    left = np.column_stack([-along[:, 1], along[:, 0]]) / length[:, None] * (width / 2)
+    outline = np.concatenate([centre_line + left, (centre_line - left)[::-1]])
+    return np.concatenate([outline, outline[:1]])
