@@ -97,7 +97,10 @@ class Mirror:
     def _read_background(self, people: Array) -> None:
         """Take over where SUMO's own vehicles are now."""
         background = self._parts.sumo.background_vehicles()
-        self._recorder.background(self._parts.sumo.time, background)
+        if background.ids:
+            self._recorder.background(self._parts.sumo.time, background)
+        elif hasattr(self, "poses") and self.poses.shape[1] == 1:
+            return
         near = _near(background, people)
         count = 1 + len(near)
         if not hasattr(self, "poses") or self.poses.shape[1] != count:

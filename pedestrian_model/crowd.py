@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pedestrian_model._check import as_floats, check_not_negative, check_shape, check_values
+from pedestrian_model._jit import kernel
 from pedestrian_model.errors import CrowdError
 
 if TYPE_CHECKING:
@@ -170,10 +171,28 @@ class Crowd:
 
 def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
     """Mask (n,): on the way to the last way-point and within ``radius`` [m] of it."""
-    last = crowd.waypoint_index == np.diff(crowd.waypoint_start) - 1
-    x, y = (crowd.target - crowd.position).T
-    near: NDArray[np.bool_] = x * x + y * y <= radius * radius
-    return last & near
+    mask = np.empty(len(crowd), dtype=np.bool_)
+    _fill_arrived(
+        crowd.position, crowd.waypoints, crowd.waypoint_start, crowd.waypoint_index, radius, mask
+    )
+    return mask
+
+
+@kernel
+def _fill_arrived(
+    position: NDArray[np.float64],
+    waypoints: NDArray[np.float64],
+    waypoint_start: NDArray[np.int64],
+    waypoint_index: NDArray[np.int64],
+    radius: float,
+    mask: NDArray[np.bool_],
+) -> None:
+    for i in range(len(mask)):
+        last = waypoint_start[i + 1] - 1
+        x = waypoints[last, 0] - position[i, 0]
+        y = waypoints[last, 1] - position[i, 1]
+        on_the_way = waypoint_start[i] + waypoint_index[i] == last
+        mask[i] = on_the_way and x * x + y * y <= radius * radius
 
 
 def _offsets(count: NDArray[np.int64]) -> NDArray[np.int64]:
