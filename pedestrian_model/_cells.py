@@ -11,10 +11,16 @@ copied back.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from pedestrian_model._jit import add_block, fma, inlined
-from pedestrian_model._pairs import COINCIDENT_2, PairConstants, add_coincident, pair
+from pedestrian_model._jit import add_block, fma, inlined, kernel
+from pedestrian_model._pairs import (
+    COINCIDENT_2,
+    PairConstants,
+    add_coincident,
+    pair,
+    pair_constants,
+)
 from pedestrian_model._rows import (
     BACK_X, BACK_Y, BLOCK, BUX, BUY, BVX, BVY, BX, BY, FX, FY, ON_X, ON_Y, PX, PY, STRIDE,
     UX, UY, VX, VY, fill,
@@ -214,14 +220,17 @@ def _find_segments(
     return count
 
 
-@inlined
+@kernel
 def add_near_pairs(
     rows: NDArray[np.float64], index: NDArray[np.int64], buffer: NDArray[np.float64],
-    position: NDArray[np.float64], velocity: NDArray[np.float64], r_max: float, c: PairConstants,
+    position: NDArray[np.float64], velocity: NDArray[np.float64], constants: NDArray[Any],
 ) -> None:
-    """Fill the rows sorted by cell and add the forces of the pairs within ``r_max``."""
-    n = position.shape[0]
-    reach = r_max * _SAFE
+    """Fill the rows sorted by cell and add the forces of the pairs within reach.
+
+    A function of its own in machine code: inlined into the step, its loops lose their registers.
+    """
+    c = pair_constants(constants[0])
+    n, reach = position.shape[0], constants[0].r_max * _SAFE
     x_0, x_1, y_0, y_1 = position[0, 0], position[0, 0], position[0, 1], position[0, 1]
     for i in range(n):
         x_0, x_1 = min(x_0, position[i, 0]), max(x_1, position[i, 0])

@@ -8,10 +8,16 @@ adds to two different rows: long vector loops without any reduction.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from pedestrian_model._jit import fma, inlined
-from pedestrian_model._pairs import COINCIDENT_2, PairConstants, add_coincident, pair
+from pedestrian_model._jit import fma, inlined, kernel
+from pedestrian_model._pairs import (
+    COINCIDENT_2,
+    PairConstants,
+    add_coincident,
+    pair,
+    pair_constants,
+)
 from pedestrian_model._rows import (
     BLOCK, BUX, BUY, BVX, BVY, BX, BY, FX, FY, ON_X, ON_Y, PX, STRIDE, fill,
 )
@@ -72,7 +78,7 @@ def _shift(
     return coincident
 
 
-@inlined
+@kernel
 def add_all_pairs(
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
@@ -80,9 +86,10 @@ def add_all_pairs(
     back: NDArray[np.float64],
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
-    c: PairConstants,
+    constants: NDArray[Any],
 ) -> None:
     """Fill the rows in the given order and add the forces of all pairs."""
+    c = pair_constants(constants[0])
     n = position.shape[0]
     order = index[0]
     for i in range(n):

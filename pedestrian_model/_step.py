@@ -11,7 +11,6 @@ from pedestrian_model._cells import add_near_pairs
 from pedestrian_model._detour import detour, set_targets
 from pedestrian_model._jit import fma, inlined, kernel
 from pedestrian_model._mathematics import cosine_sine
-from pedestrian_model._pairs import pair_constants
 from pedestrian_model._ring import add_all_pairs
 from pedestrian_model._rows import (
     BLOCK, LARGEST_RING, FX, FY, NVX, NVY, NX, NY, PX, PY, TX, TY, V0, VFX, VFY, VX, VY, S,
@@ -53,9 +52,9 @@ def _gather_forces(
     c = constants[0]
     n = position.shape[0]
     if n >= cell_list_from or n > LARGEST_RING:
-        add_near_pairs(rows, index, buffer, position, velocity, c.r_max, pair_constants(c))
+        add_near_pairs(rows, index, buffer, position, velocity, constants)
     else:
-        add_all_pairs(rows, index, buffer, back, position, velocity, pair_constants(c))
+        add_all_pairs(rows, index, buffer, back, position, velocity, constants)
     padded = (n + BLOCK - 1) // BLOCK * BLOCK
     for v in range(vehicles.shape[0]):
         add_vehicle(rows, padded, vehicles[v], travelled, c)
