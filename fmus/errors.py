@@ -1,0 +1,41 @@
+"""What can go wrong with an FMU, one class per thing a user can do something about."""
+
+
+class FmuError(Exception):
+    """Root of all errors of this package; the message is one line and names the FMU."""
+
+
+class FmuFileError(FmuError):
+    """The file is missing, or no readable FMU."""
+
+
+class FmuInterfaceError(FmuError):
+    """The FMU does not offer what is needed: FMI 2.0 or 3.0 Co-Simulation."""
+
+
+class FmuPlatformError(FmuError):
+    """The FMU has no binary for this platform, or it cannot be loaded."""
+
+
+class FmuVariableError(FmuError):
+    """A variable is missing, or is not what it is used for."""
+
+
+class FmuStartError(FmuError):
+    """The FMU refused to be instantiated or initialised."""
+
+
+class FmuStepError(FmuError):
+    """The FMU did not do a step."""
+
+
+class FmuOutputError(FmuError):
+    """The FMU's outputs are not finite numbers."""
+
+
+class FmuStateError(FmuError):
+    """A call that the vehicle's or the FMU's present state does not allow."""
+
+
+class FmuBuildError(FmuError):
+    """The shipped FMUs cannot be rebuilt here."""
