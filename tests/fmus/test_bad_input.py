@@ -1,0 +1,174 @@
+"""Every broken FMU and wrong value is refused by one clear line that names it."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+
+import fmus
+from fmus import FmuError, VehicleFmu, VehicleVariables, describe
+
+H = 0.05  # [s]
+
+
+def refused(kind, *named):
+    """The error is of this class, on one line, and its message names all of these."""
+    lookaheads = "".join(f"(?=.*{re.escape(str(word))})" for word in named)
+    return pytest.raises(kind, match=rf"^{lookaheads}[^\n]+\Z")
+
+
+def test_all_errors_have_one_root():
+    errors = [getattr(fmus, name) for name in fmus.__all__ if name.endswith("Error")]
+    assert len(errors) > 5
+    assert all(issubclass(error, FmuError) for error in errors)
+
+
+# ---- files ----
+
+
+@pytest.mark.parametrize("use", [lambda path: VehicleFmu(path, step_size=H), describe])
+class TestFiles:
+    def test_missing(self, use, tmp_path):
+        path = tmp_path / "nowhere.fmu"
+        with refused(fmus.FmuFileError, path, "no such file"):
+            use(path)
+
+    def test_a_folder(self, use, tmp_path):
+        with refused(fmus.FmuFileError, tmp_path):
+            use(tmp_path)
+
+    def test_not_a_zip_archive(self, use, tmp_path):
+        path = tmp_path / "text.fmu"
+        path.write_text("I am no FMU\n")
+        with refused(fmus.FmuFileError, path, "zip"):
+            use(path)
+
+    def test_truncated(self, use, fmu, tmp_path):
+        path = tmp_path / "half.fmu"
+        path.write_bytes(fmu.read_bytes()[:50_000])
+        with refused(fmus.FmuFileError, path, "zip"):
+            use(path)
+
+    def test_without_a_model_description(self, use, remake):
+        path = remake(keep=lambda name: name != "modelDescription.xml")
+        with refused(fmus.FmuFileError, path, "modelDescription.xml"):
+            use(path)
+
+    def test_with_a_broken_model_description(self, use, remake):
+        path = remake(edit=lambda xml: xml[: len(xml) // 2])
+        with refused(fmus.FmuFileError, path, "modelDescription.xml"):
+            use(path)
+
+
+def test_damaged_inside(fmu, tmp_path):
+    data = bytearray(fmu.read_bytes())
+    first = data.index(b"\x7fELF")
+    data[first + 4000 : first + 4016] = b"damaged bytes..."
+    path = tmp_path / "damaged.fmu"
+    path.write_bytes(data)
+    with refused(fmus.FmuFileError, path), VehicleFmu(path, step_size=H):
+        pass
+
+
+# ---- interface and platform ----
+
+
+def test_model_exchange_only(remake):
+    path = remake(edit=lambda xml: re.sub("(</?)CoSimulation", r"\1ModelExchange", xml))
+    with refused(fmus.FmuInterfaceError, path, "Co-Simulation"):
+        VehicleFmu(path, step_size=H)
+
+
+def test_no_binary_for_this_platform(remake):
+    path = remake(keep=lambda name: not name.startswith("binaries/"))
+    with refused(fmus.FmuPlatformError, path, "binar"):
+        VehicleFmu(path, step_size=H)
+
+
+def test_a_binary_that_cannot_be_loaded(remake):
+    path = remake(replace=lambda name: b"no library" if name.startswith("binaries/") else None)
+    with refused(fmus.FmuPlatformError, path):
+        VehicleFmu(path, step_size=H)
+
+
+# ---- variables ----
+
+
+@pytest.mark.parametrize(
+    ("variables", "named"),
+    [
+        (VehicleVariables(speed="sped"), ("sped", "did you mean", "speed")),
+        (VehicleVariables(force="Force"), ("Force", "did you mean", "force")),
+        (VehicleVariables(position="where_it_is"), ("where_it_is",)),
+        (VehicleVariables(force="speed"), ("speed", "output", "input")),
+        (VehicleVariables(speed="force"), ("force", "input", "output")),
+        (VehicleVariables(speed="exact"), ("exact",)),
+    ],
+)
+def test_a_variable_that_cannot_play_its_part(fmu, variables, named):
+    with refused(fmus.FmuVariableError, fmu, *named):
+        VehicleFmu(fmu, step_size=H, variables=variables)
+
+
+@pytest.mark.parametrize(
+    ("values", "named"),
+    [
+        ({"alhpa": 90.0}, ("alhpa", "did you mean", "alpha")),
+        ({"speed": 3.0}, ("speed",)),
+        ({"M": math.nan}, ("M", "nan")),
+        ({"exact": 2.5}, ("exact", "2.5")),
+        ({"M": True}, ("M", "True")),
+    ],
+)
+def test_a_start_value_that_cannot_be_set(fmu, values, named):
+    with refused(fmus.FmuVariableError, fmu, *named):
+        VehicleFmu(fmu, step_size=H, start_values=values)
+
+
+@pytest.mark.parametrize("step_size", [0.0, -0.05, math.nan, math.inf])
+def test_a_step_size_without_meaning(fmu, step_size):
+    with refused(FmuError, fmu, "step size", f"{step_size:g}"):
+        VehicleFmu(fmu, step_size=step_size)
+
+
+# ---- what the FMU itself refuses, in its own words ----
+
+
+@pytest.mark.parametrize(
+    ("values", "named"), [({"M": -5.0}, ("M = -5 kg",)), ({"alpha": -1.0}, ("alpha = -1 N.s/m",))]
+)
+def test_start_values_that_the_fmu_refuses(fmu, values, named):
+    with VehicleFmu(fmu, step_size=H, start_values=values) as vehicle:
+        with refused(fmus.FmuStartError, fmu, *named):
+            vehicle.start()
+        with refused(fmus.FmuStateError, fmu):
+            vehicle.step(0.0)
+
+
+@pytest.mark.parametrize("force", [math.nan, math.inf, -math.inf])
+def test_a_force_that_is_no_number(fmu, force):
+    with VehicleFmu(fmu, step_size=H) as vehicle:
+        vehicle.start(speed=1.0)
+        vehicle.step(0.0)
+        with refused(fmus.FmuStepError, fmu, f"{force:g}", "0.05 s"):
+            vehicle.step(force)
+
+
+def test_a_motion_out_of_the_range_of_numbers(fmu):
+    with VehicleFmu(fmu, step_size=H, start_values={"M": 1e-300, "reverse": True}) as vehicle:
+        vehicle.start()
+        with refused(FmuError, fmu, "0 s"):
+            vehicle.step(1e300)
+            vehicle.step(1e300)
+
+
+def test_a_vehicle_that_failed_can_start_again(fmu):
+    with VehicleFmu(fmu, step_size=H) as vehicle:
+        vehicle.start(speed=1.0)
+        with pytest.raises(FmuError):
+            vehicle.step(math.nan)
+        vehicle.start(speed=2.0)
+        vehicle.step(0.0)
+        assert vehicle.position == H * 2.0
