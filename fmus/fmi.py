@@ -246,27 +246,23 @@ class _Fmi2Instance(_FmpyInstance):
         set_real, do_step, get_real = (
             _function(library, name) for name in ("fmi2SetReal", "fmi2DoStep", "fmi2GetReal")
         )
-        u_reference, one, u = (c_uint32 * 1)(force), c_size_t(1), c_double()
-        y_references, n, y = (
-            (c_uint32 * len(outputs))(*outputs),
-            c_size_t(len(outputs)),
-            self.outputs,
-        )
+        u_references, one, u = (c_uint32 * 1)(force), c_size_t(1), c_double()
+        y_references, three, y = (c_uint32 * 3)(*outputs), c_size_t(3), self.buffer
         u_address, t, h = byref(u), c_double(), c_double(step_size)
         rollback_possible = c_int(fmi2.fmi2False)
 
-        self._require_read(get_real(c, y_references, n, y))
+        self._require_read(get_real(c, y_references, three, y))
 
         def tick(force: float, time: float) -> int:
             u.value = force
             t.value = time
-            status = set_real(c, u_reference, one, u_address)
+            status = set_real(c, u_references, one, u_address)
             if status > WARNING:
                 return status
             status = do_step(c, t, h, rollback_possible)
             if status > WARNING:
                 return status
-            return get_real(c, y_references, n, y)
+            return get_real(c, y_references, three, y)
 
         return tick
 
@@ -275,14 +271,12 @@ class _Fmi3Instance(_FmpyInstance):
     _slave_class = fmi3.FMU3Slave
 
     def instantiate(self) -> None:
-        journal = self.journal
-        # With logging on, for the reason of a failure: some FMUs give it only then.
-        self._fmu.instantiate(
-            loggingOn=True,
-            logMessage=lambda _environment, status, _category, message: journal.add(
-                status, message
-            ),
-        )
+        journal = self.journal  # not self: FMPy keeps the receiver, and we keep FMPy's object
+
+        def receive(_environment: int, status: int, _category: bytes, message: bytes) -> None:
+            journal.add(status, message)
+
+        self._fmu.instantiate(loggingOn=True, logMessage=receive)  # on: as for FMI 2
 
     def set_real(self, reference: int, value: float) -> None:
         self._fmu.setFloat64([reference], [value])
@@ -304,23 +298,19 @@ class _Fmi3Instance(_FmpyInstance):
         set_real, do_step, get_real = (
             _function(library, name) for name in ("fmi3SetFloat64", "fmi3DoStep", "fmi3GetFloat64")
         )
-        u_reference, one, u = (c_uint32 * 1)(force), c_size_t(1), c_double()
-        y_references, n, y = (
-            (c_uint32 * len(outputs))(*outputs),
-            c_size_t(len(outputs)),
-            self.outputs,
-        )
+        u_references, one, u = (c_uint32 * 1)(force), c_size_t(1), c_double()
+        y_references, three, y = (c_uint32 * 3)(*outputs), c_size_t(3), self.buffer
         u_address, t, h = byref(u), c_double(), c_double(step_size)
         rollback_possible = c_bool(False)
         event, end, early, reached = c_bool(), c_bool(), c_bool(), c_double()
         report = byref(event), byref(end), byref(early), byref(reached)
 
-        self._require_read(get_real(c, y_references, n, y, n))
+        self._require_read(get_real(c, y_references, three, y, three))
 
         def tick(force: float, time: float) -> int:
             u.value = force
             t.value = time
-            status = set_real(c, u_reference, one, u_address, one)
+            status = set_real(c, u_references, one, u_address, one)
             if status > WARNING:
                 return status
             status = do_step(c, t, h, rollback_possible, *report)
@@ -328,6 +318,6 @@ class _Fmi3Instance(_FmpyInstance):
                 return status
             if end.value or early.value:  # not at the end of the step: what FMI 2 calls discard
                 return DISCARD
-            return get_real(c, y_references, n, y, n)
+            return get_real(c, y_references, three, y, three)
 
         return tick

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
-from ctypes import Array, c_double
+from ctypes import c_double
 from pathlib import Path
 from typing import Any, Final
 
@@ -52,7 +52,8 @@ class Instance(ABC):
     def __init__(self, model: Model) -> None:
         self.model = model
         self.journal = Journal()
-        self.outputs: Array[c_double] = (c_double * 3)()  # filled by every tick
+        self.buffer = (c_double * 3)()  # filled by every tick
+        self.outputs: Sequence[float] = memoryview(self.buffer).cast("B").cast("d")  # quick to read
         with ExitStack() as stack:  # what has been set up is undone if the rest fails
             folder = stack.enter_context(
                 tempfile.TemporaryDirectory(prefix="vehicle-fmu-", ignore_cleanup_errors=True)
