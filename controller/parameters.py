@@ -66,7 +66,13 @@ class MpcParameters:
         require_positive("force_rate_limit", self.force_rate_limit, "N per step")
         require_positive("speed_weight", self.speed_weight, "-")
         require(self.solver in ("osqp", "daqp"), "solver", self.solver, "'osqp' or 'daqp'")
-        require(self.iteration_limit >= 1, "iteration_limit", self.iteration_limit, "at least 1")
+        whole = isinstance(self.iteration_limit, int)
+        require(
+            whole and self.iteration_limit >= 1,
+            "iteration_limit",
+            self.iteration_limit,
+            "a whole number >= 1",
+        )
         require_positive("position_tolerance", self.position_tolerance, "m")
         require_positive("speed_tolerance", self.speed_tolerance, "m/s")
         require_positive("force_tolerance", self.force_tolerance, "N")

@@ -40,7 +40,13 @@ def check(mpc, problem, edge):
     assert solution.status == "solved"
     assert solution.force == solution.forces[0]
     assert solution.residual <= 1.0
-    assert abs(solution.force - U[0]) < FORCE_TOLERANCE * problem.model.mass / 1000.0, arguments
+    per_tonne = problem.model.mass / 1000.0
+    assert abs(solution.force - U[0]) < FORCE_TOLERANCE * per_tonne, arguments
+    forces, speeds = solution.forces, solution.speeds
+    before = np.concatenate([[problem.speed], speeds[:-1]])
+    driven = problem.model.decay * before + problem.model.speed_per_force * forces
+    np.testing.assert_allclose(driven, speeds, atol=1e-9)
+    np.testing.assert_allclose(forces, U, atol=20.0 * FORCE_TOLERANCE * per_tonne)
     return True
 
 
@@ -243,6 +249,7 @@ def test_refuses_a_step_too_long_for_forward_euler():
         ("speed_weight", np.nan),
         ("solver", "gurobi"),
         ("iteration_limit", 0),
+        ("iteration_limit", 10.5),
         ("position_tolerance", 0.0),
     ],
 )
