@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,12 +9,9 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from giveway.assembly import assemble
-from giveway.config import RunConfig
 from giveway.configfile import dump_toml
 from giveway.errors import GivewayError
 from giveway.interrupts import DeferredInterrupt
@@ -31,6 +27,12 @@ from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings, Vehic
 from pedestrian_model import PRESETS
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from giveway.config import RunConfig
     from sumo_scenarios import Scenario
 
 
@@ -91,9 +93,7 @@ class RunResult:
     def trajectories(self) -> pd.DataFrame:
         """Everybody's position and velocity, SUMO's FCD names."""
         ego_id = self.config.ego.id
-        return trajectory_table(
-            self.ego_track, ego_id, self.crowd_track, self.background_track
-        )
+        return trajectory_table(self.ego_track, ego_id, self.crowd_track, self.background_track)
 
     @cached_property
     def pedestrians(self) -> pd.DataFrame:

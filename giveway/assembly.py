@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from controller import (
     ControllerError,
@@ -30,9 +28,14 @@ from giveway.tracks import VehicleShape
 from pedestrian_model import PRESETS, Crowd, CrowdModel, Predictor, VciParameters, arrived
 
 if TYPE_CHECKING:
+    from contextlib import ExitStack
+
+    from numpy.typing import NDArray
+
     from giveway.config import RunConfig
     from sumo_scenarios import Scenario
 
+_BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
 ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
 
 
@@ -182,7 +185,7 @@ def _crowd(spawned: Spawned) -> Crowd:
 
 def _vehicle(config: RunConfig, stack: ExitStack) -> VehicleFmu:
     settings = config.vehicle
-    bundled = {"fmi2": "2.0", "fmi3": "3.0"}.get(settings.fmu)
+    bundled = _BUNDLED.get(settings.fmu)
     path = Path(settings.fmu) if bundled is None else bundled_fmu(bundled)
     start_values = {"M": settings.mass, "alpha": settings.friction, "exact": settings.exact}
     try:

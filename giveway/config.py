@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, JsonValue, model_validator
 
 ControllerName = Literal["mpc", "pid"]
 
@@ -18,7 +18,7 @@ def option(
     default: Any, unit: str | None, description: str, *, flag: str | None = None, **bounds: Any
 ) -> Any:
     """A documented option: its unit, what it means, its flag where the derived one is clumsy."""
-    extra = {"unit": unit, "flag": flag}
+    extra: dict[str, JsonValue] = {"unit": unit, "flag": flag}
     return Field(default, description=description, json_schema_extra=extra, **bounds)
 
 

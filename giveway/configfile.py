@@ -7,14 +7,16 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import tomlkit
 from pydantic import ValidationError
-from pydantic.fields import FieldInfo
 
 from giveway.config import RunConfig, Section
 from giveway.errors import ConfigError
+
+if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
 
 Location = tuple[str, ...]
 

@@ -98,7 +98,7 @@ def closest_in_front(
     half_width: float,
     reach: float,
 ) -> tuple[float, bool]:
-    """Station of the closest person in front; whether anybody can get there by walking ``reach``."""
+    """Station of the closest person in front; can anybody get there by walking ``reach``?"""
     straight = len(stations) == 2
     closest = np.inf
     reachable = False

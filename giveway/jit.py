@@ -11,5 +11,5 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def kernel(function: Function) -> Function:
-    """Compile ``function`` at its first call; no fastmath, so that bytes do not depend on the CPU."""
+    """Compile ``function`` at its first call; no fastmath: bytes do not depend on the CPU."""
     return cast("Function", njit(cache=True, error_model="numpy")(function))

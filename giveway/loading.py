@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +12,8 @@ from sumo_scenarios import ScenarioError as UnknownScenario
 from sumo_scenarios import available, find
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from sumo_scenarios import Scenario
 
 

@@ -6,12 +6,13 @@ import hashlib
 import platform
 import xml.etree.ElementTree as ET
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from giveway import __version__
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from giveway.config import RunConfig
     from sumo_scenarios import Scenario
 

@@ -97,8 +97,20 @@ class Recorder:
         numbers = np.array(
             [(r.time, r.position, *r.pose, *r[3:8]) for r in rows], dtype=np.float64
         ).reshape(-1, 10)
+        time, position, x, y, heading, speed, acceleration, force, gap, reference_speed = (
+            np.ascontiguousarray(column) for column in numbers.T
+        )
         return EgoTrack(
-            *np.ascontiguousarray(numbers.T),
+            time=time,
+            position=position,
+            front_x=x,
+            front_y=y,
+            heading=heading,
+            speed=speed,
+            acceleration=acceleration,
+            force=force,
+            gap=gap,
+            reference_speed=reference_speed,
             acting=np.array([r.acting for r in rows], dtype=np.str_),
             reason=np.array([r.reason for r in rows], dtype=np.str_),
             solver_status=np.array([r.status for r in rows], dtype=np.str_),
@@ -107,10 +119,17 @@ class Recorder:
 
     def crowd_track(self) -> CrowdTrack:
         """The crowd's rows as arrays."""
-        rows = self._crowd.filled
-        columns = np.ascontiguousarray(rows.T)
+        step, pedestrian, x, y, vx, vy = (
+            np.ascontiguousarray(column) for column in self._crowd.filled.T
+        )
         return CrowdTrack(
-            columns[0].astype(np.int64), columns[1].astype(np.int64), *columns[2:6], self._ids
+            step=step.astype(np.int64),
+            pedestrian=pedestrian.astype(np.int64),
+            x=x,
+            y=y,
+            vx=vx,
+            vy=vy,
+            ids=self._ids,
         )
 
     def background_track(self) -> BackgroundTrack:

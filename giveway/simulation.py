@@ -24,10 +24,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import Observation
-from giveway.errors import ControlError
+from controller import ControllerError, Observation
+from fmus import FmuError
+from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.mirror import Mirror
 from giveway.recorder import EgoRow, Recorder
+from pedestrian_model import PedestrianModelError
 
 if TYPE_CHECKING:
     from giveway.assembly import Parts
@@ -92,6 +94,28 @@ class Loop:
         Raises:
             GivewayError: a part failed; everything recorded so far stays recorded.
         """
+        try:
+            return self._run(watcher, interrupted)
+        except FmuError as error:
+            raise VehicleError(str(error)) from error
+        except ControllerError as error:
+            raise ControlError(f"controller at step {self._k}: {error}") from error
+        except PedestrianModelError as error:
+            raise CrowdError(self._blame(error)) from error
+
+    def _blame(self, error: PedestrianModelError) -> str:
+        """Name the pedestrian whose state is not finite by its id."""
+        state = np.concatenate([self._crowd.position, self._crowd.velocity], axis=1)
+        bad = np.flatnonzero(~np.isfinite(state).all(axis=1))
+        if not len(bad):
+            return f"crowd at step {self._k}: {error}"
+        name = self._parts.spawned.ids[self._present[bad[0]]]
+        return (
+            f"pedestrian '{name}' at step {self._k}: position and velocity "
+            f"{state[bad[0]].tolist()}; expected finite numbers [m, m/s]"
+        )
+
+    def _run(self, watcher: Watcher | None, interrupted: Callable[[], bool]) -> Ending:
         limit = self._config.time_limit
         last_step = min(limit, self._parts.sumo.end - self._start) / self._time_step - 1e-6
         while True:

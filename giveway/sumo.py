@@ -14,23 +14,28 @@ by experiment on SUMO 1.28:
 from __future__ import annotations
 
 import collections
+import contextlib
 import itertools
 import math
 import tempfile
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from giveway.ego_path import Pose
 from giveway.errors import InstallationError, ScenarioError, SumoError
 from giveway.native_stderr import NativeStderr
-from giveway.tracks import VehicleShape
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from types import TracebackType
+
+    from numpy.typing import NDArray
+
+    from giveway.ego_path import Pose
+    from giveway.tracks import VehicleShape
 
 EGO_TYPE = "giveway_ego"
 PEDESTRIAN_TYPE = "giveway_pedestrian"
@@ -264,9 +269,7 @@ class SumoSession:
             msg = f"person id '{min(taken)}': the scenario already has this person"
             raise ScenarioError(msg)
         for name in ids:
-            self._call(
-                self._sumo.person.add, name, host_edge, 0.0, _DEPART_NOW, PEDESTRIAN_TYPE
-            )
+            self._call(self._sumo.person.add, name, host_edge, 0.0, _DEPART_NOW, PEDESTRIAN_TYPE)
             self._call(self._sumo.person.appendWalkingStage, name, [host_edge], -1.0)
 
     def remove_persons(self, ids: Sequence[str]) -> None:
@@ -289,7 +292,8 @@ class SumoSession:
         Args:
             ego: the front bumper's pose after the step.
             ids: the persons' ids.
-            x, y: of each person [m], finite.
+            x: of each person [m], finite.
+            y: of each person [m], finite.
             angles: of each person [deg, 0 = north, clockwise], finite.
 
         Raises:
@@ -347,10 +351,8 @@ class SumoSession:
             return
         SumoSession._running = False
         with self._stderr:
-            try:
+            with contextlib.suppress(Exception):  # the simulation is being given up anyway
                 self._sumo.simulationStep()  # carries out pending moves, which close() would leak
-            except Exception:  # noqa: BLE001, S110 - the simulation is being given up anyway
-                pass
             self._sumo.close()
         self._stderr.close()
 
@@ -369,7 +371,7 @@ def _compare(
 
 def _import_libsumo() -> Any:
     try:
-        import libsumo  # noqa: PLC0415 - imported late: it takes half a second
+        import libsumo
     except ImportError as error:
         msg = f"libsumo cannot be imported ({error}); reinstall with: pip install giveway"
         raise InstallationError(msg) from error
@@ -387,9 +389,7 @@ def _own_types(ego: VehicleShape) -> str:
 """
 
 
-def _command(
-    config_file: Path, types: Path, *, seed: int, step_length: float | None
-) -> list[str]:
+def _command(config_file: Path, types: Path, *, seed: int, step_length: float | None) -> list[str]:
     additional = [str(types), *_additional_files(config_file)]
     command = ["sumo", "-c", str(config_file)]
     command += ["--additional-files", ",".join(additional)]

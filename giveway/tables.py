@@ -92,10 +92,10 @@ def _walking(time: Array, crowd: CrowdTrack) -> pd.DataFrame:
     speed = np.hypot(crowd.vx, crowd.vy)
     angle = navigational(np.arctan2(crowd.vy, crowd.vx))
     angle = np.where(speed < _STANDING, np.nan, angle)
-    angle = pd.Series(angle).groupby(crowd.pedestrian).ffill().fillna(0.0).to_numpy()
+    angles = pd.Series(angle).groupby(crowd.pedestrian).ffill().fillna(0.0)
     ids = np.array(crowd.ids, dtype=object)[crowd.pedestrian]
     placed = {"time": time[crowd.step], "id": ids, "type": "pedestrian"}
-    moving = {"angle": angle, "speed": speed, "vx": crowd.vx, "vy": crowd.vy}
+    moving = {"angle": angles, "speed": speed, "vx": crowd.vx, "vy": crowd.vy}
     return pd.DataFrame({**placed, "x": crowd.x, "y": crowd.y, **moving})
 
 

@@ -6,9 +6,12 @@ Only what the asked-for command needs is imported, so that ``giveway --help`` an
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from giveway.errors import GivewayError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 

@@ -28,7 +28,7 @@ def build_app(arguments: Sequence[str]) -> typer.Typer:
         pretty_exceptions_enable=False,
         rich_markup_mode="rich" if command else None,
     )
-    app.callback()(_version)
+    app.callback()(_main)
     app.command("run")(_with_flags(_run, command))
     app.command("scenarios")(_scenarios)
     app.command("config")(_with_flags(_config, command))
@@ -48,22 +48,29 @@ def _with_flags(function: Callable[..., None], command: str | None) -> Callable[
     return accept_config_flags(function)
 
 
-def _version(
-    version: Annotated[
-        bool, typer.Option("--version", help="Print the version and exit.", is_eager=True)
-    ] = False,
-) -> None:
-    if version:
+def _print_version(wanted: bool) -> None:
+    if wanted:
         from giveway import __version__
 
         typer.echo(f"giveway {__version__}")
         raise typer.Exit
 
 
+def _main(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Print the version and exit.", is_eager=True, callback=_print_version
+        ),
+    ] = False,
+) -> None: ...
+
+
 def _run(
     settings: dict[str, object],
     scenario: Annotated[
-        str | None, typer.Argument(help="Bundled scenario, folder or .sumocfg (default shared_space).")
+        str | None,
+        typer.Argument(help="Bundled scenario, folder or .sumocfg (default shared_space)."),
     ] = None,
     config: Annotated[
         Path | None, typer.Option(help="TOML file with options; flags override it.")
@@ -120,9 +127,9 @@ def _plot() -> None:
 
 
 def _influence(
-    out: Annotated[
-        Path, typer.Option(help="Picture to write: .png, .svg or .pdf.")
-    ] = Path("influence.png"),
+    out: Annotated[Path, typer.Option(help="Picture to write: .png, .svg or .pdf.")] = Path(
+        "influence.png"
+    ),
     speeds: Annotated[
         str, typer.Option(help="Vehicle speeds in m/s, comma-separated, one panel each.")
     ] = "0,1,2,4",

@@ -5,12 +5,14 @@ from __future__ import annotations
 import inspect
 import types
 import typing
-from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
 import typer
 
 from giveway.configfile import Location, Option, options
+
+if typing.TYPE_CHECKING:
+    from collections.abc import Callable
 
 _PANELS = {
     "ego": "Ego",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
@@ -13,6 +13,9 @@ from giveway.figures import save_figure
 from giveway.pictures import influence_picture
 from giveway.tracks import VehicleShape
 from pedestrian_model import PRESETS
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _SUFFIXES = (".png", ".svg", ".pdf")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +16,8 @@ from giveway.loading import load
 from giveway.simulation import Ending
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from giveway.api import RunResult
     from giveway.config import RunConfig
 

@@ -33,7 +33,7 @@ def refused(*words: object, cwd: Path, code: int = 2) -> str:
 
 
 def test_the_readmes_run(tmp_path: Path) -> None:
-    words = "run shared_space --pedestrians 30 --controller mpc --seed 1".split()
+    words = ["run", "shared_space", "--pedestrians", "30", "--controller", "mpc", "--seed", "1"]
     done = giveway(*words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "Time to the goal" in done.stdout

@@ -27,7 +27,7 @@ def test_everybody_starts_in_the_area_with_space_around() -> None:
     offsets = crowd.position[:, None] - crowd.position[None]
     distance = np.hypot(offsets[..., 0], offsets[..., 1])[np.triu_indices(100, 1)]
     assert distance.min() >= 0.5
-    assert crowd.destination == pytest.approx(crowd.position + (0, 30))
+    assert crowd.destination == pytest.approx(crowd.position + np.array([0, 30]))
 
 
 def test_desired_speeds_are_truncated_normal() -> None:
