@@ -144,9 +144,12 @@ def _receive(
     environment: int | None, _name: bytes, status: int, _category: bytes, message: bytes | None
 ) -> None:
     journal = _journals.get(environment or 0)
-    if journal is not None:
+    if journal is not None and (_FORMATS_MESSAGES or b"%" not in (message or b"")):
         journal.add(status, message)
 
+
+# It has none for Linux on ARM: there, messages that need expansion are left out.
+_FORMATS_MESSAGES = hasattr(fmi2, "addLoggerProxy")
 
 _RECEIVER = fmi2.fmi2CallbackLoggerTYPE(_receive)  # lives as long as any FMU may call it
 
@@ -158,7 +161,8 @@ def _fmi2_callbacks(journal: Journal) -> Any:
     callbacks.allocateMemory = fmi2.defaultCallbacks.allocateMemory
     callbacks.freeMemory = fmi2.defaultCallbacks.freeMemory
     callbacks.componentEnvironment = id(journal)
-    fmi2.addLoggerProxy(byref(callbacks))
+    if _FORMATS_MESSAGES:
+        fmi2.addLoggerProxy(byref(callbacks))
     return callbacks
 
 
