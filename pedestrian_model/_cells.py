@@ -11,9 +11,9 @@ copied back.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pedestrian_model._jit import add_block, fma, inlined, kernel
+from pedestrian_model._jit import add_block, copy_block, fma, inlined, kernel
 from pedestrian_model._pairs import (
     COINCIDENT_2,
     PairConstants,
@@ -31,35 +31,53 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 # Sizes relative to the interaction radius, found by benchmarks/bench_crowd.py.
-_STRIPS = 3.0  # strips per interaction radius
-_COLUMNS = 12.0  # columns per interaction radius
-_TILE = 4  # columns per tile
-_SAFE = 1.0 + 1e-6  # reach of the search, so that rounding loses nobody
+_STRIPS = 4.0  # strips per interaction radius
+_COLUMNS = 16.0  # columns per interaction radius
+_TILE = 6  # columns per tile
 _ROOM = STRIDE - 2 * BLOCK  # candidates the buffer holds
 
 
+class Grid(NamedTuple):
+    """Where the cells lie."""
+
+    x_0: float  # [m] the lower left corner
+    y_0: float
+    per_x: float  # [1/m] columns
+    per_y: float  # [1/m] strips
+    columns: int
+    strips: int
+    reach: float  # [m] the interaction radius
+    slack: float  # [m] so that rounding loses nobody
+
+
 @inlined
-def _cell_sizes(width: float, height: float, reach: float, most: int) -> tuple[float, float]:
-    """Columns and strips per metre, coarser than planned where they would be too many."""
+def _lay_grid(position: NDArray[np.float64], reach: float, most: int) -> Grid:
+    """The grid over a crowd, coarser than planned where it would have more than ``most`` cells."""
+    x_0, x_1, y_0, y_1 = position[0, 0], position[0, 0], position[0, 1], position[0, 1]
+    for i in range(position.shape[0]):
+        x_0, x_1 = min(x_0, position[i, 0]), max(x_1, position[i, 0])
+        y_0, y_1 = min(y_0, position[i, 1]), max(y_1, position[i, 1])
+    width, height = x_1 - x_0, y_1 - y_0
     per_x, per_y = _COLUMNS / reach, _STRIPS / reach
     while (width * per_x + 1.0) * (height * per_y + 1.0) > most:
         per_x *= 0.5
         per_y *= 0.5
-    return per_x, per_y
+    slack = 1e-6 * reach + 1e-15 * (abs(x_0) + abs(x_1) + abs(y_0) + abs(y_1))
+    columns, strips = int(width * per_x) + 1, int(height * per_y) + 1
+    return Grid(x_0, y_0, per_x, per_y, columns, strips, reach, slack)
 
 
 @inlined
-def _sort(
-    index: NDArray[np.int64], position: NDArray[np.float64], x_0: float, y_0: float,
-    per_x: float, per_y: float, columns: int, cells: int,
-) -> None:
+def _sort(index: NDArray[np.int64], position: NDArray[np.float64], grid: Grid) -> None:
     """Counting sort: index[0] the order, index[2] the first of each cell. Stable: deterministic."""
     order, cell, first = index[0], index[1], index[2]
+    cells = grid.columns * grid.strips
     for k in range(cells + 1):
         first[k] = 0
     for i in range(position.shape[0]):
-        column = int((position[i, 0] - x_0) * per_x)
-        cell[i] = int((position[i, 1] - y_0) * per_y) * columns + column
+        column = int((position[i, 0] - grid.x_0) * grid.per_x)
+        strip = int((position[i, 1] - grid.y_0) * grid.per_y)
+        cell[i] = strip * grid.columns + column
         first[cell[i] + 1] += 1
     for k in range(cells):
         first[k + 1] += first[k]
@@ -75,7 +93,7 @@ def _sort(
 def _sum(buffer: NDArray[np.float64], at: int, blocks: int) -> float:
     """The sum of whole blocks of the buffer in one fixed order: by lanes, then pairwise."""
     for k in range(1, blocks):
-        add_block(buffer, at, at + k * BLOCK)
+        add_block(buffer, at, buffer, at + k * BLOCK)
     a, b = (buffer[at], buffer[at + 1]), (buffer[at + 2], buffer[at + 3])
     c, d = (buffer[at + 4], buffer[at + 5]), (buffer[at + 6], buffer[at + 7])
     return ((a[0] + c[0]) + (b[0] + d[0])) + ((a[1] + c[1]) + (b[1] + d[1]))
@@ -131,33 +149,39 @@ def _bounds(
 
 @inlined
 def _borrow(
-    rows: NDArray[np.float64], buffer: NDArray[np.float64], who: NDArray[np.int64], at: int,
-    start: int, stop: int, box: tuple[float, float, float, float], reach_2: float,
-) -> int:
-    """Copy the rows start ... stop - 1 that lie within reach of a box to place ``at`` and on.
+    rows: NDArray[np.float64], buffer: NDArray[np.float64], at: int, start: int, count: int
+) -> None:
+    """Copy ``count`` rows from ``start`` on to place ``at`` of the buffer, in whole blocks.
 
-    Returns:
-        The place after the last one.
+    What is copied too much is overwritten by the next to be borrowed, or left out by ``_meet``.
     """
-    for j in range(start, stop):
-        x, y = rows[PX, j], rows[PY, j]
-        buffer[BX + at] = x
-        buffer[BY + at] = y
-        buffer[BVX + at] = rows[VX, j]
-        buffer[BVY + at] = rows[VY, j]
-        buffer[BUX + at] = rows[UX, j]
-        buffer[BUY + at] = rows[UY, j]
-        who[at] = j
-        dx = max(max(box[0] - x, x - box[1]), 0.0)
-        dy = max(max(box[2] - y, y - box[3]), 0.0)
-        at += dx * dx + dy * dy <= reach_2  # the next one overwrites whom nobody can feel
-    return at
+    for k in range(0, count, BLOCK):
+        copy_block(buffer, BX + at + k, rows[PX], start + k)
+        copy_block(buffer, BY + at + k, rows[PY], start + k)
+        copy_block(buffer, BVX + at + k, rows[VX], start + k)
+        copy_block(buffer, BVY + at + k, rows[VY], start + k)
+        copy_block(buffer, BUX + at + k, rows[UX], start + k)
+        copy_block(buffer, BUY + at + k, rows[UY], start + k)
+
+
+@inlined
+def _give_back(
+    rows: NDArray[np.float64], buffer: NDArray[np.float64], at: int, start: int, count: int
+) -> None:
+    """Add the forces at place ``at`` of the buffer to ``count`` rows from ``start`` on."""
+    whole = count // BLOCK * BLOCK
+    for k in range(0, whole, BLOCK):
+        add_block(rows[FX], start + k, buffer, BACK_X + at + k)
+        add_block(rows[FY], start + k, buffer, BACK_Y + at + k)
+    for k in range(whole, count):
+        rows[FX, start + k] += buffer[BACK_X + at + k]
+        rows[FY, start + k] += buffer[BACK_Y + at + k]
 
 
 @inlined
 def _meet_candidates(
     rows: NDArray[np.float64], begin: int, end: int, segments: NDArray[np.int64], count: int,
-    who: NDArray[np.int64], buffer: NDArray[np.float64], c: PairConstants,
+    buffer: NDArray[np.float64], c: PairConstants,
 ) -> int:
     """The forces between the rows begin ... end - 1 and the later ones in the ``segments``.
 
@@ -165,57 +189,66 @@ def _meet_candidates(
         rows: the workspace, sorted by cell.
         begin: first row of the tile, and of the first segment.
         end: last row of the tile, plus one.
-        segments: (2, at least count) first row, and last row plus one; consumed.
+        segments: (4, more than count) first row, last row plus one, and two rows of scratch.
         count: how many segments.
-        who: scratch.
         buffer: what does not fit into it is met in several goes.
         c: the constants.
 
     Returns:
         How many pairs coincide and were left out.
     """
-    box = _bounds(rows, begin, end)
     coincident, segment = 0, 0
     while segment < count:
-        used = 0
+        used, pieces, first = 0, 0, segments[0, segment]
         while segment < count and used < _ROOM:
             start = segments[0, segment]
-            stop = min(segments[1, segment], start + _ROOM - used)
-            used = _borrow(rows, buffer, who, used, start, stop, box, c.r_max_2 * _SAFE)
-            segments[0, segment] = stop
-            segment += stop == segments[1, segment]
+            take = min(segments[1, segment] - start, _ROOM - used)
+            _borrow(rows, buffer, used, start, take)
+            segments[2, pieces], segments[3, pieces] = start, take
+            used, pieces = used + take, pieces + 1
+            segments[0, segment] += take
+            segment += segments[0, segment] == segments[1, segment]
         for k in range(used + BLOCK):
             buffer[BACK_X + k] = 0.0
             buffer[BACK_Y + k] = 0.0
         for i in range(begin, end):
-            start = max(0, i + 1 - who[0])  # in the own strip only those after i
+            start = max(0, i + 1 - first)  # in the own strip only those after i
             if start < used:
                 coincident += _meet(rows, i, buffer, start, used, c)
-        for k in range(used):
-            rows[FX, who[k]] += buffer[BACK_X + k]
-            rows[FY, who[k]] += buffer[BACK_Y + k]
+        at = 0
+        for k in range(pieces):
+            _give_back(rows, buffer, at, segments[2, k], segments[3, k])
+            at += segments[3, k]
     return coincident
 
 
 @inlined
 def _find_segments(
-    first: NDArray[np.int64], segments: NDArray[np.int64], strip: int, left: int, begin: int,
-    columns: int, strips: int, per_x: float, per_y: float, reach: float,
+    rows: NDArray[np.float64], first: NDArray[np.int64], segments: NDArray[np.int64],
+    begin: int, end: int, strip: int, grid: Grid,
 ) -> int:
-    """The rows within reach of a tile, strip by strip upwards; how many segments they make."""
-    right = min(left + _TILE, columns) - 1
+    """The rows within reach of the box round the rows of a tile, strip by strip upwards.
+
+    Returns:
+        How many segments they make.
+    """
+    x_low, x_high, y_high = rows[PX, begin], rows[PX, begin], rows[PY, begin]
+    for i in range(begin + 1, end):
+        x_low, x_high = min(x_low, rows[PX, i]), max(x_high, rows[PX, i])
+        y_high = max(y_high, rows[PY, i])
     count = 0
-    for above in range(min(int(reach * per_y) + 2, strips - strip)):
-        gap = max(0, above - 1) / per_y
-        if gap >= reach:
+    for above in range(min(int(grid.reach * grid.per_y) + 2, grid.strips - strip)):
+        gap = (strip + above) / grid.per_y + grid.y_0 - y_high - grid.slack
+        if gap >= grid.reach:
             break
-        margin = int(math.sqrt(reach * reach - gap * gap) * per_x) + 1
-        base = (strip + above) * columns
-        start = begin if above == 0 else first[base + max(left - margin, 0)]
-        stop = first[base + min(right + margin, columns - 1) + 1]
+        half = math.sqrt(grid.reach**2 - max(gap, 0.0) ** 2) + grid.slack
+        left = max(int((x_low - half - grid.x_0) * grid.per_x), 0)
+        right = min(int((x_high + half - grid.x_0) * grid.per_x), grid.columns - 1)
+        base = (strip + above) * grid.columns
+        start = begin if above == 0 else first[base + left]
+        stop = first[base + right + 1]
         if stop > start:
-            segments[0, count] = start
-            segments[1, count] = stop
+            segments[0, count], segments[1, count] = start, stop
             count += 1
     return count
 
@@ -230,27 +263,18 @@ def add_near_pairs(
     A function of its own in machine code: inlined into the step, its loops lose their registers.
     """
     c = pair_constants(constants[0])
-    n, reach = position.shape[0], constants[0].r_max * _SAFE
-    x_0, x_1, y_0, y_1 = position[0, 0], position[0, 0], position[0, 1], position[0, 1]
-    for i in range(n):
-        x_0, x_1 = min(x_0, position[i, 0]), max(x_1, position[i, 0])
-        y_0, y_1 = min(y_0, position[i, 1]), max(y_1, position[i, 1])
-    per_x, per_y = _cell_sizes(x_1 - x_0, y_1 - y_0, reach, index.shape[1] - 2)
-    columns, strips = int((x_1 - x_0) * per_x) + 1, int((y_1 - y_0) * per_y) + 1
-    _sort(index, position, x_0, y_0, per_x, per_y, columns, columns * strips)
+    grid = _lay_grid(position, constants[0].r_max, index.shape[1] - 2)
+    _sort(index, position, grid)
     order, first = index[0], index[2]
-    # after the sort, the cell of each pedestrian is no longer needed
-    segments, who = index[1, :16].reshape(2, 8), index[1, 16 : 16 + STRIDE]
+    segments = index[1, :64].reshape(4, 16)  # free now: the cell of each was for the sort only
     fill(rows, order, position, velocity)
-    for strip in range(strips):
-        for left in range(0, columns, _TILE):
-            begin = first[strip * columns + left]
-            end = first[strip * columns + min(left + _TILE, columns)]
+    for strip in range(grid.strips):
+        for left in range(0, grid.columns, _TILE):
+            begin = first[strip * grid.columns + left]
+            end = first[strip * grid.columns + min(left + _TILE, grid.columns)]
             if begin == end:
                 continue
-            count = _find_segments(
-                first, segments, strip, left, begin, columns, strips, per_x, per_y, reach
-            )
-            if _meet_candidates(rows, begin, end, segments, count, who, buffer, c) > 0:
+            count = _find_segments(rows, first, segments, begin, end, strip, grid)
+            if _meet_candidates(rows, begin, end, segments, count, buffer, c) > 0:
                 for i in range(begin, end):
-                    add_coincident(rows, order, i, n, c)
+                    add_coincident(rows, order, i, position.shape[0], c)

@@ -55,17 +55,34 @@ def _from_bits(_typing: Any, k: Any) -> Any:
     return types.float64(k), generate
 
 
-def _add_block(_typing: Any, array: Any, to: Any, at: Any) -> Any:
+def _block_pointer(context: Any, builder: Any, array_type: Any, array: Any, at: Any) -> Any:
+    """Where a block of eight float64 of a 1-D array begins."""
+    data = context.make_array(array_type)(context, builder, array).data
+    block = ir.VectorType(ir.DoubleType(), 8).as_pointer()
+    return builder.bitcast(builder.gep(data, [at]), block)
+
+
+def _copy_block(_typing: Any, to_array: Any, to: Any, array: Any, at: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
-        block = ir.VectorType(ir.DoubleType(), 8).as_pointer()
-        target = builder.bitcast(builder.gep(data, [arguments[1]]), block)
-        source = builder.bitcast(builder.gep(data, [arguments[2]]), block)
+        kinds = signature.args
+        target = _block_pointer(context, builder, kinds[0], arguments[0], arguments[1])
+        source = _block_pointer(context, builder, kinds[2], arguments[2], arguments[3])
+        builder.store(builder.load(source, align=8), target, align=8)
+        return context.get_dummy_value()
+
+    return types.void(to_array, to, array, at), generate
+
+
+def _add_block(_typing: Any, to_array: Any, to: Any, array: Any, at: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        kinds = signature.args
+        target = _block_pointer(context, builder, kinds[0], arguments[0], arguments[1])
+        source = _block_pointer(context, builder, kinds[2], arguments[2], arguments[3])
         total = builder.fadd(builder.load(target, align=8), builder.load(source, align=8))
         builder.store(total, target, align=8)
         return context.get_dummy_value()
 
-    return types.void(array, to, at), generate
+    return types.void(to_array, to, array, at), generate
 
 
 #: a * b + c, rounded once: one instruction, and the same result wherever it runs.
@@ -74,5 +91,11 @@ fma = cast("Callable[[float, float, float], float]", intrinsic(_fma))
 bits = cast("Callable[[float], int]", intrinsic(_bits))
 #: The float64 of these bits.
 from_bits = cast("Callable[[int], float]", intrinsic(_from_bits))
-#: array[to:to + 8] += array[at:at + 8], eight sums at once: a loop of eight stays scalar.
-add_block = cast("Callable[[NDArray[np.float64], int, int], None]", intrinsic(_add_block))
+#: to_array[to:to + 8] = array[at:at + 8], in one go and unchecked: short loops stay scalar.
+copy_block = cast(
+    "Callable[[NDArray[np.float64], int, NDArray[np.float64], int], None]", intrinsic(_copy_block)
+)
+#: to_array[to:to + 8] += array[at:at + 8], likewise.
+add_block = cast(
+    "Callable[[NDArray[np.float64], int, NDArray[np.float64], int], None]", intrinsic(_add_block)
+)
