@@ -12,7 +12,17 @@ typedef struct {
 
 static void write_message(const Instance *self, Status status, const char *category, const char *message) {
     const Component *c = (const Component *)self;
-    if (c->logger != NULL) c->logger(c->environment, self->name, (fmi2Status)status, category, "%s", message);
+    if (c->logger == NULL) return;
+    /* To the host it is a printf format. Escaped instead of sent through "%s", it can also be read by
+     * a host that cannot expand formats, as those in languages without C's variable arguments. */
+    char format[2 * MESSAGE_SIZE];
+    char *end = format;
+    for (; *message != '\0'; ++message) {
+        if (*message == '%') *end++ = '%';
+        *end++ = *message;
+    }
+    *end = '\0';
+    c->logger(c->environment, self->name, (fmi2Status)status, category, format);
 }
 
 static fmi2Status unsupported(fmi2Component c, const char *function) {

@@ -34,7 +34,7 @@ void instance_destroy(Instance *self) {
 }
 
 static void report(const Instance *self, Status status, const char *category, const char *format, va_list values) {
-    char message[512];
+    char message[MESSAGE_SIZE];
     vsnprintf(message, sizeof message, format, values);
     self->write(self, status, category, message);
 }

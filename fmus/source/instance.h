@@ -45,7 +45,7 @@ typedef struct {
     double stop_time; /* [s] infinite where the host defines none */
 } Snapshot;
 
-enum { SERIALIZED_VALUES = 14 };
+enum { SERIALIZED_VALUES = 14, MESSAGE_SIZE = 512 };
 
 typedef struct Instance Instance;
 struct Instance {
