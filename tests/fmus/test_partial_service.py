@@ -1,0 +1,106 @@
+"""FMUs and hosts that offer less than everything: what they lack is said, the rest works.
+
+Where it takes another FMU, it is the shipped one with a piece of its C source replaced, compiled
+for this platform.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import zipfile
+
+import fmpy
+import pytest
+from fmpy import fmi2
+
+import fmus
+from fmus import VehicleFmu, bundled_fmu
+
+H = 0.05  # [s]
+
+needs_compiler = pytest.mark.skipif(
+    importlib.util.find_spec("ziglang") is None,
+    reason="ziglang is not installed: pip install giveway[build]",
+)
+
+
+@pytest.fixture
+def rebuilt(fmi_version, remake, tmp_path):
+    """The shipped FMU with a piece of its C source replaced."""
+    from fmus.build import TARGETS, compile_library
+
+    def make(file, old, new):
+        folder = tmp_path / "source"
+        folder.mkdir()
+        with zipfile.ZipFile(bundled_fmu(fmi_version)) as archive:
+            for name in archive.namelist():
+                if name.startswith("sources/"):
+                    (folder / name.removeprefix("sources/")).write_bytes(archive.read(name))
+        source = (folder / file).read_text()
+        assert source.count(old) == 1
+        (folder / file).write_text(source.replace(old, new))
+        target = next(t for t in TARGETS if t.folder == fmpy.platform_tuple)
+        files = ("plant.c", "instance.c", "fmi2.c" if fmi_version == "2.0" else "fmi3.c")
+        library = compile_library(folder, files, target, "LongitudinalVehicle")
+        return remake(replace=lambda name: library if name.startswith("binaries/") else None)
+
+    return make
+
+
+@needs_compiler
+@pytest.mark.parametrize("flag", ["earlyReturn", "terminateSimulation"])
+@pytest.mark.parametrize("fmi_version", ["3.0"], indirect=True)
+def test_a_step_of_fmi_3_that_ends_early(rebuilt, flag):
+    path = rebuilt("fmi3.c", f"*{flag} = fmi3False;", f"*{flag} = fmi3True;")
+    with VehicleFmu(path, step_size=H) as vehicle:
+        vehicle.start(speed=1.0)
+        with pytest.raises(fmus.FmuStepError, match="0 s"):
+            vehicle.step(0.0)
+
+
+@needs_compiler
+def test_outputs_that_cannot_be_read(rebuilt):
+    line = "case SPEED: *value = current_state(self).speed; return STATUS_OK;"
+    fault = 'case SPEED: return instance_error(self, "no %s today", "speed");'
+    path = rebuilt("instance.c", line, fault)
+    with VehicleFmu(path, step_size=H) as vehicle, pytest.raises(fmus.FmuError, match="no speed"):
+        vehicle.start(speed=1.0)
+
+
+def test_a_failed_step_can_be_taken_back(fmu):
+    with VehicleFmu(fmu, step_size=H, start_values={"M": 1e-9, "alpha": 0.0}) as vehicle:
+        vehicle.start(speed=1.0)
+        vehicle.step(0.0)
+        saved = vehicle.save_state()
+        with pytest.raises(fmus.FmuStepError, match="range of numbers"):
+            vehicle.step(1e300)
+        vehicle.restore_state(saved)
+        vehicle.step(0.0)
+        assert (vehicle.time, vehicle.position) == (2 * H, 2 * H)
+
+
+def test_an_fmu_that_cannot_save_its_state(remake):
+    def edit(xml):
+        return re.sub('(canGetAndSetFMU[sS]tate=)"true"', r'\1"false"', xml)
+
+    with VehicleFmu(remake(edit=edit), step_size=H) as vehicle:
+        vehicle.start()
+        with pytest.raises(fmus.FmuStateError, match="canGetAndSet"):
+            vehicle.save_state()
+
+
+@pytest.mark.parametrize("fmi_version", ["2.0"], indirect=True)
+def test_fmi_2_runs_where_fmpy_has_no_library_for_messages(fmu, monkeypatch):
+    """FMPy ships its message formatter for fewer platforms than the FMU: not for Linux on ARM."""
+    monkeypatch.delattr(fmi2, "addLoggerProxy")
+    monkeypatch.setattr("fmus.fmi._FORMATS_MESSAGES", False)
+    with VehicleFmu(fmu, step_size=H, start_values={"M": 500.0}) as vehicle:
+        vehicle.start(speed=1.0)
+        vehicle.step(0.0)
+        assert vehicle.position == H
+    with (
+        VehicleFmu(fmu, step_size=H, start_values={"M": -5.0}) as vehicle,
+        pytest.raises(fmus.FmuStartError, match=rf"{re.escape(str(fmu))}[^%]*\Z"),
+    ):
+        vehicle.start()
