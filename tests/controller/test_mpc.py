@@ -189,7 +189,7 @@ def test_the_same_problems_give_the_same_bytes_whatever_came_before(solver, draw
 
     mpc = Mpc(model, parameters)
     first = answers(mpc)
-    mpc.solve(0.0, 12.0, 0.0, np.full(15, 30.0))
+    assert mpc.solve(0.0, 4.0, 400.0, np.full(15, 10.2)).found  # with many constraints active
     mpc.reset()
     assert answers(mpc) == first
     assert answers(Mpc(model, parameters)) == first

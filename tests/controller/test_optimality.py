@@ -128,7 +128,7 @@ def test_refine_adds_what_is_missed_and_drops_what_pulls(guess, corrections):
 
 @pytest.mark.parametrize("gap", [10.7, 10.8, 11.0, np.inf])
 def test_osqp_from_a_cold_start_finds_the_active_set_of_an_easy_problem(gap):
-    """Harder ones, where the car just stops, exhaust 4000 iterations: hence the exact start."""
+    """Harder ones, where the car just stops, can take thousands of iterations."""
     problem = SpeedProblem(LongitudinalModel(), MpcParameters())
     assert problem.update(0.0, 4.0, 400.0, np.full(15, gap)) == UNDECIDED
     bounds = (problem.rows, problem.lower, problem.upper, problem.target)
