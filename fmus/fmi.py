@@ -8,7 +8,8 @@ import hashlib
 import os
 import weakref
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from ctypes import CDLL, byref, c_bool, c_double, c_int, c_size_t, c_uint32, c_void_p
 from pathlib import Path
 from types import MappingProxyType
@@ -16,9 +17,16 @@ from typing import Any
 
 import fmpy
 from fmpy import fmi2, fmi3
+from fmpy.fmi1 import FMICallException
 from fmpy.model_description import read_model_description
 
-from fmus.errors import FmuFileError, FmuInterfaceError, FmuPlatformError, FmuStartError
+from fmus.errors import (
+    FmuFileError,
+    FmuInterfaceError,
+    FmuPlatformError,
+    FmuStartError,
+    FmuStateError,
+)
 from fmus.instance import DISCARD, WARNING, Instance, Journal, Tick
 from fmus.model import FmuDescription, Model, Variable
 
@@ -208,13 +216,25 @@ class _FmpyInstance(Instance):
             self._fmu.terminate()
 
     def save(self) -> Any:
-        return self._fmu.getFMUState()
+        with self._refusal("does not save its state"):
+            return self._fmu.getFMUState()
 
     def restore(self, state: Any) -> None:
-        self._fmu.setFMUState(state)
+        with self._refusal("does not return to the saved state"):
+            self._fmu.setFMUState(state)
 
     def free_state(self, state: Any) -> None:
-        self._fmu.freeFMUState(state)
+        with suppress(FMICallException):  # nothing is left to do for a state that stays
+            self._fmu.freeFMUState(state)
+
+    @contextmanager
+    def _refusal(self, what: str) -> Iterator[None]:
+        try:
+            yield
+        except FMICallException as error:
+            reason = self.journal.take() or str(error)
+            msg = f"{self.model.path}: the FMU {what}: {reason}; start the vehicle again"
+            raise FmuStateError(msg) from error
 
     def _require_read(self, status: int) -> None:
         if status > WARNING:

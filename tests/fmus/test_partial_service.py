@@ -104,3 +104,15 @@ def test_fmi_2_runs_where_fmpy_has_no_library_for_messages(fmu, monkeypatch):
         pytest.raises(fmus.FmuStartError, match=rf"{re.escape(str(fmu))}[^%]*\Z"),
     ):
         vehicle.start()
+
+
+@needs_compiler
+def test_an_fmu_that_fails_to_save_its_state_after_all(rebuilt):
+    line = "    **saved = self->now;\n"
+    path = rebuilt("instance.c", line, f'{line}    return instance_error(self, "none today");\n')
+    with VehicleFmu(path, step_size=H) as vehicle:
+        vehicle.start(speed=1.0)
+        with pytest.raises(fmus.FmuStateError, match="none today"):
+            vehicle.save_state()
+        vehicle.step(0.0)
+        assert vehicle.position == H
