@@ -10,5 +10,5 @@ FILES: Final[dict[FmiVersion, str]] = {"2.0": f"{MODEL}.fmi2.fmu", "3.0": f"{MOD
 
 
 def bundled_fmu(fmi_version: FmiVersion = "2.0") -> Path:
-    """The shipped vehicle FMU for an FMI version; FMI 2.0 has the lower overhead per step."""
+    """The shipped vehicle FMU for an FMI version; FMI 2.0 is set up faster."""
     return Path(__file__).parent / FILES[fmi_version]
