@@ -76,8 +76,12 @@ def jupedsim_crowd(n: int) -> Any:
         journey, stage = ways[i % 2]
         simulation.add_agent(
             jupedsim.SocialForceModelAgentParameters(
-                position=(float(x[i, 0]), float(x[i, 1])), journey_id=journey, stage_id=stage,
-                desired_speed=SPEED, radius=SIM.body_radius, mass=SIM.mass,
+                position=(float(x[i, 0]), float(x[i, 1])),
+                journey_id=journey,
+                stage_id=stage,
+                desired_speed=SPEED,
+                radius=SIM.body_radius,
+                mass=SIM.mass,
             )
         )
     return simulation
@@ -144,9 +148,7 @@ def crossover() -> None:
     for n in (30, 60, 100, 130, 160, 200, 250, 300):
         count = 6_000 // n
         ring, cells = (
-            steps_of(
-                CrowdModel(cell_list_from=limit), our_crowd(n), Vehicles.empty(), count
-            )
+            steps_of(CrowdModel(cell_list_from=limit), our_crowd(n), Vehicles.empty(), count)
             for limit in (10**9, 0)
         )
         a, b = (time * 1e9 / (n * count) for time in interleaved(ring, cells))

@@ -22,8 +22,27 @@ from pedestrian_model._pairs import (
     pair_constants,
 )
 from pedestrian_model._rows import (
-    BACK_X, BACK_Y, BLOCK, BUX, BUY, BVX, BVY, BX, BY, FX, FY, ON_X, ON_Y, PX, PY, STRIDE,
-    UX, UY, VX, VY, fill,
+    BACK_X,
+    BACK_Y,
+    BLOCK,
+    BUX,
+    BUY,
+    BVX,
+    BVY,
+    BX,
+    BY,
+    FX,
+    FY,
+    ON_X,
+    ON_Y,
+    PX,
+    PY,
+    STRIDE,
+    UX,
+    UY,
+    VX,
+    VY,
+    fill,
 )
 
 if TYPE_CHECKING:
@@ -94,14 +113,18 @@ def _sum(buffer: NDArray[np.float64], at: int, blocks: int) -> float:
     """The sum of whole blocks of the buffer in one fixed order: by lanes, then pairwise."""
     for k in range(1, blocks):
         add_block(buffer, at, buffer, at + k * BLOCK)
-    a, b = (buffer[at], buffer[at + 1]), (buffer[at + 2], buffer[at + 3])
-    c, d = (buffer[at + 4], buffer[at + 5]), (buffer[at + 6], buffer[at + 7])
-    return ((a[0] + c[0]) + (b[0] + d[0])) + ((a[1] + c[1]) + (b[1] + d[1]))
+    even = (buffer[at] + buffer[at + 4]) + (buffer[at + 2] + buffer[at + 6])
+    odd = (buffer[at + 1] + buffer[at + 5]) + (buffer[at + 3] + buffer[at + 7])
+    return float(even + odd)
 
 
 @inlined
 def _meet(
-    rows: NDArray[np.float64], i: int, buffer: NDArray[np.float64], start: int, stop: int,
+    rows: NDArray[np.float64],
+    i: int,
+    buffer: NDArray[np.float64],
+    start: int,
+    stop: int,
     c: PairConstants,
 ) -> int:
     """The forces between row i and the candidates start ... stop - 1 of the buffer.
@@ -122,9 +145,18 @@ def _meet(
         apart = r_2 >= COINCIDENT_2
         coincident += (k < stop - start) & (not apart)
         f = pair(
-            dx, dy, r, r - c.two_R, vx - from_start[BVX + k], vy - from_start[BVY + k],
-            ux, uy, from_start[BUX + k], from_start[BUY + k],
-            (r_2 <= c.r_max_2) & apart & (k < stop - start), c,
+            dx,
+            dy,
+            r,
+            r - c.two_R,
+            vx - from_start[BVX + k],
+            vy - from_start[BVY + k],
+            ux,
+            uy,
+            from_start[BUX + k],
+            from_start[BUY + k],
+            (r_2 <= c.r_max_2) & apart & (k < stop - start),
+            c,
         )
         from_start[ON_X + k] = f[0]
         from_start[ON_Y + k] = f[1]
@@ -136,9 +168,7 @@ def _meet(
 
 
 @inlined
-def _bounds(
-    rows: NDArray[np.float64], begin: int, end: int
-) -> tuple[float, float, float, float]:
+def _bounds(rows: NDArray[np.float64], begin: int, end: int) -> tuple[float, float, float, float]:
     """The box round the rows begin ... end - 1: x from, x to, y from, y to."""
     x_0, x_1, y_0, y_1 = rows[PX, begin], rows[PX, begin], rows[PY, begin], rows[PY, begin]
     for i in range(begin + 1, end):
@@ -180,8 +210,13 @@ def _give_back(
 
 @inlined
 def _meet_candidates(
-    rows: NDArray[np.float64], begin: int, end: int, segments: NDArray[np.int64], count: int,
-    buffer: NDArray[np.float64], c: PairConstants,
+    rows: NDArray[np.float64],
+    begin: int,
+    end: int,
+    segments: NDArray[np.int64],
+    count: int,
+    buffer: NDArray[np.float64],
+    c: PairConstants,
 ) -> int:
     """The forces between the rows begin ... end - 1 and the later ones in the ``segments``.
 
@@ -224,8 +259,13 @@ def _meet_candidates(
 
 @inlined
 def _find_segments(
-    rows: NDArray[np.float64], first: NDArray[np.int64], segments: NDArray[np.int64],
-    begin: int, end: int, strip: int, grid: Grid,
+    rows: NDArray[np.float64],
+    first: NDArray[np.int64],
+    segments: NDArray[np.int64],
+    begin: int,
+    end: int,
+    strip: int,
+    grid: Grid,
 ) -> int:
     """The rows within reach of the box round the rows of a tile, strip by strip upwards.
 
@@ -255,8 +295,12 @@ def _find_segments(
 
 @kernel
 def add_near_pairs(
-    rows: NDArray[np.float64], index: NDArray[np.int64], buffer: NDArray[np.float64],
-    position: NDArray[np.float64], velocity: NDArray[np.float64], constants: NDArray[Any],
+    rows: NDArray[np.float64],
+    index: NDArray[np.int64],
+    buffer: NDArray[np.float64],
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    constants: NDArray[Any],
 ) -> None:
     """Fill the rows sorted by cell and add the forces of the pairs within reach.
 

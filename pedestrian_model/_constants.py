@@ -23,16 +23,17 @@ if TYPE_CHECKING:
 
 _PI_8 = 0.39269908169872414
 
+# fmt: off
 _NAMES = (
-    # body, pair forces
-    "m R two_R r_max d_rep s_rep_2 a_rep b_rep k_col d_nav s_nav_2 "
-    "decay_0 decay_1 decay_2 decay_3 cos_pi_8 sin_pi_8 "
+    # the body, between pedestrians
+    "m", "R", "two_R", "r_max", "d_rep", "s_rep_2", "a_rep", "b_rep", "k_col", "d_nav", "s_nav_2",
+    "decay_0", "decay_1", "decay_2", "decay_3", "cos_pi_8", "sin_pi_8",
     # vehicle influence
-    "le dx0 alpha_x A b l_v a_v b_v cap u_static "
+    "le", "dx0", "alpha_x", "A", "b", "a_v", "b_v", "cap", "u_static",
     # destination, limits
-    "k_des s_des_2 F_2 inverse_F a_max v_max r_waypoint detour"
-).split()
-
+    "k_des", "s_des_2", "F_2", "inverse_F", "a_max", "v_max", "r_waypoint", "detour",
+)
+# fmt: on
 _DTYPE = np.dtype([*((name, np.float64) for name in _NAMES), ("g", np.float64, (DEGREE + 1,))])
 
 
@@ -73,7 +74,6 @@ def pack(parameters: VciParameters) -> NDArray[Any]:
         "alpha_x": p.vehicle_lookahead,
         "A": p.vehicle_strength,
         "b": p.vehicle_decay,
-        "l_v": p.vehicle_anisotropy,
         "a_v": (1.0 + p.vehicle_anisotropy) / 2.0,
         "b_v": (1.0 - p.vehicle_anisotropy) / 2.0,
         "cap": p.vehicle_exponent_cap,

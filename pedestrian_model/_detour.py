@@ -84,8 +84,15 @@ def _corner(k: int, low: float, high: float, h: float) -> tuple[float, float]:
 
 @kernel
 def _way_round(
-    x: float, y: float, x_p: float, y_p: float, low: float, high: float, h: float,
-    margin: float, radius: float,
+    x: float,
+    y: float,
+    x_p: float,
+    y_p: float,
+    low: float,
+    high: float,
+    h: float,
+    margin: float,
+    radius: float,
 ) -> tuple[float, float]:
     """The first corner of the shortest way round a box from (x, y) to (x_p, y_p), all local.
 
@@ -154,8 +161,6 @@ def detour(rows: NDArray[np.float64], n: int, vehicles: NDArray[np.float64], c: 
             entry = _entry(at_x, at_y, to_x - at_x, to_y - at_y, low - g, high + g, h + g)
             if entry < first:
                 first = entry
-                q_x, q_y = _way_round(
-                    at_x, at_y, to_x, to_y, low, high, h, c.detour, c.r_waypoint
-                )
+                q_x, q_y = _way_round(at_x, at_y, to_x, to_y, low, high, h, c.detour, c.r_waypoint)
                 rows[TX, k] = v_x + cos * q_x - sin * q_y
                 rows[TY, k] = v_y + sin * q_x + cos * q_y

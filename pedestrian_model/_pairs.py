@@ -26,7 +26,7 @@ _STANDSTILL_2 = 1e-3**2  # [m^2/s^2] slower relative motion is not navigated rou
 class PairConstants(NamedTuple):
     """The constants of the pair loops, held in registers: loads could alias the loops' stores."""
 
-    two_R: float
+    two_R: float  # noqa: N815
     r_max_2: float
     # flm(d; d0, M, s) = M/(2 d0) ((d0 - d) + sqrt((d0 - d)^2 + s^2))
     d_rep: float
@@ -61,8 +61,18 @@ def pair_constants(c: Any) -> PairConstants:
 
 @inlined
 def pair(
-    dx: float, dy: float, length: float, d: float, wx: float, wy: float,
-    ux_i: float, uy_i: float, ux_j: float, uy_j: float, counts: bool, c: PairConstants,
+    dx: float,
+    dy: float,
+    length: float,
+    d: float,
+    wx: float,
+    wy: float,
+    ux_i: float,
+    uy_i: float,
+    ux_j: float,
+    uy_j: float,
+    counts: bool,
+    c: PairConstants,
 ) -> tuple[float, float, float, float]:
     """The forces of a pair (i, j) on each other: x, y on i, then x, y on j [N].
 
@@ -141,9 +151,18 @@ def add_coincident(
             if order[i] > order[j]:
                 n_x, n_y = -n_x, -n_y
             f = pair(
-                n_x, n_y, 1.0, math.sqrt(r_2) - c.two_R,
-                rows[VX, i] - rows[VX, j], rows[VY, i] - rows[VY, j],
-                rows[UX, i], rows[UY, i], rows[UX, j], rows[UY, j], True, c,
+                n_x,
+                n_y,
+                1.0,
+                math.sqrt(r_2) - c.two_R,
+                rows[VX, i] - rows[VX, j],
+                rows[VY, i] - rows[VY, j],
+                rows[UX, i],
+                rows[UY, i],
+                rows[UX, j],
+                rows[UY, j],
+                True,
+                c,
             )
             rows[FX, i] += f[0]
             rows[FY, i] += f[1]

@@ -19,7 +19,20 @@ from pedestrian_model._pairs import (
     pair_constants,
 )
 from pedestrian_model._rows import (
-    BLOCK, BUX, BUY, BVX, BVY, BX, BY, FX, FY, ON_X, ON_Y, PX, STRIDE, fill,
+    BLOCK,
+    BUX,
+    BUY,
+    BVX,
+    BVY,
+    BX,
+    BY,
+    FX,
+    FY,
+    ON_X,
+    ON_Y,
+    PX,
+    STRIDE,
+    fill,
 )
 
 if TYPE_CHECKING:
@@ -67,9 +80,18 @@ def _shift(
         apart = r_2 >= COINCIDENT_2
         coincident += (k < count) & (not apart)
         f = pair(
-            dx, dy, r, r - c.two_R, wx, wy,
-            buffer[BUX + k], buffer[BUY + k], ahead[BUX + k], ahead[BUY + k],
-            (r_2 <= c.r_max_2) & apart & (k < count), c,
+            dx,
+            dy,
+            r,
+            r - c.two_R,
+            wx,
+            wy,
+            buffer[BUX + k],
+            buffer[BUY + k],
+            ahead[BUX + k],
+            ahead[BUY + k],
+            (r_2 <= c.r_max_2) & apart & (k < count),
+            c,
         )
         buffer[ON_X + k] += f[0]
         buffer[ON_Y + k] += f[1]

@@ -1,11 +1,10 @@
-"""One step of the crowd, N steps ahead, and the forces apart: the compiled entry points."""
+"""One step of the crowd, and N steps ahead: the compiled entry points."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 
 from pedestrian_model._cells import add_near_pairs
 from pedestrian_model._detour import detour, set_targets
@@ -13,11 +12,28 @@ from pedestrian_model._jit import fma, inlined, kernel
 from pedestrian_model._mathematics import cosine_sine
 from pedestrian_model._ring import add_all_pairs
 from pedestrian_model._rows import (
-    BLOCK, LARGEST_RING, FX, FY, NVX, NVY, NX, NY, PX, PY, TX, TY, V0, VFX, VFY, VX, VY, S,
+    BLOCK,
+    FX,
+    FY,
+    LARGEST_RING,
+    NVX,
+    NVY,
+    NX,
+    NY,
+    PX,
+    PY,
+    TX,
+    TY,
+    V0,
+    VFX,
+    VFY,
+    VX,
+    VY,
 )
 from pedestrian_model._vehicles import HEADING, SPEED, X, Y, add_vehicle
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
 #: The result of a step that went well; otherwise the index of the offending pedestrian.
@@ -26,7 +42,7 @@ _SANE = 1e12  # [m], [m/s] beyond, a state counts as diverged (and could not be 
 
 
 @inlined
-def _first_insane(position: NDArray[np.float64], velocity: NDArray[np.float64]) -> int:
+def first_insane(position: NDArray[np.float64], velocity: NDArray[np.float64]) -> int:
     """The first pedestrian whose state is not finite (or absurd), or ``FINE``."""
     for i in range(position.shape[0]):
         largest = abs(position[i, 0]) + abs(position[i, 1])
@@ -36,7 +52,7 @@ def _first_insane(position: NDArray[np.float64], velocity: NDArray[np.float64]) 
 
 
 @inlined
-def _gather_forces(
+def gather_forces(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     vehicles: NDArray[np.float64],
@@ -49,7 +65,6 @@ def _gather_forces(
     cell_list_from: int,
 ) -> None:
     """Fill the rows and their pair and vehicle forces from the state."""
-    c = constants[0]
     n = position.shape[0]
     if n >= cell_list_from or n > LARGEST_RING:
         add_near_pairs(rows, index, buffer, position, velocity, constants)
@@ -57,7 +72,7 @@ def _gather_forces(
         add_all_pairs(rows, index, buffer, back, position, velocity, constants)
     padded = (n + BLOCK - 1) // BLOCK * BLOCK
     for v in range(vehicles.shape[0]):
-        add_vehicle(rows, padded, vehicles[v], travelled, c)
+        add_vehicle(rows, padded, vehicles[v], travelled, constants[0])
 
 
 @inlined
@@ -116,12 +131,20 @@ def advance(
     """Advance the state in place by ``substeps`` steps of dt; ``FINE`` or the first bad index."""
     c = constants[0]
     n = position.shape[0]
-    insane = _first_insane(position, velocity)
+    insane = first_insane(position, velocity)
     if n == 0 or insane != FINE:
         return insane
     for step in range(substeps):
-        _gather_forces(
-            position, velocity, vehicles, step * dt, rows, index, buffer, back, constants,
+        gather_forces(
+            position,
+            velocity,
+            vehicles,
+            step * dt,
+            rows,
+            index,
+            buffer,
+            back,
+            constants,
             cell_list_from,
         )
         order = index[0]
@@ -134,7 +157,7 @@ def advance(
             i = order[k]
             position[i, 0], position[i, 1] = rows[NX, k], rows[NY, k]
             velocity[i, 0], velocity[i, 1] = rows[NVX, k], rows[NVY, k]
-    return _first_insane(position, velocity)
+    return first_insane(position, velocity)
 
 
 @kernel
@@ -170,8 +193,21 @@ def predict(
         reached[i] = waypoint_index[i]
     for k in range(out.shape[0]):
         insane = advance(
-            x, v, desired_speed, waypoints, waypoint_start, reached, vehicles[k],
-            rows, index, buffer, back, constants, dt, substeps, cell_list_from,
+            x,
+            v,
+            desired_speed,
+            waypoints,
+            waypoint_start,
+            reached,
+            vehicles[k],
+            rows,
+            index,
+            buffer,
+            back,
+            constants,
+            dt,
+            substeps,
+            cell_list_from,
         )
         if insane != FINE:
             return insane
@@ -181,85 +217,7 @@ def predict(
 
 
 @kernel
-def apart(
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    vehicles: NDArray[np.float64],
-    rows: NDArray[np.float64],
-    index: NDArray[np.int64],
-    buffer: NDArray[np.float64],
-    back: NDArray[np.float64],
-    constants: NDArray[Any],
-    cell_list_from: int,
-    out: NDArray[np.float64],
-) -> int:
-    """Fill ``out`` (5, n): pair force x, y, vehicle force x, y, signed distance to a contour."""
-    n = position.shape[0]
-    insane = _first_insane(position, velocity)
-    if n == 0 or insane != FINE:
-        return insane
-    _gather_forces(
-        position, velocity, vehicles, 0.0, rows, index, buffer, back, constants, cell_list_from
-    )
-    for k in range(n):
-        i = index[0, k]
-        out[0, i], out[1, i] = rows[FX, k], rows[FY, k]
-        out[2, i], out[3, i], out[4, i] = rows[VFX, k], rows[VFY, k], rows[S, k]
-    return FINE
-
-
-@kernel
-def targets(
-    position: NDArray[np.float64],
-    desired_speed: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    waypoint_start: NDArray[np.int64],
-    waypoint_index: NDArray[np.int64],
-    vehicles: NDArray[np.float64],
-    rows: NDArray[np.float64],
-    index: NDArray[np.int64],
-    constants: NDArray[Any],
-    out: NDArray[np.float64],
-) -> None:
-    """Fill ``out`` (n, 2) with where each walks next. ``waypoint_index`` is advanced: pass a copy."""
-    c = constants[0]
-    n = position.shape[0]
-    for i in range(n):
-        index[0, i] = i
-        rows[PX, i], rows[PY, i] = position[i, 0], position[i, 1]
-    set_targets(
-        rows, index[0], desired_speed, waypoints, waypoint_start, waypoint_index, c.r_waypoint
-    )
-    detour(rows, n, vehicles, c)
-    for i in range(n):
-        out[i, 0], out[i, 1] = rows[TX, i], rows[TY, i]
-
-
-@kernel
-def influence(
-    points: NDArray[np.float64],
-    velocities: NDArray[np.float64],
-    vehicles: NDArray[np.float64],
-    constants: NDArray[Any],
-    rows: NDArray[np.float64],
-    out: NDArray[np.float64],
-) -> None:
-    """Fill ``out`` (k, 3) with the vehicles' force x, y and the signed distance at each point."""
-    n = points.shape[0]
-    for i in range(rows.shape[1]):
-        rows[PX, i], rows[PY, i] = points[min(i, n - 1), 0], points[min(i, n - 1), 1]
-        rows[VX, i], rows[VY, i] = velocities[min(i, n - 1), 0], velocities[min(i, n - 1), 1]
-        rows[VFX, i], rows[VFY, i], rows[S, i] = 0.0, 0.0, np.inf
-    for v in range(vehicles.shape[0]):
-        add_vehicle(rows, n, vehicles[v], 0.0, constants[0])
-    for i in range(n):
-        out[i, 0], out[i, 1], out[i, 2] = rows[VFX, i], rows[VFY, i], rows[S, i]
-
-
-@kernel
-def extrapolate(
-    vehicles: NDArray[np.float64], time_step: float, out: NDArray[np.float64]
-) -> None:
+def extrapolate(vehicles: NDArray[np.float64], time_step: float, out: NDArray[np.float64]) -> None:
     """Fill ``out`` (N, m, 7) with the poses at 0 ... N - 1 steps of straight, constant speed."""
     for v in range(vehicles.shape[0]):
         cos, sin = cosine_sine(vehicles[v, HEADING])

@@ -9,7 +9,7 @@ rectangle and the vehicle's role as a potential field that changes with its spee
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pedestrian_model._jit import fma, inlined
 from pedestrian_model._mathematics import cosine_sine, exponential
@@ -25,71 +25,95 @@ X, Y, HEADING, SPEED, FRONT, REAR, WIDTH = range(7)
 _LEAST_EXPONENT = -700.0  # exp underflows below; nothing is felt long before
 
 
+class Contour(NamedTuple):
+    """A contour in the vehicle's frame, X along the direction in which the nose points."""
+
+    X_r: float  # [m] the rear face
+    X_s: float  # [m] the shoulders
+    tip: float  # [m] the tip of the nose
+    h: float  # [m] half the width
+    edge: float  # [m] length of a slanted edge, from shoulder to tip
+    N_x: float  # its outward normal, on the left
+    N_y: float
+
+
+@inlined
+def _contour(vehicle: NDArray[np.float64], c: Any) -> Contour:
+    """The contour of a vehicle; below the static speed its nose is the front face."""
+    u, front, rear = vehicle[SPEED], vehicle[FRONT], vehicle[REAR]
+    if u < 0.0:
+        front, rear = rear, front
+    nose, dx0 = c.alpha_x * abs(u), c.dx0
+    if abs(u) < c.u_static:
+        nose, dx0 = 0.0, 0.0
+    X_s, h = front + c.le + dx0, vehicle[WIDTH] / 2.0 + c.le
+    edge = math.sqrt(nose * nose + h * h)
+    return Contour(-(rear + c.le), X_s, X_s + nose, h, edge, h / edge, nose / edge)
+
+
+@inlined
+def _influence(X: float, lateral: float, q: Contour) -> tuple[float, float, float]:
+    """The signed distance from the influence point and the outward unit vector, seen at (X, |Y|).
+
+    Where the influence point is a corner or lies on the rear face, the unit vector points from it;
+    within an edge it is the edge's normal, which also serves inside and for a distance of zero.
+    """
+    behind = q.X_r > X
+    beyond = q.X_s <= X
+    along = fma(X - q.X_s, q.N_y, -((lateral - q.h) * q.N_x))  # from the shoulder to the tip
+    on_edge = (along >= 0.0) & (along <= q.edge)
+    q_x = q.X_r if behind else (q.X_s if along < 0.0 else q.tip)
+    q_y = min(lateral, q.h) if behind else (q.h if along < 0.0 else 0.0)
+    to_x, to_y = X - q_x, lateral - q_y
+    distance = math.sqrt(fma(to_x, to_x, to_y * to_y))
+    inverse = 1.0 / distance
+    from_point = (behind | (beyond & (not on_edge))) & (distance > 0.0)
+    normal_x = q.N_x if beyond else 0.0
+    normal_y = q.N_y if beyond else 1.0
+    plane = fma(X - q.X_s, normal_x, (lateral - q.h) * normal_y)
+    return (
+        distance if from_point else plane,
+        to_x * inverse if from_point else normal_x,
+        to_y * inverse if from_point else normal_y,
+    )
+
+
 @inlined
 def add_vehicle(
     rows: NDArray[np.float64], n: int, vehicle: NDArray[np.float64], travelled: float, c: Any
 ) -> None:
-    """Add one vehicle's force to the first n rows and lower their signed distance.
+    """Add one vehicle's force f_v to the first n rows and lower their signed distance.
 
     Args:
         rows: the workspace.
         n: how many rows, dummies included.
-        vehicle: (7,) its columns; the reference point lies ``travelled`` further on.
-        travelled: [s] times the speed.
+        vehicle: (7,) its columns.
+        travelled: [s] for which the vehicle has driven straight on since.
         c: the constants.
     """
     cos, sin = cosine_sine(vehicle[HEADING])
-    u = vehicle[SPEED]
-    wheel_x, wheel_y = u * cos, u * sin
-    x_v, y_v = vehicle[X] + travelled * wheel_x, vehicle[Y] + travelled * wheel_y
+    u_x, u_y = vehicle[SPEED] * cos, vehicle[SPEED] * sin
+    x_v, y_v = vehicle[X] + travelled * u_x, vehicle[Y] + travelled * u_y
+    contour = _contour(vehicle, c)
     # In reverse the contour is mirrored: its nose points backwards.
-    front, rear = vehicle[FRONT], vehicle[REAR]
-    ahead_x, ahead_y = cos, sin
-    if u < 0.0:
-        front, rear = rear, front
-        ahead_x, ahead_y = -cos, -sin
-    nose, dx0 = c.alpha_x * abs(u), c.dx0
-    if abs(u) < c.u_static:
-        nose, dx0 = 0.0, 0.0
-    X_r, X_s, h = -(rear + c.le), front + c.le + dx0, vehicle[WIDTH] / 2.0 + c.le
-    tip, edge = X_s + nose, math.sqrt(nose * nose + h * h)
-    N_x, N_y = h / edge, nose / edge  # outward normal of a slanted edge, on the left
+    nose_x, nose_y = (-cos, -sin) if vehicle[SPEED] < 0.0 else (cos, sin)
     R, A, b, a_v, b_v, cap = c.R, c.A, c.b, c.a_v, c.b_v, c.cap
     x, y, vx, vy = rows[PX], rows[PY], rows[VX], rows[VY]
     f_x, f_y, s_min = rows[VFX], rows[VFY], rows[S]
     for k in range(n):
         dx, dy = x[k] - x_v, y[k] - y_v
-        local_x = fma(ahead_x, dx, ahead_y * dy)
-        local_y = fma(cos, dy, -(sin * dx))
-        lateral = abs(local_y)
-        # The vector from the influence point q where q is a corner or on the rear face ...
-        behind = local_x < X_r
-        beyond = local_x >= X_s
-        along = fma(local_x - X_s, N_y, -((lateral - h) * N_x))  # from the shoulder to the tip
-        at_shoulder = along < 0.0
-        q_x = X_r if behind else (X_s if at_shoulder else tip)
-        q_y = min(lateral, h) if behind else (h if at_shoulder else 0.0)
-        to_x, to_y = local_x - q_x, lateral - q_y
-        distance = math.sqrt(fma(to_x, to_x, to_y * to_y))
-        inverse = 1.0 / distance
-        # ... and where it lies within an edge, whose normal also serves for s = 0 and inside.
-        on_edge = beyond & (along >= 0.0) & (along <= edge)
-        at_corner = (behind | (beyond & ~on_edge)) & (distance > 0.0)
-        normal_x, normal_y = (N_x, N_y) if beyond else (0.0, 1.0)
-        plane = fma(local_x - X_s, normal_x, (lateral - h) * normal_y)
-        plane = plane if beyond else lateral - h
-        s = distance if at_corner else plane
-        e_x = to_x * inverse if at_corner else normal_x
-        e_y = to_y * inverse if at_corner else normal_y
-        e_y = e_y if local_y >= 0.0 else -e_y
+        across = fma(cos, dy, -(sin * dx))
+        s, e_x, e_y = _influence(fma(nose_x, dx, nose_y * dy), abs(across), contour)
+        e_y = e_y if across >= 0.0 else -e_y
         # As(phi_v; l_v) between the direction to the vehicle and the velocity relative to it
-        w_x, w_y = vx[k] - wheel_x, vy[k] - wheel_y
+        w_x, w_y = vx[k] - u_x, vy[k] - u_y
         lengths = math.sqrt(fma(dx, dx, dy * dy) * fma(w_x, w_x, w_y * w_y))
         cosine = -fma(dx, w_x, dy * w_y) / lengths
         cosine = min(1.0, max(-1.0, cosine)) if lengths > 0.0 else 1.0  # at rest: seen
         anisotropy = 1.0 if s < R else fma(b_v, cosine, a_v)
+        # fexp(s - R; A, b) As(phi_v; l_v) e
         exponent = max(min(-b * (s - R), cap), _LEAST_EXPONENT)
         f = A * exponential(exponent) * anisotropy
-        f_x[k] += f * fma(e_x, ahead_x, -(e_y * sin))
-        f_y[k] += f * fma(e_x, ahead_y, e_y * cos)
+        f_x[k] += f * fma(e_x, nose_x, -(e_y * sin))
+        f_y[k] += f * fma(e_x, nose_y, e_y * cos)
         s_min[k] = min(s_min[k], s)

@@ -97,7 +97,9 @@ class Crowd:
         v = as_floats(velocity, "velocity", CrowdError)
         v0 = as_floats(desired_speed, "desired_speed", CrowdError)
         if len(waypoints) != n:
-            raise CrowdError(f"waypoints has {len(waypoints)} entries, expected one for each of {n}")
+            raise CrowdError(
+                f"waypoints has {len(waypoints)} entries, expected one for each of {n}"
+            )
         routes = [
             as_floats(route, f"waypoints[{i}]", CrowdError) for i, route in enumerate(waypoints)
         ]
@@ -121,12 +123,16 @@ class Crowd:
     @property
     def target(self) -> NDArray[np.float64]:
         """(n, 2) [m] the current way-point of each pedestrian."""
-        return self.waypoints[self.waypoint_start[:-1] + self.waypoint_index]
+        targets: NDArray[np.float64] = self.waypoints[
+            self.waypoint_start[:-1] + self.waypoint_index
+        ]
+        return targets
 
     @property
     def destination(self) -> NDArray[np.float64]:
         """(n, 2) [m] the last way-point of each pedestrian."""
-        return self.waypoints[self.waypoint_start[1:] - 1]
+        last: NDArray[np.float64] = self.waypoints[self.waypoint_start[1:] - 1]
+        return last
 
     def copy(self) -> Crowd:
         """An independent state; what a step never changes is shared."""
@@ -215,7 +221,5 @@ def _unchecked(
     """A crowd ``like`` another in a new state, without the checks: the hot path."""
     crowd = object.__new__(Crowd)
     crowd.__dict__.update(like.__dict__)
-    crowd.__dict__.update(
-        position=position, velocity=velocity, waypoint_index=waypoint_index
-    )
+    crowd.__dict__.update(position=position, velocity=velocity, waypoint_index=waypoint_index)
     return crowd

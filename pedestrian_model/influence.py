@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pedestrian_model import _step
+from pedestrian_model import _inspect
 from pedestrian_model._check import as_floats, check_shape, check_values
 from pedestrian_model._constants import pack
 from pedestrian_model._rows import Workspace
@@ -51,5 +51,5 @@ def vehicle_influence(
     if x.shape[0] > 0:
         work = Workspace()
         work.reserve(x.shape[0])
-        _step.influence(x, v, vehicles.array, pack(parameters), work.rows, out)
+        _inspect.influence(x, v, vehicles.array, pack(parameters), work.rows, out)
     return out[:, :2].copy(), out[:, 2].copy()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pedestrian_model import _step
+from pedestrian_model import _inspect, _step
 from pedestrian_model._constants import pack
 from pedestrian_model._rows import Workspace
 from pedestrian_model.errors import DivergenceError, ParameterError
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 #: The longest step the integration takes at once: k_col dt^2 / m = 0.31 is stable.
 LONGEST_STEP = 0.05  # [s]
 #: From so many pedestrians on, neighbours are found by a cell list (benchmarks/bench_crowd.py).
-CELL_LIST_FROM = 300
+CELL_LIST_FROM = 100
 
 
 def substeps(time_step: float) -> int:
@@ -65,7 +65,8 @@ class CrowdModel:
         parameters: the numbers of the model.
         time_step: [s]; above 0.05 s it is divided into equal sub-steps, during which the vehicles
             drive straight on at constant speed.
-        cell_list_from: the crowd size from which neighbours are found by a cell list.
+        cell_list_from: the crowd size from which neighbours are found by a cell list (they always
+            are beyond 332, where the ring no longer fits its buffer).
 
     Raises:
         ParameterError: if the time step is not positive and finite.
@@ -107,10 +108,21 @@ class CrowdModel:
         work = self._workspace
         work.reserve(crowd.position.shape[0])
         bad = _step.advance(
-            crowd.position, crowd.velocity, crowd.desired_speed, crowd.waypoints,
-            crowd.waypoint_start, crowd.waypoint_index, vehicles.array,
-            work.rows, work.index, work.buffer, work.back, self._constants,
-            self._dt, self._substeps, self.cell_list_from,
+            crowd.position,
+            crowd.velocity,
+            crowd.desired_speed,
+            crowd.waypoints,
+            crowd.waypoint_start,
+            crowd.waypoint_index,
+            vehicles.array,
+            work.rows,
+            work.index,
+            work.buffer,
+            work.back,
+            self._constants,
+            self._dt,
+            self._substeps,
+            self.cell_list_from,
         )
         if bad != _step.FINE:
             raise divergence(bad, crowd, vehicles)
@@ -123,7 +135,9 @@ class CrowdModel:
         """
         none = replace(
             self.parameters,
-            repulsion_strength=0.0, collision_stiffness=0.0, navigation_strength=0.0,
+            repulsion_strength=0.0,
+            collision_stiffness=0.0,
+            navigation_strength=0.0,
         )
         p = self.parameters
         only = {
@@ -157,9 +171,17 @@ class CrowdModel:
         work, n = self._workspace, len(crowd)
         work.reserve(n)
         out = np.zeros((5, n))
-        bad = _step.apart(
-            crowd.position, crowd.velocity, vehicles.array, work.rows, work.index, work.buffer,
-            work.back, pack(parameters), self.cell_list_from, out,
+        bad = _inspect.forces_apart(
+            crowd.position,
+            crowd.velocity,
+            vehicles.array,
+            work.rows,
+            work.index,
+            work.buffer,
+            work.back,
+            pack(parameters),
+            self.cell_list_from,
+            out,
         )
         if bad != _step.FINE:
             raise divergence(bad, crowd, vehicles)
@@ -168,10 +190,17 @@ class CrowdModel:
     def _targets(self, crowd: Crowd, vehicles: Vehicles) -> NDArray[np.float64]:
         """(n, 2) [m] where each walks next."""
         out = np.zeros((len(crowd), 2))
-        _step.targets(
-            crowd.position, crowd.desired_speed, crowd.waypoints, crowd.waypoint_start,
-            crowd.waypoint_index.copy(), vehicles.array, self._workspace.rows,
-            self._workspace.index, self._constants, out,
+        _inspect.targets(
+            crowd.position,
+            crowd.desired_speed,
+            crowd.waypoints,
+            crowd.waypoint_start,
+            crowd.waypoint_index.copy(),
+            vehicles.array,
+            self._workspace.rows,
+            self._workspace.index,
+            self._constants,
+            out,
         )
         return out
 
@@ -181,7 +210,8 @@ def divergence(i: int, crowd: Crowd, vehicles: Vehicles) -> DivergenceError:
     bad = np.argwhere(~np.isfinite(vehicles.array))
     if bad.size:
         return DivergenceError(
-            f"vehicle {bad[0, 0]}, column {COLUMNS[bad[0, 1]]} is not finite; check the vehicles given"
+            f"vehicle {bad[0, 0]}, column {COLUMNS[bad[0, 1]]} is not finite: "
+            "check the vehicles given"
         )
     x, v = crowd.position[i], crowd.velocity[i]
     return DivergenceError(

@@ -1,11 +1,12 @@
 """The numbers of the vehicle-crowd interaction (VCI) model.
 
-The decomposition of the total force and the vehicle influence are those of Yang & Özgüner 2019
-(arXiv 1907.05178), which refers for its sub-forces to Yang, Redmill & Özgüner, "A social force
-based pedestrian motion model considering multi-pedestrian interaction with a vehicle" (IV 2018
-line of work). The calibrated numbers are those of Yang, Özgüner & Redmill, "A Social Force Based
-Pedestrian Motion Model Considering Multi-Pedestrian Interaction with a Vehicle", ACM Transactions
-on Spatial Algorithms and Systems, 2020 (TSAS 2020). "ours" marks what no publication states.
+The decomposition of the total force and the role of the vehicle are those of Yang & Özgüner 2019
+(arXiv 1907.05178), which takes its sub-forces from Yang, Özgüner & Redmill, "Social Force Based
+Microscopic Modeling of Vehicle-Crowd Interaction" (IEEE Intelligent Vehicles Symposium, IV 2018).
+The calibrated numbers are those of the same authors' "A Social Force Based Pedestrian Motion Model
+Considering Multi-Pedestrian Interaction with a Vehicle" (ACM Transactions on Spatial Algorithms
+and Systems, TSAS 2020): the same five sub-forces and the same beta.
+"ours" marks what no publication states.
 """
 
 from __future__ import annotations

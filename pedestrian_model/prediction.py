@@ -8,8 +8,8 @@ import numpy as np
 
 from pedestrian_model import _step
 from pedestrian_model._constants import pack
-from pedestrian_model.errors import DivergenceError, ParameterError, VehicleError
 from pedestrian_model._rows import Workspace
+from pedestrian_model.errors import DivergenceError, ParameterError, VehicleError
 from pedestrian_model.model import CELL_LIST_FROM, substeps
 from pedestrian_model.parameters import SIM
 
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
 
 class Predictor:
-    """Predicts N steps of the crowd in one compiled call (Yang & Özgüner 2019, III-C).
+    """Predicts N steps of the crowd in one compiled call.
+
+    Yang & Özgüner 2019, section "Motion Prediction".
 
     Args:
         parameters: the numbers of the model.
@@ -89,10 +91,24 @@ class Predictor:
             self._reserve(crowd.position.shape[0])
         work = self._workspace
         bad = _step.predict(
-            crowd.position, crowd.velocity, crowd.desired_speed, crowd.waypoints,
-            crowd.waypoint_start, crowd.waypoint_index, vehicles_trajectory,
-            self._state, self._reached, work.rows, work.index, work.buffer, work.back,
-            self._constants, self._dt, self._substeps, self.cell_list_from, self._out,
+            crowd.position,
+            crowd.velocity,
+            crowd.desired_speed,
+            crowd.waypoints,
+            crowd.waypoint_start,
+            crowd.waypoint_index,
+            vehicles_trajectory,
+            self._state,
+            self._reached,
+            work.rows,
+            work.index,
+            work.buffer,
+            work.back,
+            self._constants,
+            self._dt,
+            self._substeps,
+            self.cell_list_from,
+            self._out,
         )
         if bad != _step.FINE:
             raise DivergenceError(

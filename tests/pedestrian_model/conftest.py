@@ -47,8 +47,13 @@ def random_vehicles():
         rng = np.random.default_rng(seed)
         speed = np.array([4.0, -1.5, 0.1, -0.1, 0.0, 0.2])[rng.integers(0, 6, 3)]
         return Vehicles.create(
-            rng.uniform(0.0, side, 3), rng.uniform(0.0, side, 3), rng.uniform(-7.0, 7.0, 3),
-            speed, rng.uniform(0.0, 4.0, 3), rng.uniform(0.5, 3.0, 3), rng.uniform(0.5, 2.5, 3),
+            rng.uniform(0.0, side, 3),
+            rng.uniform(0.0, side, 3),
+            rng.uniform(-7.0, 7.0, 3),
+            speed,
+            rng.uniform(0.0, 4.0, 3),
+            rng.uniform(0.5, 3.0, 3),
+            rng.uniform(0.5, 2.5, 3),
         )
 
     return make
@@ -59,7 +64,7 @@ def walkers():
     """Pedestrians from ``start`` (n, 2) straight to ``goal`` (n, 2), already walking (or not)."""
 
     def make(start, goal, speed=1.4, walking=True):
-        start, goal = np.atleast_2d(np.asarray(start, float)), np.atleast_2d(np.asarray(goal, float))
+        start, goal = (np.atleast_2d(np.asarray(ends, float)) for ends in (start, goal))
         way = goal - start
         length = np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-12)
         return Crowd.create(

@@ -13,7 +13,9 @@ from pedestrian_model import SIM, TABLE2, Crowd, CrowdModel, Vehicles
 def decay(parameters, distance, kind):
     """|f_r| or |f_n| at a skin-to-skin distance, with every anisotropy equal to one."""
     only = replace(
-        parameters, repulsion_anisotropy=1.0, navigation_anisotropy=0.0,
+        parameters,
+        repulsion_anisotropy=1.0,
+        navigation_anisotropy=0.0,
         collision_stiffness=0.0,
     )
     apart = distance + 2.0 * parameters.body_radius
@@ -45,7 +47,11 @@ def test_every_sub_force_agrees_with_the_reference(
     crowd, vehicles = random_crowd(41, seed, density=0.3), random_vehicles(seed)
     forces = CrowdModel(parameters, cell_list_from=cell_list_from).forces(crowd, vehicles)
     expected = reference.forces(
-        parameters, crowd.position, crowd.velocity, crowd.desired_speed, forces.target,
+        parameters,
+        crowd.position,
+        crowd.velocity,
+        crowd.desired_speed,
+        forces.target,
         vehicles.array,
     )
     names = ("repulsion", "collision", "navigation", "vehicle", "destination", "beta")
@@ -61,8 +67,13 @@ def test_a_step_agrees_with_the_reference(reference, random_crowd, random_vehicl
     model = CrowdModel()
     after = model.step(crowd, vehicles)
     x, v = reference.step(
-        SIM, crowd.position, crowd.velocity, crowd.desired_speed,
-        model.forces(crowd, vehicles).target, vehicles.array, 0.05,
+        SIM,
+        crowd.position,
+        crowd.velocity,
+        crowd.desired_speed,
+        model.forces(crowd, vehicles).target,
+        vehicles.array,
+        0.05,
     )
     np.testing.assert_allclose(after.position, x, rtol=0.0, atol=1e-11)
     np.testing.assert_allclose(after.velocity, v, rtol=0.0, atol=1e-10)
@@ -139,3 +150,35 @@ def test_the_total_is_the_sum_of_the_equation_of_motion(random_crowd, random_veh
     f = CrowdModel().forces(random_crowd(20, 0), random_vehicles(1))
     total = f.repulsion + f.collision + f.navigation + f.vehicle + f.beta[:, None] * f.destination
     np.testing.assert_allclose(f.total, total, rtol=1e-15)
+
+
+def test_more_candidates_than_the_buffer_holds(reference):
+    """A crush of 1,500 on 8 m x 8 m: everyone feels nearly everyone."""
+    rng = np.random.default_rng(8)
+    crowd = Crowd.create(
+        rng.uniform(0.0, 8.0, (1500, 2)),
+        rng.normal(0.0, 1.0, (1500, 2)),
+        1.0,
+        [[(0.0, 0.0)]] * 1500,
+    )
+    forces = CrowdModel().forces(crowd, Vehicles.empty())
+    for i in (0, 700, 1499):
+        sums = np.zeros((3, 2))
+        for j in range(1500):
+            if j != i:
+                sums += reference.pair(
+                    SIM, crowd.position[i], crowd.velocity[i], crowd.position[j], crowd.velocity[j]
+                )
+        for name, expected in zip(("repulsion", "collision", "navigation"), sums, strict=True):
+            np.testing.assert_allclose(getattr(forces, name)[i], expected, rtol=1e-9, atol=1e-6)
+
+
+@pytest.mark.parametrize("stray", [(1e8, -1e8), (400.0, 0.0), (0.0, 1e5)])
+def test_a_stray_pedestrian_far_away_changes_nothing(random_crowd, stray):
+    crowd = random_crowd(150, 3)
+    one = Crowd.create([stray], [(0.0, 0.0)], 1.0, [[stray]])
+    model = CrowdModel(cell_list_from=0)
+    alone = model.forces(crowd, Vehicles.empty()).total
+    together = model.forces(crowd.concatenate(one), Vehicles.empty()).total
+    np.testing.assert_allclose(together[:150], alone, rtol=1e-9, atol=1e-8)
+    np.testing.assert_array_equal(together[150], 0.0)

@@ -10,8 +10,8 @@ from pedestrian_model import (
     DivergenceError,
     ParameterError,
     Predictor,
-    Vehicles,
     VehicleError,
+    Vehicles,
     constant_speed,
 )
 
@@ -40,9 +40,7 @@ def test_a_curved_path_is_followed(random_crowd):
     crowd = random_crowd(20, 0)
     angle = np.linspace(0.0, 0.8, 10)
     poses = np.stack(
-        [
-            Vehicles.create(6.0 * np.sin(a), 6.0 - 6.0 * np.cos(a), a, 4.0).array for a in angle
-        ]
+        [Vehicles.create(6.0 * np.sin(a), 6.0 - 6.0 * np.cos(a), a, 4.0).array for a in angle]
     )
     predicted = Predictor(horizon=10).predict(crowd, poses)
     now = crowd
@@ -75,9 +73,9 @@ def test_a_moving_car_is_avoided_in_the_prediction(walkers):
     crowd = walkers([(8.0, -1.5)], [(8.0, 9.0)])
     predictor = Predictor(horizon=30)
     free = predictor.predict(crowd, constant_speed(Vehicles.empty(), 0.05, 30))[-1, 0, 1]
-    held = predictor.predict(
-        crowd, constant_speed(Vehicles.create(0.0, 0.0, 0.0, 4.0), 0.05, 30)
-    )[-1, 0, 1]
+    held = predictor.predict(crowd, constant_speed(Vehicles.create(0.0, 0.0, 0.0, 4.0), 0.05, 30))[
+        -1, 0, 1
+    ]
     assert held < free - 0.5
 
 

@@ -24,7 +24,9 @@ from pedestrian_model import (
 
 def three():
     return Crowd.create(
-        [(0, 0), (2, 0), (4, 0)], np.zeros((3, 2)), [1.0, 1.2, 1.4],
+        [(0, 0), (2, 0), (4, 0)],
+        np.zeros((3, 2)),
+        [1.0, 1.2, 1.4],
         [[(9, 9)], [(2.0, 0.1), (7, 7)], [(4, 3), (5, 3), (6, 3)]],
     )
 
@@ -62,7 +64,9 @@ def test_select_and_concatenate_keep_routes_and_progress():
 
 def test_arrived_means_the_last_waypoint():
     crowd = Crowd.create(
-        [(0, 0), (0, 0), (0, 3)], np.zeros((3, 2)), 1.0,
+        [(0, 0), (0, 0), (0, 3)],
+        np.zeros((3, 2)),
+        1.0,
         [[(0, 0.4)], [(0, 0.4), (9, 9)], [(0, 0)]],
     )
     np.testing.assert_array_equal(arrived(crowd, 0.5), [True, False, False])
@@ -139,10 +143,15 @@ def test_presets_are_frozen_and_differ_in_the_strengths_only():
     assert VciParameters() == SIM
     assert (TABLE2.repulsion_strength, TABLE2.navigation_strength) == (30.028, 41.875)
     assert TABLE2.collision_stiffness == 982.125
-    assert replace(
-        TABLE2, repulsion_strength=301.028, navigation_strength=410.875,
-        collision_stiffness=9825.125,
-    ) == SIM
+    assert (
+        replace(
+            TABLE2,
+            repulsion_strength=301.028,
+            navigation_strength=410.875,
+            collision_stiffness=9825.125,
+        )
+        == SIM
+    )
     with pytest.raises(FrozenInstanceError):
         SIM.mass = 70.0
 

@@ -22,7 +22,9 @@ def turned(crowd, vehicles, angle=0.0, shift=(0.0, 0.0)):
     a[:, :2] = a[:, :2] @ turn.T + shift
     a[:, 2] += angle
     moved = Crowd.create(
-        crowd.position @ turn.T + shift, crowd.velocity @ turn.T, crowd.desired_speed,
+        crowd.position @ turn.T + shift,
+        crowd.velocity @ turn.T,
+        crowd.desired_speed,
         list((crowd.waypoints @ turn.T + shift)[:, None]),
     )
     return moved, Vehicles(a), turn
@@ -34,8 +36,10 @@ def test_translation(random_crowd, random_vehicles, seed, shift):
     crowd, vehicles = random_crowd(20, seed), random_vehicles(seed)
     moved, moved_vehicles, _ = turned(crowd, vehicles, shift=shift)
     np.testing.assert_allclose(
-        MODEL.forces(moved, moved_vehicles).total, MODEL.forces(crowd, vehicles).total,
-        rtol=1e-6, atol=1e-5,
+        MODEL.forces(moved, moved_vehicles).total,
+        MODEL.forces(crowd, vehicles).total,
+        rtol=1e-6,
+        atol=1e-5,
     )
 
 
@@ -45,8 +49,10 @@ def test_rotation(random_crowd, random_vehicles, seed, angle):
     crowd, vehicles = random_crowd(20, seed), random_vehicles(seed)
     moved, moved_vehicles, turn = turned(crowd, vehicles, angle=angle)
     np.testing.assert_allclose(
-        MODEL.forces(moved, moved_vehicles).total, MODEL.forces(crowd, vehicles).total @ turn.T,
-        rtol=1e-7, atol=1e-6,
+        MODEL.forces(moved, moved_vehicles).total,
+        MODEL.forces(crowd, vehicles).total @ turn.T,
+        rtol=1e-7,
+        atol=1e-6,
     )
 
 
@@ -62,12 +68,16 @@ def test_a_mirror_mirrors_everything_but_the_choice_of_the_right(
     a = vehicles.array.copy()
     a[:, 1:3] *= -1.0
     mirrored = Crowd.create(
-        crowd.position * mirror, crowd.velocity * mirror, crowd.desired_speed,
+        crowd.position * mirror,
+        crowd.velocity * mirror,
+        crowd.desired_speed,
         list((crowd.waypoints * mirror)[:, None]),
     )
     np.testing.assert_allclose(
         MODEL.forces(mirrored, Vehicles(a)).total,
-        MODEL.forces(crowd, vehicles).total * mirror, rtol=1e-9, atol=1e-8,
+        MODEL.forces(crowd, vehicles).total * mirror,
+        rtol=1e-9,
+        atol=1e-8,
     )
 
 
@@ -89,7 +99,9 @@ def test_the_order_of_the_pedestrians_matters_to_rounding_only(
     crowd, vehicles = random_crowd(35, seed), random_vehicles(seed)
     order = np.random.default_rng(seed).permutation(35)
     shuffled = Crowd.create(
-        crowd.position[order], crowd.velocity[order], crowd.desired_speed[order],
+        crowd.position[order],
+        crowd.velocity[order],
+        crowd.desired_speed[order],
         list(crowd.waypoints[order][:, None]),
     )
     a, b = model.step(crowd, vehicles), model.step(shuffled, vehicles)
