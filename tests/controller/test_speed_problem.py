@@ -75,23 +75,29 @@ def test_no_proof_refuses_a_plan_that_only_just_stops():
         assert problem.update(0.0, speed, previous, x_p) != UNDECIDED
 
 
-def test_a_plan_is_judged_by_its_worst_constraint_over_its_tolerance():
+@pytest.mark.parametrize("rate", [800.0, 3000.0])  # of the forces: within c2 and c3, and beyond
+@pytest.mark.parametrize("counted", [0, 1, 2])
+def test_a_plan_is_judged_by_its_worst_constraint_over_its_tolerance(counted, rate):
+    """Positions, speeds, forces: each in turn, the tolerances of the other two out of reach."""
     model, parameters = LongitudinalModel(), MpcParameters(horizon=5)
     limits = SpeedProblem(model, parameters).limits
-    tolerances = np.array([1e-6, 1e-6, 1e-2])
-    generator = np.random.default_rng(2)
+    tolerances = np.full(3, 1e15)
+    tolerances[counted] = (1e-6, 1e-6, 1e-2)[counted]
+    generator, violated = np.random.default_rng(2), 0
     for _ in range(300):
         speed, previous = generator.uniform(0.0, 20.0), generator.uniform(-8000.0, 8000.0)
-        U = generator.uniform(-9000.0, 9000.0, 5)
+        U = previous + np.cumsum(generator.uniform(-rate, rate, 5))
         x_p = generator.uniform(5.0, 15.0, 5)
         qp = quadratic_program(model, parameters, np.array([0.0, speed]), previous, x_p)
         V = model.S_x(5)[1::2] @ [0.0, speed] + model.S_u(5)[1::2] @ U
         excess = np.maximum(qp.lower - qp.G @ U, qp.G @ U - qp.upper)
-        expected = (excess / np.repeat([1e-2, 1e-2, 1e-6, 1e-6], 5)).max()
+        expected = (excess / np.repeat(tolerances[[2, 2, 1, 0]], 5)).max()
         forces = np.empty(5)
         residual = check_plan(0.0, speed, previous, x_p, V, forces, limits, tolerances)
         np.testing.assert_allclose(forces, U, rtol=1e-9, atol=1e-6)
         assert residual == pytest.approx(max(0.0, expected), rel=1e-6, abs=1e-3)
+        violated += residual > 1.0
+    assert 5 < violated <= 300
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
