@@ -123,9 +123,18 @@ def exact(
     return Answer(flag == 1, x[0] / model.speed_per_force if flag == 1 else np.nan)
 
 
-def by_mpc(model: LongitudinalModel, parameters: MpcParameters) -> Callable[[Problem], Answer]:
+class FromThePlanBefore(Mpc):
+    """Without the exact start: the solver continues from where the step before ended."""
+
+    def _start(self) -> bool:
+        return True
+
+
+def by_mpc(
+    model: LongitudinalModel, parameters: MpcParameters, kind: type[Mpc] = Mpc
+) -> Callable[[Problem], Answer]:
     """Ours, as the regulator calls it."""
-    mpc = Mpc(model, parameters)
+    mpc = kind(model, parameters)
 
     def solve(problem: Problem) -> Answer:
         solution = mpc.solve(*problem)
@@ -219,6 +228,7 @@ def main() -> None:
     solvers = {
         "osqp (ours)": partial(by_mpc, model, ours),
         "daqp (ours)": partial(by_mpc, model, replace(ours, solver="daqp")),
+        "osqp (ours), no exact start": partial(by_mpc, model, ours, FromThePlanBefore),
         "osqp, condensed, kN, defaults": partial(by_plain_osqp, model, ours),
     }
     print(
