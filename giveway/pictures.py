@@ -53,6 +53,7 @@ def top_view_picture(result: RunResult) -> Figure:
         result.crowd_track,
         result.shape,
         result.body_radius,
+        background=result.background_track,
         road=[lane_area(line, width) for line, width in result.lanes],
         title=_title(result),
     )

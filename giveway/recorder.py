@@ -137,7 +137,7 @@ class Recorder:
         instants = self._background
         if not instants:
             nothing, nobody = np.empty(0), np.empty(0, dtype=np.str_)
-            return BackgroundTrack(nothing, nobody, nobody, nothing, nothing, nothing, nothing)
+            return BackgroundTrack(nothing, nobody, nobody, *(nothing for _ in range(6)))
         return BackgroundTrack(
             np.concatenate([np.full(len(v.ids), time) for time, v in instants]),
             np.concatenate([np.array(v.ids, dtype=np.str_) for _, v in instants]),
@@ -146,6 +146,8 @@ class Recorder:
             np.concatenate([v.y for _, v in instants]),
             np.concatenate([v.heading for _, v in instants]),
             np.concatenate([v.speed for _, v in instants]),
+            np.concatenate([v.length for _, v in instants]),
+            np.concatenate([v.width for _, v in instants]),
         )
 
     def timings(self) -> Timings:

@@ -66,6 +66,8 @@ class BackgroundTrack:
     y: NDArray[np.float64]  # (B,) [m]
     heading: NDArray[np.float64]  # (B,) [rad]
     speed: NDArray[np.float64]  # (B,) [m/s]
+    length: NDArray[np.float64]  # (B,) [m]
+    width: NDArray[np.float64]  # (B,) [m]
 
 
 @dataclass(frozen=True)

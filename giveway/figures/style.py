@@ -76,6 +76,9 @@ def styled(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
 def save_figure(figure: Figure, path: Path, dpi: float = 150) -> None:
     """Write a picture whose bytes depend on nothing but what it shows.
 
+    Except for an SVG with panels of equal scale: its ids are hashes of positions whose last digit
+    matplotlib's layout solver does not settle.
+
     Args:
         figure: what to write.
         path: its suffix says the format: .png, .svg or .pdf.

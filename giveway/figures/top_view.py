@@ -15,13 +15,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
-from giveway.figures.style import BLACK, LIGHT_GREY, VERMILION, keep_panels, styled
+from giveway.figures.style import BLACK, GREY, LIGHT_GREY, VERMILION, keep_panels, styled
 from giveway.metrics.groups import PedestrianGroups
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
+    from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, VehicleShape
 
 Road = Sequence[NDArray[np.float64]]
 """Lines (k, 2) [m] to draw underneath; one that ends where it starts is a filled area."""
@@ -67,6 +67,7 @@ def top_view_figure(
     body_radius: float,
     *,
     times: Sequence[float] | None = None,
+    background: BackgroundTrack | None = None,
     road: Road | None = None,
     title: str = "",
 ) -> Figure:
@@ -79,6 +80,8 @@ def top_view_figure(
         body_radius: radius of a pedestrian [m].
         times: of the snapshots [s], each taken at the nearest control instant; left out: six,
             evenly over the time in which somebody is within 10 m of the ego.
+        background: other vehicles, drawn in the snapshots; from their latest instant on they are
+            taken to drive straight on.
         road: areas and lines to draw underneath.
         title: of the whole figure.
 
@@ -109,6 +112,8 @@ def top_view_figure(
     figure.colorbar(lines, ax=overview, label="Time [s]", shrink=0.8, aspect=30)
     for axes, k in zip(panels, steps, strict=True):
         _draw_road(axes, road)
+        if background is not None:
+            _draw_background(axes, float(ego.time[k]), background)
         _draw_scene(axes, k, corners[k], crowd, body_radius)
         part.apply(axes)
         axes.set_title(f"t = {ego.time[k]:.2f} s", fontsize=9)
@@ -118,11 +123,17 @@ def top_view_figure(
 
 def rectangle(ego: EgoTrack, k: int, shape: VehicleShape) -> NDArray[np.float64]:
     """The ego's corners at instant k, front left first, counter-clockwise: (4, 2) [m]."""
-    cos, sin = np.cos(ego.heading[k]), np.sin(ego.heading[k])
-    half = shape.width / 2.0
-    local = np.array([(0.0, half), (-shape.length, half), (-shape.length, -half), (0.0, -half)])
-    turned = local @ np.array([[cos, sin], [-sin, cos]])
     front = np.array((ego.front_x[k], ego.front_y[k]))
+    return _corners(front, float(ego.heading[k]), shape.length, shape.width)
+
+
+def _corners(
+    front: NDArray[np.float64], heading: float, length: float, width: float
+) -> NDArray[np.float64]:
+    cos, sin = np.cos(heading), np.sin(heading)
+    half = width / 2.0
+    local = np.array([(0.0, half), (-length, half), (-length, -half), (0.0, -half)])
+    turned = local @ np.array([[cos, sin], [-sin, cos]])
     return np.asarray(turned + front, dtype=np.float64)
 
 
@@ -172,9 +183,25 @@ def _arrange(whole: _Box, part: _Box, count: int) -> tuple[Figure, Axes, list[Ax
 def _draw_road(axes: Axes, road: Road | None) -> None:
     for line in road or ():
         if len(line) > 2 and np.array_equal(line[0], line[-1]):
-            axes.add_patch(Polygon(line, facecolor=LIGHT_GREY, edgecolor="none", zorder=0))
+            axes.add_patch(Polygon(line, facecolor=LIGHT_GREY, edgecolor="white", zorder=0))
         else:
             axes.plot(*np.asarray(line).T, color="#C8C8C8", linewidth=0.8, zorder=0.5)
+
+
+def _draw_background(axes: Axes, time: float, background: BackgroundTrack) -> None:
+    """Other vehicles at ``time`` [s], as light rectangles."""
+    known = background.time[background.time <= time + 1e-9]
+    if not known.size:
+        return
+    for b in np.flatnonzero(background.time == known[-1]):
+        heading = float(background.heading[b])
+        driven = background.speed[b] * (time - known[-1])
+        front = np.array((background.x[b], background.y[b]))
+        front += driven * np.array((np.cos(heading), np.sin(heading)))
+        corners = _corners(front, heading, background.length[b], background.width[b])
+        axes.add_patch(
+            Polygon(corners, facecolor="#B0B0B0", edgecolor=GREY, zorder=1.5, label="background")
+        )
 
 
 def _draw_trajectories(

@@ -12,7 +12,7 @@ from matplotlib.patches import Polygon
 
 from giveway.figures import top_view_figure
 from giveway.figures.top_view import rectangle
-from giveway.tracks import CrowdTrack, VehicleShape
+from giveway.tracks import BackgroundTrack, CrowdTrack, VehicleShape
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27
@@ -144,3 +144,27 @@ def test_nothing_to_draw_is_refused(run):
     empty = replace(ego, **{name: column[:0] for name, column in vars(ego).items()})
     with pytest.raises(ValueError, match="no instants"):
         top_view_figure(empty, crowd, CAR, R)
+
+
+def test_other_vehicles_are_drawn_where_they_are_by_then(run):
+    ego, crowd = run(10, 2, "mpc")
+    one = np.ones(1)
+    car = BackgroundTrack(
+        time=one * 0.0,
+        id=np.array(["c"]),
+        type=np.array(["car"]),
+        x=one * 30.0,
+        y=one * 4.0,
+        heading=one * 0.0,
+        speed=one * 2.0,
+        length=one * 4.0,
+        width=one * 2.0,
+    )
+    figure = top_view_figure(ego, crowd, VehicleShape(), 0.27, times=[0.0, 1.0], background=car)
+    (at_0,), (at_1,) = (
+        [patch for patch in axes.patches if patch.get_label() == "background"]
+        for axes in figure.axes
+        if axes.get_title().startswith("t = ")
+    )
+    assert at_0.get_xy()[:4].tolist() == [[30, 5], [26, 5], [26, 3], [30, 3]]
+    assert at_1.get_xy()[:4].tolist() == [[32, 5], [28, 5], [28, 3], [32, 3]]
