@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-
 from pedestrian_model._cells import add_near_pairs
 from pedestrian_model._detour import detour, set_targets
 from pedestrian_model._jit import fma, inlined, kernel
