@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
 import os
 import sys
@@ -40,12 +41,24 @@ def kernel_cache() -> Path:
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     if chosen:
         return Path(chosen)
-    folder = user_cache_path("giveway", appauthor=False) / "numba"
+    folder = user_cache_path("giveway", appauthor=False) / f"kernels-{_fingerprint()}"
     existing = next(parent for parent in (folder, *folder.parents) if parent.exists())
     if os.access(existing, os.W_OK | os.X_OK):
         return folder
     user = os.getuid() if hasattr(os, "getuid") else "user"
-    return Path(tempfile.gettempdir()) / f"giveway-kernels-{user}"
+    return Path(tempfile.gettempdir()) / f"giveway-{user}" / folder.name
+
+
+def _fingerprint() -> str:
+    """Changes with any source file: numba sees a change in a kernel's own file only."""
+    house = Path(__file__).resolve().parent.parent
+    stamps = [
+        (str(path), status.st_mtime_ns, status.st_size)
+        for room in ("giveway", *ROOMS)
+        for path in sorted((house / room).rglob("*.py"))
+        for status in [path.stat()]
+    ]
+    return hashlib.sha256(repr(stamps).encode()).hexdigest()[:12]
 
 
 def choose_kernel_cache() -> None:

@@ -46,7 +46,9 @@ class EgoConfig(Section):
     id: str = option("ego", None, "SUMO id of the ego", min_length=1)
     route: EdgeList = option((), None, "edges that the ego drives along, comma-separated")
     lane: int = option(0, None, "index of the departure lane, 0 is the rightmost", ge=0)
-    depart_time: float = option(0.0, "s", "simulation time at which the ego enters", ge=0, le=1e6)
+    depart_time: float = option(
+        0.0, "s", "simulation time at which the ego enters; at begin if that is later", ge=0, le=1e6
+    )
     depart_position: float = option(
         0.0, "m", "front bumper's place on the first edge at departure", ge=0, le=1e6
     )

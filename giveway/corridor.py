@@ -38,7 +38,6 @@ class Corridor:
         self._reach = walking_speed_limit * horizon * time_step  # [m] walked within the horizon
         self._ahead = np.full(horizon, np.inf)
         self._nobody = np.full(horizon, np.inf)
-        self._nobody.flags.writeable = False
 
     @property
     def nobody(self) -> Array:

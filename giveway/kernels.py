@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from giveway import __version__
+import numba
+import numpy as np
+
+from controller import LongitudinalModel, Mpc, MpcParameters
 from giveway._environment import kernel_cache
 
 if TYPE_CHECKING:
@@ -18,9 +21,7 @@ def compile_kernels_once(console: Console) -> None:
 
     A tiny run touches them all; numba keeps the machine code in the user's cache folder.
     """
-    import numba
-
-    marker = kernel_cache() / f"compiled-giveway{__version__}-numba{numba.__version__}"
+    marker = kernel_cache() / f"compiled-by-numba-{numba.__version__}"
     if marker.exists():
         return
     with console.status(_MESSAGE):
@@ -35,9 +36,21 @@ def compile_kernels_once(console: Console) -> None:
 
 
 def _tiny_run() -> None:
+    """Pass through every kernel once: a free drive, people in the way, a street with cars."""
     from giveway.api import run
 
-    for controller in ("mpc", "pid"):
-        crowd = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
-        result = run({"time_limit": 0.2, "controller": controller, "crowd": crowd})
-        result.summary  # noqa: B018 - the metrics have kernels too
+    people = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
+    for settings in (
+        {"time_limit": 0.2, "crowd": {"pedestrians": 0}},
+        {"time_limit": 0.2, "crowd": people},
+        {"time_limit": 1.2, "scenario": "street", "controller": "pid"},
+    ):
+        run(settings).summary  # noqa: B018 - the metrics have kernels too
+    _solve_without_solution()
+
+
+def _solve_without_solution() -> None:
+    """From 1 m/s, 0.21 m are too few to stop in, which takes a certificate to prove."""
+    mpc = Mpc(LongitudinalModel(), MpcParameters())
+    ahead = np.full(mpc.parameters.horizon, mpc.parameters.safe_distance + 0.21)
+    mpc.solve(0.0, 1.0, 0.0, ahead)
