@@ -15,7 +15,7 @@ from pedestrian_model import Vehicles
 if TYPE_CHECKING:
     from giveway.assembly import Parts
     from giveway.recorder import Recorder
-    from giveway.sumo import BackgroundVehicles
+    from giveway.traffic import BackgroundVehicles
     from pedestrian_model import Crowd
 
 Array = NDArray[np.float64]

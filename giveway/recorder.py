@@ -12,7 +12,7 @@ from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings
 
 if TYPE_CHECKING:
     from giveway.ego_path import Pose
-    from giveway.sumo import BackgroundVehicles
+    from giveway.traffic import BackgroundVehicles
 
 Array = NDArray[np.float64]
 

@@ -18,8 +18,6 @@ import contextlib
 import itertools
 import math
 import tempfile
-import xml.etree.ElementTree as ET
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -27,6 +25,8 @@ import numpy as np
 
 from giveway.errors import InstallationError, ScenarioError, SumoError
 from giveway.native_stderr import NativeStderr
+from giveway.sumo_command import EGO_TYPE, PEDESTRIAN_TYPE, own_types, sumo_command
+from giveway.traffic import NO_VEHICLES, BackgroundVehicles, angle_to_heading, heading_to_angle
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,41 +37,12 @@ if TYPE_CHECKING:
     from giveway.ego_path import Pose
     from giveway.tracks import VehicleShape
 
-EGO_TYPE = "giveway_ego"
-PEDESTRIAN_TYPE = "giveway_pedestrian"
 POSITION_TOLERANCE = 1e-6  # [m] between our state and SUMO's after each step
 _DEPART_NOW = -3  # libsumo's constant for "in the next step"
 _KEEP_ROUTE = 2  # move exactly to x, y, whatever lane is there
 _NO_EDGE = itertools.repeat("")
 _EXACTLY = itertools.repeat(_KEEP_ROUTE)
 _WITHOUT_MATCHING = itertools.repeat(-1.0)  # the "ghost" mode: no lane is sought (issue 17257)
-
-
-@dataclass(frozen=True)
-class BackgroundVehicles:
-    """SUMO's own vehicles at one instant; ``x``, ``y`` are front-bumper centres."""
-
-    ids: tuple[str, ...]
-    types: tuple[str, ...]
-    x: NDArray[np.float64]  # (m,) [m]
-    y: NDArray[np.float64]  # (m,) [m]
-    heading: NDArray[np.float64]  # (m,) [rad] counter-clockwise from +x
-    speed: NDArray[np.float64]  # (m,) [m/s]
-    length: NDArray[np.float64]  # (m,) [m]
-    width: NDArray[np.float64]  # (m,) [m]
-
-
-_NO_VEHICLES = BackgroundVehicles((), (), *(np.empty(0) for _ in range(6)))
-
-
-def heading_to_angle(heading: float) -> float:
-    """SUMO's navigational angle [deg, 0 = north, clockwise] of a heading [rad]."""
-    return (90.0 - math.degrees(heading)) % 360.0
-
-
-def angle_to_heading(angle: float) -> float:
-    """The heading [rad, counter-clockwise from +x] of SUMO's navigational angle [deg]."""
-    return math.radians(90.0 - angle)
 
 
 class SumoSession:
@@ -98,14 +69,14 @@ class SumoSession:
             raise SumoError(msg)
         self._sumo = _import_libsumo()
         self._config_file = config_file
-        self._stderr = NativeStderr()
         self._ego_id = ""
         self._ego_shape = ego_shape
         self._shapes: dict[str, tuple[str, float, float]] = {}
         with tempfile.TemporaryDirectory(prefix="giveway-") as folder:
             types = Path(folder) / "giveway.add.xml"
-            types.write_text(_own_types(ego_shape), encoding="utf-8")
-            command = _command(config_file, types, seed=seed, step_length=step_length)
+            types.write_text(own_types(ego_shape), encoding="utf-8")
+            command = sumo_command(config_file, types, seed=seed, step_length=step_length)
+            self._stderr = NativeStderr()
             try:
                 with self._stderr:
                     self._sumo.start(command)
@@ -211,7 +182,7 @@ class SumoSession:
         vehicle = self._sumo.vehicle
         ids = tuple(sorted(name for name in vehicle.getIDList() if name != self._ego_id))
         if not ids:
-            return _NO_VEHICLES
+            return NO_VEHICLES
         for name in ids:
             if name not in self._shapes:
                 size = vehicle.getLength(name), vehicle.getWidth(name)
@@ -376,45 +347,3 @@ def _import_libsumo() -> Any:
         msg = f"libsumo cannot be imported ({error}); reinstall with: pip install giveway"
         raise InstallationError(msg) from error
     return libsumo
-
-
-def _own_types(ego: VehicleShape) -> str:
-    # timeToTeleport: an ego that waits for a crowd is not stuck. speedDev=0: a drawn speed factor
-    # would shift SUMO's random stream and with it the background traffic.
-    return f"""<additional>
-    <vType id="{EGO_TYPE}" vClass="passenger" length="{ego.length}" width="{ego.width}"
-           maxSpeed="100" speedDev="0" timeToTeleport="-1"/>
-    <vType id="{PEDESTRIAN_TYPE}" vClass="ignoring" speedDev="0"/>
-</additional>
-"""
-
-
-def _command(config_file: Path, types: Path, *, seed: int, step_length: float | None) -> list[str]:
-    additional = [str(types), *_additional_files(config_file)]
-    command = ["sumo", "-c", str(config_file)]
-    command += ["--additional-files", ",".join(additional)]
-    command += ["--pedestrian.model", "striping", "--gui-settings-file", ""]
-    command += ["--collision.action", "warn", "--collision.check-junctions", "true"]
-    command += ["--random", "false", "--seed", str(seed)]
-    command += ["--no-step-log", "true", "--duration-log.disable", "true"]
-    if step_length is not None:
-        command += ["--step-length", f"{step_length:.6f}"]
-    return command
-
-
-def _additional_files(config_file: Path) -> list[str]:
-    """The configuration's own additional files, absolute: naming ours replaces its list."""
-    try:
-        root = ET.parse(config_file).getroot()
-    except FileNotFoundError:
-        msg = f"{config_file}: no such file; expected a SUMO configuration (.sumocfg)"
-        raise ScenarioError(msg) from None
-    except (ET.ParseError, OSError) as error:
-        msg = f"{config_file}: not readable as a SUMO configuration: {error}"
-        raise SumoError(msg) from None
-    names: list[str] = []
-    for tag in ("additional-files", "additional", "a"):
-        for element in root.iter(tag):
-            value = element.get("value", element.get("v", ""))
-            names += [name.strip() for name in value.split(",") if name.strip()]
-    return [str((config_file.parent / name).resolve()) for name in names]

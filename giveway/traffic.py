@@ -1,0 +1,39 @@
+"""SUMO's own vehicles at one instant, and its convention of angles."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class BackgroundVehicles:
+    """SUMO's own vehicles at one instant; ``x``, ``y`` are front-bumper centres."""
+
+    ids: tuple[str, ...]
+    types: tuple[str, ...]
+    x: NDArray[np.float64]  # (m,) [m]
+    y: NDArray[np.float64]  # (m,) [m]
+    heading: NDArray[np.float64]  # (m,) [rad] counter-clockwise from +x
+    speed: NDArray[np.float64]  # (m,) [m/s]
+    length: NDArray[np.float64]  # (m,) [m]
+    width: NDArray[np.float64]  # (m,) [m]
+
+
+NO_VEHICLES = BackgroundVehicles((), (), *(np.empty(0) for _ in range(6)))
+
+
+def heading_to_angle(heading: float) -> float:
+    """SUMO's navigational angle [deg, 0 = north, clockwise] of a heading [rad]."""
+    return (90.0 - math.degrees(heading)) % 360.0
+
+
+def angle_to_heading(angle: float) -> float:
+    """The heading [rad, counter-clockwise from +x] of SUMO's navigational angle [deg]."""
+    return math.radians(90.0 - angle)
