@@ -21,11 +21,19 @@ from controller import (
 from fmus import FmuError, VehicleFmu, bundled_fmu, describe
 from giveway.corridor import Corridor
 from giveway.ego_path import EgoPath
-from giveway.errors import ConfigError, ControlError, ScenarioError, VehicleError
+from giveway.errors import ConfigError, ControlError, CrowdError, ScenarioError, VehicleError
 from giveway.spawn import Spawned, spawn
 from giveway.sumo import SumoSession
 from giveway.tracks import VehicleShape
-from pedestrian_model import PRESETS, Crowd, CrowdModel, Predictor, VciParameters, arrived
+from pedestrian_model import (
+    PRESETS,
+    Crowd,
+    CrowdModel,
+    PedestrianModelError,
+    Predictor,
+    VciParameters,
+    arrived,
+)
 
 if TYPE_CHECKING:
     from contextlib import ExitStack
@@ -175,12 +183,15 @@ def _crowd(spawned: Spawned) -> Crowd:
     """Everybody already walks: at the desired speed, towards the destination."""
     way = spawned.destination - spawned.position
     direction = way / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)[:, None]
-    return Crowd.create(
-        spawned.position,
-        spawned.desired_speed[:, None] * direction,
-        spawned.desired_speed,
-        [destination[None] for destination in spawned.destination],
-    )
+    try:
+        return Crowd.create(
+            spawned.position,
+            spawned.desired_speed[:, None] * direction,
+            spawned.desired_speed,
+            [destination[None] for destination in spawned.destination],
+        )
+    except PedestrianModelError as error:
+        raise CrowdError(f"pedestrians cannot be placed: {error}") from error
 
 
 def _vehicle(config: RunConfig, stack: ExitStack) -> VehicleFmu:

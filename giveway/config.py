@@ -32,6 +32,9 @@ Displacement = Annotated[tuple[float, float], BeforeValidator(_split)]
 EdgeList = Annotated[tuple[str, ...], BeforeValidator(_split)]
 
 
+_FARTHEST = 1e7  # [m] beyond it a millimetre is lost in rounding
+
+
 class Section(BaseModel):
     """A table of the configuration: frozen, finite numbers only, unknown keys refused."""
 
@@ -99,6 +102,9 @@ class CrowdConfig(Section):
 
     @model_validator(mode="after")
     def _ordered(self) -> CrowdConfig:
+        if max(map(abs, (*self.spawn_area, *self.walk))) > _FARTHEST:
+            msg = f"spawn_area and walk: expected numbers within +-{_FARTHEST:g} [m]"
+            raise ValueError(msg)
         x_min, y_min, x_max, y_max = self.spawn_area
         if not (x_min < x_max and y_min < y_max):
             msg = "spawn_area: expected x_min < x_max and y_min < y_max [m]"

@@ -155,7 +155,8 @@ def _explain(error: Any, layers: Sequence[Layer]) -> str:
     if error["type"] == "extra_forbidden":
         return f"{name}: unknown key; {_did_you_mean(location)}"
     if error["type"] == "value_error":
-        return f"{name}: {error['ctx']['error']}"
+        origin = f"{holders[-1].origin}: " if holders and not holders[-1].from_flags else ""
+        return f"{origin}[{'.'.join(location)}] {error['ctx']['error']}"  # of several keys
     option = next((o for o in options() if o.location == location), None)
     if option is None:
         return f"{name} = {error['input']!r}: expected a table of options"

@@ -5,6 +5,7 @@ Only what the asked-for command needs is imported, so that ``giveway --help`` an
 
 from __future__ import annotations
 
+import io
 import sys
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit with its code."""
     from giveway.cli.app import build_app
 
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without our characters is no error
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         code = build_app(words)(args=words, standalone_mode=False)

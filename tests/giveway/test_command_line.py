@@ -152,3 +152,16 @@ def test_the_influence_picture(tmp_path: Path) -> None:
     assert (tmp_path / "f.png").read_bytes().startswith(b"\x89PNG")
     assert "--speeds" in refused("plot", "influence", "--speeds", "fast", cwd=tmp_path)
     assert "SIM" in refused("plot", "influence", "--preset", "SIMM", cwd=tmp_path)
+
+
+def test_a_terminal_without_our_characters_is_no_error(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "giveway", "run", "--pedestrians", "0", "--no-pictures"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONIOENCODING": "ascii"},
+        capture_output=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert b"Time to the goal" in done.stdout

@@ -139,3 +139,10 @@ def test_a_run_config_object_overrides_only_what_it_sets() -> None:
 def test_an_unknown_scenario_is_guessed_at() -> None:
     with pytest.raises(ScenarioError, match="shared_space"):
         load([Layer("", {"scenario": "shared_spce"})])
+
+
+def test_a_contradiction_between_keys_names_their_table() -> None:
+    values = {"crowd": {"spawn_area": (5, 0, 1, 1)}}
+    assert explain(values).startswith("study.toml: [crowd] spawn_area: expected x_min < x_max")
+    assert explain(values, flags=True).startswith("[crowd] spawn_area: expected x_min < x_max")
+    assert "[crowd] spawn_area and walk" in explain({"crowd": {"walk": (0, 1e300)}})
