@@ -2,8 +2,8 @@
 
 Run: python benchmarks/bench_loop.py [--pairs N]
 
-The baseline makes the same moves, position checks and SUMO steps as a recorded run, and the same
-FMU steps, with nothing in between. Both are timed in turn in one process; the ratio is what counts.
+The baseline makes the same moves, SUMO steps and FMU steps as a recorded run, with nothing in
+between. Both are timed in turn in one process; the ratio is what counts.
 """
 
 from __future__ import annotations

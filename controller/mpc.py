@@ -39,6 +39,7 @@ _PROOFS = {
     CANNOT_STOP: "infeasible: cannot stop",
     CANNOT_HOLD_SPEED: "infeasible: cannot hold speed",
 }
+_STABLE = "at most 1, or forward Euler is unstable; lower friction [N.s/m] or time_step [s]"
 _CERTIFIED = "infeasible: certified"
 _UNVERIFIED = "not verified"
 
@@ -63,7 +64,7 @@ class Mpc:
     def __init__(self, model: LongitudinalModel, parameters: MpcParameters | None = None) -> None:
         self.model = model
         self.parameters = parameters = parameters or MpcParameters()
-        require(model.decay >= 0.0, "friction * time_step / mass", 1 - model.decay, "at most 1")
+        require(model.decay >= 0.0, "friction * time_step / mass", 1 - model.decay, _STABLE)
         self._problem = SpeedProblem(model, parameters)
         count, N = self._problem.rows.shape
         self._speeds = np.empty(N)

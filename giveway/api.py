@@ -19,7 +19,13 @@ from giveway.loading import as_layer, load
 from giveway.manifest import manifest
 from giveway.metrics import PEDESTRIAN_FIELDS, SUMMARY_FIELDS, pedestrian_metrics, summarise
 from giveway.recorder import Recorder
-from giveway.results import prepare_folder, require_parquet, write_pictures, write_results
+from giveway.results import (
+    release_folder,
+    require_parquet,
+    take_folder,
+    write_pictures,
+    write_results,
+)
 from giveway.schema import EGO_COLUMNS, TIMING_COLUMNS, TRAJECTORY_COLUMNS, Column
 from giveway.simulation import Ending, Loop, Watcher
 from giveway.tables import ego_table, timing_table, trajectory_table
@@ -27,8 +33,6 @@ from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings, Vehic
 from pedestrian_model import PRESETS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     import numpy as np
     from numpy.typing import NDArray
 
@@ -54,7 +58,7 @@ class RunResult:
     config: RunConfig
     scenario: Scenario
     ending: Ending
-    error: GivewayError | None
+    error: Exception | None
     ego_track: EgoTrack
     crowd_track: CrowdTrack
     background_track: BackgroundTrack
@@ -164,7 +168,7 @@ _SUMMARY_HEAD = (
 
 
 def run(
-    config: RunConfig | Mapping[str, Any],
+    config: RunConfig | dict[str, Any] | str | Path,
     *,
     results: str | Path | None = None,
     force: bool = False,
@@ -176,7 +180,8 @@ def run(
 
     Args:
         config: the options that differ from the scenario's settings and the defaults, as a
-            ``RunConfig`` or as nested dictionaries with the keys of the TOML file.
+            ``RunConfig`` or as nested dictionaries with the keys of the TOML file; or the name of
+            a scenario, or a .toml file.
         results: a folder to write tables, summary, manifest and pictures to; None writes nothing.
         force: replace the results that are there.
         parquet: also write the tables as Parquet.
@@ -214,21 +219,40 @@ def run_layers(
     folder = None if results is None else Path(results)
     if parquet:
         require_parquet()
-    if folder is not None:
-        prepare_folder(folder, force=force)
-    result = simulate(config, scenario, watcher)
-    if folder is not None and len(result.ego_track.time):
-        write_results(result, folder, parquet=parquet)
-        if pictures:
-            write_pictures(result, folder)
+    taken = folder is not None and take_folder(folder, force=force)
+    with DeferredInterrupt() as interrupt:  # writing is not to be torn either
+        try:
+            result = simulate(config, scenario, watcher, interrupt)
+        except Exception:
+            if folder is not None and taken:
+                release_folder(folder)
+            raise
+        if folder is not None and len(result.ego_track.time):
+            write_results(result, folder, parquet=parquet)
+            if pictures:
+                write_pictures(result, folder)
+        elif folder is not None and taken:
+            release_folder(folder)
     if result.error is not None:
-        result.error.result = result
+        if isinstance(result.error, GivewayError):
+            result.error.result = result
         raise result.error
     return result
 
 
-def simulate(config: RunConfig, scenario: Scenario, watcher: Watcher | None = None) -> RunResult:
+def simulate(
+    config: RunConfig,
+    scenario: Scenario,
+    watcher: Watcher | None = None,
+    interrupt: DeferredInterrupt | None = None,
+) -> RunResult:
     """Run one configuration; an error on the way becomes the result's ``error``.
+
+    Args:
+        config: the effective configuration.
+        scenario: its scenario.
+        watcher: called at every control step.
+        interrupt: looked at between two steps.
 
     Raises:
         GivewayError: the run could not begin.
@@ -236,13 +260,12 @@ def simulate(config: RunConfig, scenario: Scenario, watcher: Watcher | None = No
     with ExitStack() as stack:
         parts = assemble(config, scenario, stack)
         recorder = Recorder(parts.spawned.ids)
-        interrupt = stack.enter_context(DeferredInterrupt())
         loop = Loop(parts, recorder)
         began = perf_counter()
-        error: GivewayError | None = None
+        error: Exception | None = None
         try:
-            ending = loop.run(watcher, lambda: interrupt.requested)
-        except GivewayError as failure:
+            ending = loop.run(watcher, lambda: interrupt is not None and interrupt.requested)
+        except Exception as failure:  # whatever it is, the rows so far are the user's
             error, ending = failure, Ending.FAILED
         elapsed = perf_counter() - began
         return RunResult(

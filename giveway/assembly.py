@@ -83,7 +83,6 @@ def assemble(config: RunConfig, scenario: Scenario, stack: ExitStack) -> Parts:
     """
     shape = VehicleShape(config.vehicle.length, config.vehicle.width)
     regulator = _regulator(config)
-    _require_ego(config, scenario)
     sumo = stack.enter_context(
         SumoSession(
             scenario.config_file,
@@ -92,15 +91,20 @@ def assemble(config: RunConfig, scenario: Scenario, stack: ExitStack) -> Parts:
             ego_shape=shape,
         )
     )
+    _require_ego(config, scenario, sumo.end)
     substeps = _substeps(config.time_step, sumo.step_length)
     path = EgoPath.through(sumo.route_shape(config.ego.route, config.ego.lane))
     _require_room(config, path)
     spawned = spawn(config.crowd, path, config.seed)
+    if config.ego.id in spawned.ids:
+        msg = f"--ego-id '{config.ego.id}': a pedestrian has this id; choose another"
+        raise ConfigError(msg)
     vehicle = _vehicle(config, stack)
     sumo.run_until(config.ego.depart_time)
     sumo.add_ego(
         config.ego.id,
         config.ego.route,
+        lane=config.ego.lane,
         position=config.ego.depart_position,
         speed=config.ego.initial_speed,
     )
@@ -120,7 +124,7 @@ def assemble(config: RunConfig, scenario: Scenario, stack: ExitStack) -> Parts:
         regulator=regulator,
         corridor=Corridor(
             path,
-            half_width=config.regulation.corridor_half_width,
+            half_width=config.corridor_half_width,
             horizon=horizon,
             time_step=config.time_step,
             walking_speed_limit=parameters.max_speed,
@@ -230,7 +234,13 @@ def _substeps(time_step: float, step_length: float) -> int:
     return substeps
 
 
-def _require_ego(config: RunConfig, scenario: Scenario) -> None:
+def _require_ego(config: RunConfig, scenario: Scenario, end: float) -> None:
+    if config.ego.depart_time >= end:
+        msg = (
+            f"--ego-depart-time {config.ego.depart_time:g}: {scenario.config_file} ends at "
+            f"{end:g} s; let the ego depart before [s]"
+        )
+        raise ConfigError(msg)
     if not config.ego.route:
         msg = (
             f"{scenario.config_file}: no route for the ego; name its edges with --ego-route "

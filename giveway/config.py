@@ -119,9 +119,15 @@ class RegulationConfig(Section):
     """What both controllers aim at, and who counts as being in front."""
 
     reference_speed: float = option(4.0, "m/s", "desired speed v_r", gt=0, le=60)
-    safe_distance: float = option(8.0, "m", "distance d_safe to keep to who is in front", ge=0)
-    corridor_half_width: float = option(
-        1.25, "m", "in front: the body centre is this close to the ego's path", gt=0, le=20
+    safe_distance: float = option(
+        8.0, "m", "distance d_safe to keep to who is in front", ge=0, le=1e4
+    )
+    corridor_half_width: float | None = option(
+        None,
+        "m",
+        "in front: the body centre is this close to the ego's path; none: half its width + 0.25",
+        gt=0,
+        le=20,
     )
     gap_from: Literal["bumper", "centre"] = option(
         "bumper", None, "where the distance to who is in front starts"
@@ -132,7 +138,7 @@ class MpcConfig(Section):
     """The model predictive controller (Yang & Özgüner 2019, section 3, table 1)."""
 
     horizon: int = option(15, "steps", "prediction horizon N", ge=2, le=200)
-    force_limit: float = option(8000.0, "N", "u_max", gt=0, le=1e6)
+    force_limit: float = option(8000.0, "N", "u_max, of the PID's output too", gt=0, le=1e6)
     force_rate_limit: float = option(1000.0, "N/step", "du_max", gt=0, le=1e6)
     speed_min: float = option(0.0, "m/s", "v_min", ge=0, le=60)
     speed_max: float = option(20.0, "m/s", "v_max", gt=0, le=100)
@@ -179,3 +185,22 @@ class RunConfig(Section):
     mpc: MpcConfig = MpcConfig()
     pid: PidConfig = PidConfig()
     sumo: SumoConfig = SumoConfig()
+
+    @property
+    def corridor_half_width(self) -> float:
+        """The corridor's half width [m]: 1.25 for the paper's car of 2 m."""
+        chosen = self.regulation.corridor_half_width
+        return self.vehicle.width / 2 + 0.25 if chosen is None else chosen
+
+    @model_validator(mode="after")
+    def _reachable(self) -> RunConfig:
+        low, high = self.mpc.speed_min, self.mpc.speed_max
+        for key, speed in (
+            ("[regulation] reference_speed", self.regulation.reference_speed),
+            ("[ego] initial_speed", self.ego.initial_speed),
+        ):
+            if self.controller == "mpc" and not low <= speed <= high:
+                msg = f"{key} = {speed:g}: expected within [mpc] speed_min and speed_max"
+                msg += f", {low:g} to {high:g} [m/s]"
+                raise ValueError(msg)
+        return self

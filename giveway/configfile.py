@@ -94,7 +94,7 @@ def read_toml(path: Path) -> Layer:
         ConfigError: the file is missing, unreadable or not TOML.
     """
     try:
-        values = tomllib.loads(path.read_text(encoding="utf-8"))
+        values = tomllib.loads(path.read_text(encoding="utf-8-sig"))
         return Layer(str(path), _anchored(values, path.parent.absolute()))
     except FileNotFoundError:
         msg = f"{path}: no such file; expected a giveway configuration (TOML)"
@@ -156,7 +156,8 @@ def _explain(error: Any, layers: Sequence[Layer]) -> str:
         return f"{name}: unknown key; {_did_you_mean(location)}"
     if error["type"] == "value_error":
         origin = f"{holders[-1].origin}: " if holders and not holders[-1].from_flags else ""
-        return f"{origin}[{'.'.join(location)}] {error['ctx']['error']}"  # of several keys
+        table = f"[{'.'.join(location)}] " if location else ""
+        return f"{origin}{table}{error['ctx']['error']}"  # of several keys
     option = next((o for o in options() if o.location == location), None)
     if option is None:
         return f"{name} = {error['input']!r}: expected a table of options"

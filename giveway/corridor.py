@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.ego_path import EgoPath, pose_at, project
+from giveway.ego_path import EgoPath, pose_at
 from giveway.jit import kernel
 
 if TYPE_CHECKING:
@@ -98,16 +98,33 @@ def closest_in_front(
     reach: float,
 ) -> tuple[float, bool]:
     """Station of the closest person in front; can anybody get there by walking ``reach``?"""
-    straight = len(stations) == 2
+    last = len(vertices) - 2
     closest = np.inf
     reachable = False
     for j in range(positions.shape[0]):
-        station, lateral = project(vertices, stations, positions[j, 0], positions[j, 1])
-        distance = abs(lateral)
-        if distance <= half_width + reach and not (straight and station + reach < front):
-            reachable = True
-        if front < station < closest and distance <= half_width:
-            closest = station
+        x, y = positions[j, 0], positions[j, 1]
+        beyond_before = False  # is (x, y) beyond the end of the segment before?
+        for i in range(last + 1):
+            # Each segment counts on its own: a path that crosses itself or turns back comes past
+            # the same place twice, and only the passage ahead matters.
+            x_0, y_0 = vertices[i, 0], vertices[i, 1]
+            length = stations[i + 1] - stations[i]
+            e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
+            along = (x - x_0) * e_x + (y - y_0) * e_y
+            at_corner = along < 0.0 and i > 0 and beyond_before
+            beside = (along >= 0.0 or i == 0) and (along <= length or i == last)
+            beyond_before = along > length
+            if not (beside or at_corner):
+                continue
+            if at_corner:
+                along = 0.0
+            d_x, d_y = x - (x_0 + along * e_x), y - (y_0 + along * e_y)
+            distance = np.sqrt(d_x * d_x + d_y * d_y)
+            station = stations[i] + along
+            if distance <= half_width + reach and not (last == 0 and station + reach < front):
+                reachable = True
+            if front < station < closest and distance <= half_width:
+                closest = station
     return closest, reachable
 
 

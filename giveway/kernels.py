@@ -38,6 +38,7 @@ def compile_kernels_once(console: Console) -> None:
 def _tiny_run() -> None:
     """Pass through every kernel once: a free drive, people in the way, a street with cars."""
     from giveway.api import run
+    from giveway.simulation import Ending
 
     people = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
     for settings in (
@@ -45,7 +46,10 @@ def _tiny_run() -> None:
         {"time_limit": 0.2, "crowd": people},
         {"time_limit": 1.2, "scenario": "street", "controller": "pid"},
     ):
-        run(settings).summary  # noqa: B018 - the metrics have kernels too
+        result = run(settings)
+        if result.ending is Ending.INTERRUPTED:
+            raise KeyboardInterrupt
+        result.summary  # noqa: B018 - the metrics have kernels too
     _solve_without_solution()
 
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from giveway.config import RunConfig
 from giveway.configfile import Layer, build_config, merge, read_toml
-from giveway.errors import ScenarioError
+from giveway.errors import ConfigError, ScenarioError
 from sumo_scenarios import ScenarioError as UnknownScenario
 from sumo_scenarios import available, find
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from sumo_scenarios import Scenario
 
@@ -50,8 +50,21 @@ def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
     return config
 
 
-def as_layer(config: RunConfig | Mapping[str, Any]) -> Layer:
-    """What a caller of the Python API has set, and nothing of the defaults."""
+def as_layer(config: RunConfig | dict[str, Any] | str | Path) -> Layer:
+    """What a caller of the Python API has set, and nothing of the defaults.
+
+    Raises:
+        ConfigError: it is neither a configuration nor the name of a scenario or TOML file.
+    """
+    if isinstance(config, str | Path):
+        path = Path(config)
+        return read_toml(path) if path.suffix == ".toml" else Layer("", {"scenario": str(config)})
     if isinstance(config, RunConfig):
         return Layer("RunConfig", config.model_dump(exclude_unset=True))
-    return Layer("configuration", config)
+    if isinstance(config, dict):
+        return Layer("configuration", config)
+    msg = (  # type: ignore[unreachable]  # callers without a type checker
+        f"configuration = {config!r}: expected a RunConfig, a dictionary with the keys of the TOML "
+        "file, a scenario's name or a .toml file"
+    )
+    raise ConfigError(msg)

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_INFLUENCE_RANGE = 40.0  # [m] beyond it a vehicle's influence on a pedestrian is nil at any speed
+_INFLUENCE_RANGE = 10.0  # [m] from a vehicle's contour: the influence is exp(-26) of the strongest
+_NOSE = 1.5  # [s] the contour's nose is no longer than this times the speed
 _STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
 
 
@@ -101,7 +102,8 @@ class Mirror:
             self._recorder.background(self._parts.sumo.time, background)
         elif hasattr(self, "poses") and self.poses.shape[1] == 1:
             return
-        near = _near(background, people)
+        ahead = self._substeps * self._time_step + self._horizon * self._time_step
+        near = _near(background, people, ahead)
         count = 1 + len(near)
         if not hasattr(self, "poses") or self.poses.shape[1] != count:
             self.poses = np.zeros((self._horizon, count, 7))
@@ -120,14 +122,15 @@ class Mirror:
             extrapolate(self.poses, self._time_step)
 
 
-def _near(vehicles: BackgroundVehicles, people: Array) -> NDArray[np.int64]:
-    """Indices of the vehicles that can influence anybody in the crowd."""
+def _near(vehicles: BackgroundVehicles, people: Array, ahead: float) -> NDArray[np.int64]:
+    """Indices of the vehicles that can influence anybody in the crowd within ``ahead`` [s]."""
     if not len(people) or not vehicles.ids:
         return np.empty(0, dtype=np.int64)
-    low = people.min(axis=0) - _INFLUENCE_RANGE
-    high = people.max(axis=0) + _INFLUENCE_RANGE
-    inside = (vehicles.x >= low[0]) & (vehicles.x <= high[0])
-    inside &= (vehicles.y >= low[1]) & (vehicles.y <= high[1])
+    speed = np.abs(vehicles.speed)
+    reach = _INFLUENCE_RANGE + vehicles.length + vehicles.width + (_NOSE + ahead) * speed
+    low, high = people.min(axis=0), people.max(axis=0)
+    inside = (vehicles.x >= low[0] - reach) & (vehicles.x <= high[0] + reach)
+    inside &= (vehicles.y >= low[1] - reach) & (vehicles.y <= high[1] + reach)
     return np.flatnonzero(inside)
 
 

@@ -19,10 +19,14 @@ class NativeStderr:
 
     def __init__(self) -> None:
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the session
-        self._saved = os.dup(2)
+        try:
+            self._saved = os.dup(2)
+        except OSError:  # closed by whoever started us: what is printed there goes nowhere
+            self._saved = os.open(os.devnull, os.O_WRONLY)
 
     def __enter__(self) -> None:
-        sys.stderr.flush()
+        if sys.stderr is not None:
+            sys.stderr.flush()
         os.dup2(self._log.fileno(), 2)
 
     def __exit__(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 from typing import TYPE_CHECKING, Any
@@ -35,26 +36,15 @@ FILES = frozenset(
 _DECIMALS = 6  # micrometres, microseconds: finer than anything that is compared
 
 
-def prepare_folder(folder: Path, *, force: bool) -> None:
-    """Make an empty folder for the results, or empty a former results folder.
+def check_folder(folder: Path, *, force: bool) -> None:
+    """Make sure that the results may go to ``folder``; nothing is changed.
 
     Raises:
-        ResultsError: it exists and ``force`` is not given, it holds files that giveway did not
-            write, or it cannot be written.
+        ResultsError: it exists and ``force`` is not given, it is a file, or it holds files that
+            giveway did not write.
     """
-    try:
-        if folder.exists():
-            _empty(folder, force=force)
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / "manifest.json"
-        probe.write_text("{}\n")
-        probe.unlink()
-    except OSError as error:
-        msg = f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
-        raise ResultsError(msg) from error
-
-
-def _empty(folder: Path, *, force: bool) -> None:
+    if not folder.exists():
+        return
     if not folder.is_dir():
         msg = f"{folder}: is a file; expected a folder for the results, name another with --out"
         raise ResultsError(msg)
@@ -69,8 +59,38 @@ def _empty(folder: Path, *, force: bool) -> None:
     if present and not force:
         msg = f"{folder}: results exist; replace them with --force or name another with --out"
         raise ResultsError(msg)
-    for name in present:
-        (folder / name).unlink()
+
+
+def take_folder(folder: Path, *, force: bool) -> bool:
+    """Take ``folder`` for a run; former results stay until the new ones are written.
+
+    Returns:
+        Whether the folder was taken empty, so that ``release_folder`` may undo it.
+
+    Raises:
+        ResultsError: as ``check_folder``, or it cannot be written, or another run has taken it.
+    """
+    try:
+        check_folder(folder, force=force)
+        folder.mkdir(parents=True, exist_ok=True)
+        if any(folder.iterdir()):
+            return False
+        with (folder / "manifest.json").open("x", encoding="utf-8") as marker:
+            marker.write('{"ending": "running"}\n')
+    except FileExistsError:
+        msg = f"{folder}: another run is writing there; name another folder with --out"
+        raise ResultsError(msg) from None
+    except OSError as error:
+        msg = f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
+        raise ResultsError(msg) from error
+    return True
+
+
+def release_folder(folder: Path) -> None:
+    """Take the folder of a run that could not begin away again."""
+    with contextlib.suppress(OSError):
+        (folder / "manifest.json").unlink()
+        folder.rmdir()
 
 
 def write_results(result: RunResult, folder: Path, *, parquet: bool = False) -> None:
@@ -82,6 +102,8 @@ def write_results(result: RunResult, folder: Path, *, parquet: bool = False) -> 
     frames = {name: _rounded(getattr(result, name)) for name in TABLES if name != "summary"}
     frames["summary"] = _rounded(result.summary_table)
     try:
+        for name in FILES:
+            (folder / name).unlink(missing_ok=True)  # results are never mixed
         (folder / "config.toml").write_text(result.config_text, encoding="utf-8")
         for name in TABLES:
             frames[name].to_csv(folder / f"{name}.csv", index=False, lineterminator="\n")

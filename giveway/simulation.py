@@ -97,7 +97,7 @@ class Loop:
         try:
             return self._run(watcher, interrupted)
         except FmuError as error:
-            raise VehicleError(str(error)) from error
+            raise VehicleError(f"step {self._k}: {error}") from error
         except ControllerError as error:
             raise ControlError(f"controller at step {self._k}: {error}") from error
         except PedestrianModelError as error:

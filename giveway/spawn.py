@@ -13,10 +13,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.config import CrowdConfig
-    from giveway.ego_path import EgoPath
+    from giveway.ego_path import EgoPath, Pose
 
     Array = NDArray[np.float64]
 
+_REDRAWS = 1_000
 _ATTEMPTS_PER_PERSON = 2_000  # rejection sampling up to a third of the densest packing
 
 
@@ -34,27 +35,35 @@ def spawn(config: CrowdConfig, path: EgoPath, seed: int) -> Spawned:
     """Draw ``config.pedestrians`` people, uniformly in the spawn area, none closer than allowed.
 
     With ``two_sided`` every second one stands on, and walks to, the mirror image about the ego's
-    path at the start. The first k of a larger crowd of the same seed are not the same people:
-    the spacing rule couples them.
+    path where it passes the spawn area. The first k of a larger crowd of the same seed are not the
+    same people: the spacing rule couples them.
 
     Raises:
         CrowdError: the area is too small for so many people at this spacing.
     """
     random = np.random.default_rng(seed)
-    position = _scatter(config, random)
+    axis = _axis(config, path) if config.two_sided else None
+    position = _scatter(config, random, axis)
     desired_speed = _truncated_normal(config, random)
     destination = position + np.asarray(config.walk)
-    if config.two_sided:
-        position[1::2] = _mirror(position[1::2], path)
-        destination[1::2] = _mirror(destination[1::2], path)
+    if axis is not None:
+        unmirrored = _mirror(position[1::2], axis)
+        destination[1::2] = _mirror(unmirrored + np.asarray(config.walk), axis)
     ids = tuple(f"ped{i}" for i in range(config.pedestrians))
     return Spawned(ids, position, destination, desired_speed)
 
 
-def _scatter(config: CrowdConfig, random: np.random.Generator) -> Array:
-    """(n, 2) places in the spawn area, none closer to another than the minimum spacing.
+def _axis(config: CrowdConfig, path: EgoPath) -> Pose:
+    """The ego's path where it is nearest to the middle of the spawn area."""
+    x_min, y_min, x_max, y_max = config.spawn_area
+    stations, _ = path.project([((x_min + x_max) / 2, (y_min + y_max) / 2)])
+    return path.pose(float(stations[0]))
 
-    Two mirrored halves are spaced as if they stood together, which is stricter than needed.
+
+def _scatter(config: CrowdConfig, random: np.random.Generator, axis: Pose | None) -> Array:
+    """(n, 2) places, none closer to another than the minimum spacing.
+
+    All in the spawn area, or every second one in its mirror image about ``axis``.
     """
     x_min, y_min, x_max, y_max = config.spawn_area
     low, high = np.array([x_min, y_min]), np.array([x_max, y_max])
@@ -62,6 +71,8 @@ def _scatter(config: CrowdConfig, random: np.random.Generator) -> Array:
     for count in range(config.pedestrians):
         for _ in range(_ATTEMPTS_PER_PERSON):
             candidate = random.uniform(low, high)
+            if axis is not None and count % 2:
+                candidate = _mirror(candidate[None], axis)[0]
             offsets = places[:count] - candidate
             if not (np.einsum("ij,ij->i", offsets, offsets) < config.minimum_spacing**2).any():
                 places[count] = candidate
@@ -82,14 +93,16 @@ def _truncated_normal(config: CrowdConfig, random: np.random.Generator) -> Array
     mean, deviation = config.desired_speed_mean, config.desired_speed_sd
     low, high = config.desired_speed_min, config.desired_speed_max
     speeds = random.normal(mean, deviation, config.pedestrians)
-    while (outside := (speeds < low) | (speeds > high)).any():
+    for _ in range(_REDRAWS):
+        outside = (speeds < low) | (speeds > high)
+        if not outside.any():
+            return speeds
         speeds[outside] = random.normal(mean, deviation, int(outside.sum()))
-    return speeds
+    return np.clip(speeds, low, high)  # bounds so narrow that hardly any draw falls between them
 
 
-def _mirror(points: Array, path: EgoPath) -> Array:
-    """The mirror image of ``points`` (n, 2) about the path's first segment."""
-    origin = path.vertices[0]
-    heading = path.headings[0]
-    normal = np.array([-np.sin(heading), np.cos(heading)])
+def _mirror(points: Array, axis: Pose) -> Array:
+    """The mirror image of ``points`` (n, 2) about the line through ``axis``."""
+    origin = np.array([axis.x, axis.y])
+    normal = np.array([-np.sin(axis.heading), np.cos(axis.heading)])
     return points - 2.0 * np.outer((points - origin) @ normal, normal)

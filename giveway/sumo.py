@@ -146,12 +146,24 @@ class SumoSession:
             )
             raise ScenarioError(msg)
         current = f"{edges[0]}_{lane}"
+        drivable = [i for i in range(lanes) if self._admits_cars(f"{edges[0]}_{i}")]
+        if lane not in drivable:
+            msg = (
+                f"{self._config_file}: ego lane {lane}: lane '{current}' is not for cars; "
+                f"expected one of {drivable or 'no lane of this edge'}, name it with --ego-lane"
+            )
+            raise ScenarioError(msg)
         points = list(self._sumo.lane.getShape(current))
         for following in edges[1:]:
             current, via = self._next_lane(current, following)
             for lane_id in (*via, current):
                 points.extend(self._sumo.lane.getShape(lane_id))
         return points
+
+    def _admits_cars(self, lane: str) -> bool:
+        allowed = self._sumo.lane.getAllowed(lane)
+        disallowed = self._sumo.lane.getDisallowed(lane)
+        return (not allowed or "passenger" in allowed) and "passenger" not in disallowed
 
     def _next_lane(self, lane: str, edge: str) -> tuple[str, list[str]]:
         """The lane of ``edge`` that ``lane`` leads to, and the junction's lanes between them."""
@@ -209,8 +221,13 @@ class SumoSession:
         while self.time < time - 1e-9:
             self._step()
 
-    def add_ego(self, ego_id: str, edges: Sequence[str], *, position: float, speed: float) -> None:
-        """Insert the ego; it appears with the next :meth:`mirror`."""
+    def add_ego(
+        self, ego_id: str, edges: Sequence[str], *, lane: int, position: float, speed: float
+    ) -> None:
+        """Insert the ego; it appears with the next :meth:`mirror`.
+
+        The speed is the FMU's business: SUMO only hears as much of it as the lane permits.
+        """
         if ego_id in self._sumo.vehicle.getIDList():
             msg = f"ego id '{ego_id}': the scenario already has this vehicle; choose another id"
             raise ScenarioError(msg)
@@ -223,7 +240,7 @@ class SumoSession:
             typeID=EGO_TYPE,
             depart="now",
             departPos=f"{position:.3f}",
-            departSpeed=f"{speed:.3f}",
+            departSpeed=f"{min(speed, self._sumo.lane.getMaxSpeed(f'{edges[0]}_{lane}')):.3f}",
         )
         self._ego_id = ego_id
 

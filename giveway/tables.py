@@ -21,7 +21,7 @@ _STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
 
 def navigational(heading: Array) -> Array:
     """SUMO's angles [deg, 0 = north, clockwise] of headings [rad]."""
-    return np.mod(90.0 - np.degrees(heading), 360.0)
+    return np.mod(np.round(90.0 - np.degrees(heading), 6), 360.0)
 
 
 def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
@@ -70,6 +70,7 @@ def trajectory_table(
     if not frames:
         return pd.DataFrame(columns=names)
     table = pd.concat(frames, ignore_index=True)
+    table["time"] = table["time"].round(6)  # SUMO's clock and ours differ in the last digit
     return table.sort_values("time", kind="stable", ignore_index=True)[names]
 
 

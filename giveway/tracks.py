@@ -34,7 +34,7 @@ class EgoTrack:
     speed: NDArray[np.float64]  # (T,) [m/s]
     acceleration: NDArray[np.float64]  # (T,) [m/s^2]
     force: NDArray[np.float64]  # (T,) [N] the command applied during [t_k, t_k+1]
-    gap: NDArray[np.float64]  # (T,) [m] bumper to closest pedestrian in front; inf: nobody
+    gap: NDArray[np.float64]  # (T,) [m] to the closest pedestrian in front; inf: nobody
     reference_speed: NDArray[np.float64]  # (T,) [m/s] of the controller that acted
     acting: NDArray[np.str_]  # (T,) which controller acted: "mpc" or "pid"
     reason: NDArray[np.str_]  # (T,) why it acted, e.g. "optimal", "infeasible", "selected"

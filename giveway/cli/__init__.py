@@ -24,13 +24,17 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal without our characters is no error
-    words = sys.argv[1:] if arguments is None else list(arguments)
+    words = (sys.argv[1:] if arguments is None else list(arguments)) or ["--help"]
     try:
         code = build_app(words)(args=words, standalone_mode=False)
     except GivewayError as error:
         code = fail(str(error), error.exit_code)
     except KeyboardInterrupt:
         code = fail("interrupted", INTERRUPTED)
+    except BrokenPipeError:
+        code = 1  # whoever read our output has gone: there is nobody to tell
+    except OSError as error:
+        code = fail(f"output: {error.strerror or error}", 1)
     except Exception as error:
         if not hasattr(error, "format_message"):
             raise  # a fault of ours: the traceback is wanted

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from giveway.cli import INTERRUPTED, fail
+
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
 
 A vehicle FMU, driven by MPC or PID, and a crowd of VCI pedestrians meet in a SUMO scenario.
@@ -91,7 +93,11 @@ def _run(
     from giveway.cli.run import Outputs, run_command
 
     outputs = Outputs(out, force=force, parquet=parquet, pictures=pictures, quiet=quiet)
-    raise typer.Exit(run_command(scenario, config, settings, outputs))
+    try:
+        code = run_command(scenario, config, settings, outputs)
+    except KeyboardInterrupt:  # typer would end without a word
+        code = fail("interrupted before the run began", INTERRUPTED)
+    raise typer.Exit(code)
 
 
 def _config(

@@ -13,6 +13,7 @@ from giveway.cli.progress import run_progress
 from giveway.configfile import Layer, read_toml
 from giveway.errors import GivewayError
 from giveway.loading import load
+from giveway.results import check_folder, require_parquet
 from giveway.simulation import Ending
 
 if TYPE_CHECKING:
@@ -54,6 +55,9 @@ def run_command(
     layers = layers_of(scenario, config, settings)
     effective, found = load(layers)
     folder = outputs.folder or default_folder(effective, found.name)
+    check_folder(folder, force=outputs.force)
+    if outputs.parquet:
+        require_parquet()
     from giveway.kernels import compile_kernels_once
 
     compile_kernels_once(console)
@@ -70,7 +74,7 @@ def run_command(
                 watcher=watcher,
             )
         except GivewayError as error:
-            if error.result is not None:
+            if error.result is not None and len(error.result.ego_track.time):
                 error.args = (f"{error}; rows up to then are in {folder}",)
             raise
     if result.ending is Ending.INTERRUPTED:

@@ -198,10 +198,79 @@ def test_the_street_has_traffic_of_its_own(run_once: Run) -> None:
     assert result.ending is Ending.COMPLETED
 
 
-def test_the_streets_crowd_feels_its_cars(run_once: Run) -> None:
-    # The same crowd and ego without background influence would walk on undisturbed: replay the
-    # first second of a run with the ego alone and compare with what the loop recorded.
-    result = run_once(scenario="street", seed=SEED)
-    track = result.background_track
-    assert len(track.time)
-    assert np.isfinite(track.speed).all()
+def street_vehicles(run: RunResult, k: int, *, cars: bool) -> Vehicles:
+    """The ego and, on SUMO's latest instant and straight on since, the street's cars."""
+    ego, track = run.ego_track, run.background_track
+    half = LENGTH / 2
+    rows = [
+        (
+            ego.front_x[k] - half * np.cos(ego.heading[k]),
+            ego.front_y[k] - half * np.sin(ego.heading[k]),
+            ego.heading[k],
+            ego.speed[k],
+            half,
+            half,
+            WIDTH,
+        )
+    ]
+    latest = track.time[track.time <= ego.time[k] + 1e-9].max()
+    for b in np.flatnonzero(track.time == latest) if cars else ():
+        back = track.speed[b] * (ego.time[k] - latest) - track.length[b] / 2
+        rows.append(
+            (
+                track.x[b] + back * np.cos(track.heading[b]),
+                track.y[b] + back * np.sin(track.heading[b]),
+                track.heading[b],
+                track.speed[b],
+                track.length[b] / 2,
+                track.length[b] / 2,
+                track.width[b],
+            )
+        )
+    return Vehicles.create(*np.array(rows).T)
+
+
+@pytest.mark.parametrize("cars", [True, False])
+def test_the_streets_crowd_feels_its_cars(run_once: Run, cars: bool) -> None:
+    run = run_once(scenario="street", seed=SEED)
+    model = CrowdModel(SIM, TIME_STEP)
+    walking, position, velocity = positions(run, 0)
+    goals = [point[None] + (0, 10) for point in position]
+    crowd = Crowd.create(position, velocity, np.hypot(*velocity.T), goals)
+    deviation = 0.0
+    for k in range(1, 125):  # a westbound car comes through the crowd after 4 to 5 s
+        crowd = model.step(crowd, street_vehicles(run, k - 1, cars=cars))
+        present, position, _ = positions(run, k)
+        crowd = crowd.select(np.isin(walking, present))  # without those who have arrived
+        walking = present
+        deviation = max(deviation, np.abs(crowd.position - position).max())
+    assert deviation < 1e-9 if cars else deviation > 0.1
+
+
+def test_the_gap_may_start_at_the_centre(run_once: Run) -> None:
+    bumper = run_once(controller="pid", seed=3, time_limit=8.0)
+    centre = run_once(controller="pid", seed=3, time_limit=8.0, regulation={"gap_from": "centre"})
+    k = int(np.argmax(np.isfinite(bumper.ego_track.gap)))  # until then they drive alike
+    assert np.isfinite(bumper.ego_track.gap[k])
+    assert centre.ego_track.gap[k] == pytest.approx(bumper.ego_track.gap[k] + LENGTH / 2)
+
+
+def test_the_scenarios_end_ends_the_run(run_once: Run) -> None:
+    result = run_once(ego={"depart_time": 119.0}, crowd={"pedestrians": 0})
+    assert result.ending is Ending.SCENARIO_END
+    assert result.ego_track.time[-1] == pytest.approx(120.0)
+
+
+def test_a_departure_after_the_scenarios_end_is_refused() -> None:
+    with pytest.raises(giveway.GivewayError, match=r"--ego-depart-time 300.*ends at 120 s"):
+        giveway.run({"ego": {"depart_time": 300.0}})
+
+
+def test_a_pavement_is_no_lane_for_the_ego() -> None:
+    with pytest.raises(giveway.GivewayError, match=r"eastbound_0.*not for cars.*\[1\]"):
+        giveway.run({"scenario": "street", "ego": {"lane": 0}})
+
+
+def test_an_ego_id_that_a_pedestrian_has_is_refused() -> None:
+    with pytest.raises(giveway.GivewayError, match="ped3"):
+        giveway.run({"ego": {"id": "ped3"}})

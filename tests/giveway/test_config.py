@@ -54,6 +54,7 @@ def test_toml_round_trip_of_any_numbers(
 ) -> None:
     values = {
         "seed": seed,
+        "controller": "pid",  # the MPC's speed limits bound the initial speed
         "vehicle": {"mass": mass},
         "ego": {"initial_speed": speed},
         "crowd": {"two_sided": two_sided},
@@ -146,3 +147,25 @@ def test_a_contradiction_between_keys_names_their_table() -> None:
     assert explain(values).startswith("study.toml: [crowd] spawn_area: expected x_min < x_max")
     assert explain(values, flags=True).startswith("[crowd] spawn_area: expected x_min < x_max")
     assert "[crowd] spawn_area and walk" in explain({"crowd": {"walk": (0, 1e300)}})
+
+
+def test_speeds_outside_of_the_mpcs_limits_are_refused() -> None:
+    assert "[mpc] speed_min and speed_max" in explain({"mpc": {"speed_max": 3}})
+    assert "[ego] initial_speed = 30" in explain({"ego": {"initial_speed": 30}})
+    build_config([Layer("", {"controller": "pid", "ego": {"initial_speed": 30}})])
+
+
+def test_the_corridor_grows_with_the_vehicle_unless_it_is_given() -> None:
+    assert RunConfig().corridor_half_width == 1.25
+    assert RunConfig.model_validate({"vehicle": {"width": 3}}).corridor_half_width == 1.75
+    wide = {"vehicle": {"width": 3}, "regulation": {"corridor_half_width": 1.0}}
+    assert RunConfig.model_validate(wide).corridor_half_width == 1.0
+
+
+def test_the_api_takes_names_and_files_and_refuses_the_rest(tmp_path: Path) -> None:
+    assert as_layer("street").values == {"scenario": "street"}
+    (tmp_path / "study.toml").write_bytes(b"\xef\xbb\xbfseed = 3\n")  # as Windows' editor saves it
+    assert as_layer(tmp_path / "study.toml").values == {"seed": 3}
+    for nonsense in (None, 3, ["street"]):
+        with pytest.raises(ConfigError, match="expected a RunConfig"):
+            as_layer(nonsense)  # type: ignore[arg-type]

@@ -102,3 +102,37 @@ def test_predicted_poses_follow_the_bend() -> None:
     bend.fill_poses(poses, 9.0, 20.0, 2.5)  # one metre a step
     assert poses[0, 0, :4] == pytest.approx([6.5, 0, 0, 20])
     assert poses[2, 0, :4] == pytest.approx([10, 1 - 2.5, math.pi / 2, 20])
+
+
+def test_who_is_in_front_on_a_path_that_comes_past_twice() -> None:
+    round_the_block = corridor([(0, 0), (100, 0), (100, 50), (50, 50), (50, -50)])
+    at_the_crossing = np.array([[50.5, 0.1]])
+    assert round_the_block.closest_now(at_the_crossing, 40.0)[0] == pytest.approx(50.5)
+    assert round_the_block.closest_now(at_the_crossing, 190.0)[0] == pytest.approx(249.9)
+    assert round_the_block.closest_now(at_the_crossing, 251.0)[0] == math.inf
+
+
+def test_a_vertex_ahead_does_not_bring_somebody_behind_to_the_front() -> None:
+    straight_in_pieces = corridor([(0, 0), (10, 0), (20, 0)])
+    assert straight_in_pieces.closest_now(np.array([[9.5, 0.0]]), 9.8)[0] == math.inf
+    assert straight_in_pieces.closest_now(np.array([[9.9, 0.0]]), 9.8)[0] == pytest.approx(9.9)
+
+
+@given(
+    st.lists(
+        st.tuples(st.floats(-50, 50), st.floats(-50, 50)), min_size=3, max_size=7, unique=True
+    ),
+    st.floats(0, 1),
+)
+def test_whoever_stands_on_the_path_ahead_is_in_front(
+    points: list[tuple[float, float]], where: float
+) -> None:
+    try:
+        path = corridor(points)
+    except ScenarioError:
+        return
+    station = where * path.path.length
+    x, y, _ = path.path.pose(station)
+    closest, reachable = path.closest_now(np.array([[x, y]]), -1.0)
+    assert closest <= station + 1e-6
+    assert reachable

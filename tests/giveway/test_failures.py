@@ -63,7 +63,7 @@ def test_rows_up_to_a_failure_are_written(tmp_path: Path) -> None:
 
 def test_sumo_stands_where_we_do() -> None:
     with session() as sumo:
-        sumo.add_ego("ego", ["plaza"], position=22.5, speed=4.0)
+        sumo.add_ego("ego", ["plaza"], lane=0, position=22.5, speed=4.0)
         sumo.add_persons(["a", "b"], "gate")
         x, y, angles = [25.0, 31.125], [-13.25, 7.0], [0.0, 271.0]
         sumo.mirror(Pose(2.7, 0.0, 0.0), ["a", "b"], x, y, angles)
@@ -77,7 +77,7 @@ def test_sumo_stands_where_we_do() -> None:
 
 def test_sumo_disagreeing_is_an_error() -> None:
     with session() as sumo:
-        sumo.add_ego("ego", ["plaza"], position=22.5, speed=4.0)
+        sumo.add_ego("ego", ["plaza"], lane=0, position=22.5, speed=4.0)
         sumo.mirror(Pose(2.7, 0.0, 0.0), [], [], [], [])
         with pytest.raises(SumoError, match=r"ego.*away from our state"):
             sumo._check(Pose(2.8, 0.0, 0.0), [], [])
@@ -109,11 +109,12 @@ def test_time_steps_that_do_not_fit_sumos_are_refused() -> None:
         parts_of(stack, time_step=0.03)
 
 
-def test_the_first_ctrl_c_is_noted_and_python_goes_on() -> None:
+def test_an_impatient_ctrl_c_is_noted_and_python_goes_on() -> None:
     import signal
 
     with DeferredInterrupt() as interrupt:
         assert not interrupt.requested
+        signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
         assert interrupt.requested
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
@@ -127,3 +128,12 @@ def test_angles_convert_between_the_conventions() -> None:
     assert heading_to_angle(math.pi) == pytest.approx(270.0)
     for angle in (0.0, 45.0, 133.0, 359.0):
         assert heading_to_angle(angle_to_heading(angle)) == pytest.approx(angle)
+
+
+def test_a_watcher_that_fails_costs_no_rows(tmp_path: Path) -> None:
+    def fail(progress: object) -> None:
+        raise ZeroDivisionError("the user's own")
+
+    with pytest.raises(ZeroDivisionError, match="own"):
+        giveway.run({}, results=tmp_path / "r", watcher=fail)
+    assert len((tmp_path / "r" / "ego.csv").read_text().splitlines()) == 2

@@ -11,7 +11,7 @@ import pytest
 
 import giveway
 from giveway.errors import ResultsError
-from giveway.results import FILES
+from giveway.results import FILES, take_folder, write_results
 
 CONFIG = {"seed": 4, "crowd": {"pedestrians": 8}}
 DETERMINISTIC = ("ego.csv", "trajectories.csv", "pedestrians.csv", "summary.csv", "config.toml")
@@ -121,12 +121,35 @@ def test_an_unwritable_place_is_refused_before_the_run() -> None:
         giveway.run(CONFIG, results="/proc/giveway")
 
 
-def test_a_full_disk_is_said_in_one_line(tmp_path: Path) -> None:
-    if not os.path.exists("/dev/full"):  # noqa: PTH110
-        pytest.skip("needs /dev/full")
-    result = giveway.run(CONFIG)
-    from giveway.results import write_results
+@pytest.mark.skipif(os.name == "nt", reason="POSIX resource limits")
+def test_a_disk_that_takes_no_more_is_said_in_one_line(tmp_path: Path) -> None:
+    import resource
 
-    (tmp_path / "ego.csv").symlink_to("/dev/full")
-    with pytest.raises(ResultsError, match="No space left"):
-        write_results(result, tmp_path)
+    result = giveway.run(CONFIG)
+    _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, hard))
+    try:
+        with pytest.raises(ResultsError, match=r"cannot be written \(File too large\)"):
+            write_results(result, tmp_path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, hard))
+
+
+def test_a_forced_run_that_cannot_begin_keeps_the_former_results(tmp_path: Path) -> None:
+    giveway.run(CONFIG, results=tmp_path / "r", pictures=False)
+    before = (tmp_path / "r" / "ego.csv").read_bytes()
+    with pytest.raises(giveway.GivewayError, match=r"nope\.fmu"):
+        giveway.run(CONFIG | {"vehicle": {"fmu": "nope.fmu"}}, results=tmp_path / "r", force=True)
+    assert (tmp_path / "r" / "ego.csv").read_bytes() == before
+
+
+def test_a_run_that_cannot_begin_leaves_no_folder(tmp_path: Path) -> None:
+    with pytest.raises(giveway.GivewayError):
+        giveway.run(CONFIG | {"vehicle": {"fmu": "nope.fmu"}}, results=tmp_path / "r")
+    assert not (tmp_path / "r").exists()
+
+
+def test_a_folder_that_another_run_has_taken_is_refused(tmp_path: Path) -> None:
+    assert take_folder(tmp_path / "r", force=False)
+    with pytest.raises(ResultsError, match="--out"):
+        take_folder(tmp_path / "r", force=False)

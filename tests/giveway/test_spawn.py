@@ -40,8 +40,8 @@ def test_desired_speeds_are_truncated_normal() -> None:
 
 
 def test_two_sided_mirrors_every_second_one_about_the_egos_axis() -> None:
-    one = spawn(CrowdConfig(), AXIS, 5)
-    two = spawn(CrowdConfig(two_sided=True), AXIS, 5)
+    one = spawn(CrowdConfig(minimum_spacing=0), AXIS, 5)
+    two = spawn(CrowdConfig(minimum_spacing=0, two_sided=True), AXIS, 5)
     assert np.array_equal(two.position[::2], one.position[::2])
     assert two.position[1::2] == pytest.approx(one.position[1::2] * (1, -1))
     assert two.destination[1::2] == pytest.approx(one.destination[1::2] * (1, -1))
@@ -57,3 +57,27 @@ def test_too_many_for_the_area_is_refused_with_the_numbers() -> None:
     config = CrowdConfig(pedestrians=200, spawn_area=(0, 0, 5, 5), minimum_spacing=1.0)
     with pytest.raises(CrowdError, match=r"--pedestrians 200: only \d+ fit .* 25 m2 .* 1.0 m"):
         spawn(config, AXIS, 1)
+
+
+def test_two_sided_keeps_the_spacing_across_the_axis() -> None:
+    config = CrowdConfig(spawn_area=(8, -6, 16, 6), pedestrians=60, two_sided=True)
+    for seed in range(10):
+        position = spawn(config, AXIS, seed).position
+        offsets = position[:, None] - position[None]
+        distance = np.hypot(offsets[..., 0], offsets[..., 1])[np.triu_indices(60, 1)]
+        assert distance.min() >= 0.5
+
+
+def test_two_sided_mirrors_about_the_path_beside_the_area_not_about_its_start() -> None:
+    bend = EgoPath.through([(0, 0), (50, 0), (50, 100)])
+    config = CrowdConfig(spawn_area=(55, 60, 60, 70), walk=(-20, 0), two_sided=True)
+    crowd = spawn(config, bend, 1)
+    assert (crowd.position[1::2, 0] < 50).all()
+    assert (crowd.position[:, 1] >= 60).all()
+    assert crowd.destination[1::2, 0] == pytest.approx(crowd.position[1::2, 0] + 20)
+
+
+@pytest.mark.parametrize("low", [1.394, 1.393999])
+def test_bounds_that_leave_one_speed_give_everybody_that_speed(low: float) -> None:
+    config = CrowdConfig(desired_speed_min=low, desired_speed_max=1.394)
+    assert spawn(config, AXIS, 1).desired_speed == pytest.approx(np.full(30, 1.394), abs=1e-5)
