@@ -288,5 +288,5 @@ def simulate(
                 error=None if error is None else str(error),
             ),
             sumo_messages=parts.sumo.messages,
-            lanes=tuple(parts.sumo.lanes()),
+            lanes=tuple(parts.sumo.lanes.areas()),
         )

@@ -93,7 +93,7 @@ def assemble(config: RunConfig, scenario: Scenario, stack: ExitStack) -> Parts:
     )
     _require_ego(config, scenario, sumo.end)
     substeps = _substeps(config.time_step, sumo.step_length)
-    path = EgoPath.through(sumo.route_shape(config.ego.route, config.ego.lane))
+    path = EgoPath.through(sumo.lanes.along(config.ego.route, config.ego.lane))
     _require_room(config, path)
     spawned = spawn(config.crowd, path, config.seed)
     if config.ego.id in spawned.ids:

@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from giveway.errors import InstallationError, ScenarioError, SumoError
+from giveway.lanes import Lanes
 from giveway.native_stderr import NativeStderr
 from giveway.sumo_command import EGO_TYPE, PEDESTRIAN_TYPE, own_types, sumo_command
 from giveway.traffic import NO_VEHICLES, BackgroundVehicles, angle_to_heading, heading_to_angle
@@ -31,8 +32,6 @@ from giveway.traffic import NO_VEHICLES, BackgroundVehicles, angle_to_heading, h
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from types import TracebackType
-
-    from numpy.typing import NDArray
 
     from giveway.ego_path import Pose
     from giveway.tracks import VehicleShape
@@ -91,6 +90,7 @@ class SumoSession:
         person = self._sumo.person
         self._move_person = getattr(direct, "person_moveToXY", person.moveToXY)
         self._person_position = getattr(direct, "person_getPosition", person.getPosition)
+        self.lanes = Lanes(self._sumo, config_file)
         self.step_length = float(self._sumo.simulation.getDeltaT())
 
     def __enter__(self) -> Self:
@@ -126,68 +126,6 @@ class SumoSession:
     def messages(self) -> str:
         """What SUMO has printed on stderr so far: warnings, mostly."""
         return self._stderr.text()
-
-    def route_shape(self, edges: Sequence[str], lane: int) -> list[tuple[float, float]]:
-        """The polyline of the lanes along ``edges``, junctions included.
-
-        Raises:
-            ScenarioError: an edge or lane does not exist, or the lanes do not connect.
-        """
-        known = set(self._sumo.edge.getIDList())
-        for edge in edges:
-            if edge not in known:
-                msg = f"{self._config_file}: ego route: no edge '{edge}' in the network"
-                raise ScenarioError(msg)
-        lanes = int(self._sumo.edge.getLaneNumber(edges[0]))
-        if lane >= lanes:
-            msg = (
-                f"{self._config_file}: ego lane {lane}: edge '{edges[0]}' has {lanes} lane(s); "
-                f"expected 0 to {lanes - 1}"
-            )
-            raise ScenarioError(msg)
-        current = f"{edges[0]}_{lane}"
-        drivable = [i for i in range(lanes) if self._admits_cars(f"{edges[0]}_{i}")]
-        if lane not in drivable:
-            msg = (
-                f"{self._config_file}: ego lane {lane}: lane '{current}' is not for cars; "
-                f"expected one of {drivable or 'no lane of this edge'}, name it with --ego-lane"
-            )
-            raise ScenarioError(msg)
-        points = list(self._sumo.lane.getShape(current))
-        for following in edges[1:]:
-            current, via = self._next_lane(current, following)
-            for lane_id in (*via, current):
-                points.extend(self._sumo.lane.getShape(lane_id))
-        return points
-
-    def _admits_cars(self, lane: str) -> bool:
-        allowed = self._sumo.lane.getAllowed(lane)
-        disallowed = self._sumo.lane.getDisallowed(lane)
-        return (not allowed or "passenger" in allowed) and "passenger" not in disallowed
-
-    def _next_lane(self, lane: str, edge: str) -> tuple[str, list[str]]:
-        """The lane of ``edge`` that ``lane`` leads to, and the junction's lanes between them."""
-        for link in self._sumo.lane.getLinks(lane):
-            target, inside = link[0], link[4]
-            if self._sumo.lane.getEdgeID(target) != edge:
-                continue
-            via = []
-            while inside:
-                via.append(inside)
-                onwards = self._sumo.lane.getLinks(inside)
-                inside = onwards[0][4] if onwards else ""
-            return target, via
-        msg = (
-            f"{self._config_file}: ego route: lane '{lane}' has no connection to edge '{edge}'; "
-            "choose another lane or route"
-        )
-        raise ScenarioError(msg)
-
-    def lanes(self) -> list[tuple[NDArray[np.float64], float]]:
-        """Centre line (k, 2) [m] and width [m] of every lane outside of junctions."""
-        lane = self._sumo.lane
-        names = [name for name in lane.getIDList() if not name.startswith(":")]
-        return [(np.array(lane.getShape(name)), float(lane.getWidth(name))) for name in names]
 
     def background_vehicles(self) -> BackgroundVehicles:
         """Every vehicle of the scenario except the ego, as of SUMO's clock."""

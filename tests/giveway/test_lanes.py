@@ -1,0 +1,49 @@
+"""A route over a junction: the ego's path is continuous and runs through the junction's lane."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sumo as sumo_wheel
+
+from giveway.errors import ScenarioError
+from giveway.sumo import SumoSession
+from giveway.tracks import VehicleShape
+
+
+@pytest.fixture(scope="module")
+def crossroads(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A 3 x 3 grid, 100 m a block, as netgenerate makes it."""
+    folder = tmp_path_factory.mktemp("grid")
+    home = Path(sumo_wheel.__file__).parent
+    command = [home / "bin" / "netgenerate", "--grid", "--grid.number", "3"]
+    command += ["--grid.length", "100", "-o", "grid.net.xml"]
+    environment = os.environ | {"SUMO_HOME": str(home)}
+    subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
+    config = folder / "grid.sumocfg"
+    config.write_text(
+        '<configuration><input><net-file value="grid.net.xml"/></input></configuration>'
+    )
+    return config
+
+
+def test_a_left_turn_is_one_continuous_line(crossroads: Path) -> None:
+    with SumoSession(crossroads, seed=1, step_length=None, ego_shape=VehicleShape()) as session:
+        points = np.array(session.lanes.along(["A1B1", "B1B2"], 0))
+    jumps = np.hypot(*np.diff(points, axis=0).T)
+    east, north = points[0], points[-1]
+    assert east[0] < 20
+    assert north[1] > 180
+    inside = (np.abs(points - (100, 100)) < 6).all(axis=1)
+    assert inside.any(), "the junction's own lane belongs to the path; the roads end before it"
+    assert jumps[jumps < 50].max() < 6
+
+
+def test_lanes_that_do_not_connect_are_named(crossroads: Path) -> None:
+    with (
+        SumoSession(crossroads, seed=1, step_length=None, ego_shape=VehicleShape()) as session,
+        pytest.raises(ScenarioError, match=r"'A1B1_0' has no connection to edge 'C1C2'"),
+    ):
+        session.lanes.along(["A1B1", "C1C2"], 0)
