@@ -16,7 +16,7 @@ from controller import (
     Regulator,
 )
 from giveway.api import RunResult
-from giveway.simulation import Ending
+from giveway.simulation import Ending, Progress
 from pedestrian_model import SIM, Crowd, CrowdModel, Predictor, Vehicles, constant_speed
 
 Run = Callable[..., RunResult]
@@ -274,3 +274,19 @@ def test_a_pavement_is_no_lane_for_the_ego() -> None:
 def test_an_ego_id_that_a_pedestrian_has_is_refused() -> None:
     with pytest.raises(giveway.GivewayError, match="ped3"):
         giveway.run({"ego": {"id": "ped3"}})
+
+
+def test_who_has_arrived_is_gone_from_sumo_too() -> None:
+    import libsumo
+
+    mirrored: list[int] = []
+
+    def count(progress: Progress) -> None:
+        if progress.time > 0.0:
+            mirrored.append(len(libsumo.person.getIDList()) - progress.pedestrians)
+
+    result = giveway.run(
+        {"seed": 2, "crowd": {"pedestrians": 12, "walk": (0.0, 6.0)}}, watcher=count
+    )
+    assert result.manifest["pedestrians"]["arrived"] > 0
+    assert set(mirrored) == {0}
