@@ -40,7 +40,6 @@ class DaqpBackend:
         self._iteration_limit = iteration_limit
         N = problem.rows.shape[1]
         self._P = 2.0 * np.eye(N)
-        self._q = -2.0 * problem.target
         self._sense = np.zeros(len(problem.rows), dtype=np.int32)
 
     def solve(self, speeds: Array, multipliers: Array) -> tuple[Outcome, int]:
@@ -48,7 +47,7 @@ class DaqpBackend:
         problem = self._problem
         x, _, flag, info = self._daqp.solve(
             self._P,
-            self._q,
+            -2.0 * problem.target,
             problem.rows,
             np.minimum(problem.upper, _INFINITY),
             np.maximum(problem.lower, -_INFINITY),

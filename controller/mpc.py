@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, nan
+from math import inf, isnan, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -94,6 +94,7 @@ class Mpc:
         speed: float,
         previous_force: float,
         obstacle_positions: Array,
+        reference_speed: float | None = None,
     ) -> MpcSolution:
         """Plan from the state at t_k.
 
@@ -103,6 +104,7 @@ class Mpc:
             previous_force: u(k-1) [N].
             obstacle_positions: (N,) x_p(k+1) ... x_p(k+N) [m] in the coordinate of ``position``;
                 inf where nobody is in front.
+            reference_speed: v_r [m/s] over this horizon; None: the parameters'.
 
         Raises:
             ParameterError: a value is not a number, or the horizon does not fit.
@@ -114,6 +116,11 @@ class Mpc:
             )
             raise ParameterError(msg)
         problem = self._problem
+        target = self.parameters.reference_speed if reference_speed is None else reference_speed
+        if isnan(target):
+            msg = "reference_speed = nan: expected a number [m/s]"
+            raise ParameterError(msg)
+        problem.target[:] = target
         code = problem.update(position, speed, previous_force, obstacle_positions)
         if code == NOT_A_NUMBER:
             msg = (

@@ -47,12 +47,13 @@ class OsqpBackend:
     def __init__(self, problem: SpeedProblem, iteration_limit: int) -> None:
         self._problem = problem
         count, N = problem.rows.shape
-        sums = np.tril(np.ones((N, N)))  # V = sums dV
+        self._sums = sums = np.tril(np.ones((N, N)))  # V = sums dV
+        self._aimed_at = problem.target[0]
         solver = osqp.OSQP(algebra="builtin")
         try:
             solver.setup(
                 sparse.csc_matrix(np.triu(2.0 * sums.T @ sums)),  # P
-                -2.0 * sums.T @ problem.target,  # q
+                self._gradient(problem.target),  # q
                 sparse.csc_matrix(problem.rows @ sums),
                 np.full(count, -_INFINITY),
                 np.full(count, _INFINITY),
@@ -72,6 +73,10 @@ class OsqpBackend:
         self._upper = np.empty(count)
         self._start = np.empty(N)
 
+    def _gradient(self, target: Array) -> Array:
+        """The linear cost of |V - V_r|^2 in the unknowns dV."""
+        return np.asarray(-2.0 * self._sums.T @ target)
+
     def solve(self, speeds: Array, multipliers: Array) -> tuple[Outcome, int]:
         """Solve within the problem's present bounds.
 
@@ -85,7 +90,11 @@ class OsqpBackend:
         solver = self._solver
         np.maximum(self._problem.lower, -_INFINITY, out=self._lower)
         np.minimum(self._problem.upper, _INFINITY, out=self._upper)
-        solver.update_data_vec(q=None, l=self._lower, u=self._upper)
+        q = None
+        if self._problem.target[0] != self._aimed_at:
+            self._aimed_at = self._problem.target[0]
+            q = self._gradient(self._problem.target)
+        solver.update_data_vec(q=q, l=self._lower, u=self._upper)
         self._start[0] = speeds[0]
         np.subtract(speeds[1:], speeds[:-1], out=self._start[1:])
         solver.warm_start(self._start, multipliers)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf, isfinite
 
 from controller.errors import ParameterError
 from controller.parameters import PidParameters, require_positive
@@ -33,23 +33,28 @@ class Pid:
         self._integral = 0.0  # u_i(k-1) [N]
         self._error: float | None = None  # e(k-1) [m/s]
 
-    def reference_speed(self, gap: float) -> float:
-        """v_r^PID [m/s] at ``gap`` [m] to the closest pedestrian in front (figure 3)."""
-        p = self.parameters
-        return p.reference_speed * min(max((gap - p.safe_distance) / p.buffer_distance, 0.0), 1.0)
+    def reference_speed(self, gap: float, limit: float = inf) -> float:
+        """v_r^PID [m/s] at ``gap`` [m] to the closest pedestrian in front (figure 3).
 
-    def control(self, speed: float, gap: float) -> float:
+        Never more than ``limit`` [m/s] (ours; the paper knows neither lights nor other cars).
+        """
+        p = self.parameters
+        share = min(max((gap - p.safe_distance) / p.buffer_distance, 0.0), 1.0)
+        return min(p.reference_speed * share, limit)
+
+    def control(self, speed: float, gap: float, limit: float = inf) -> float:
         """The force u(k) [N].
 
         Args:
             speed: x_2(k) [m/s].
             gap: x_p(k) - x_1(k) [m]; inf when nobody is in front.
+            limit: caps the reference speed [m/s].
 
         Raises:
             ParameterError: speed or gap is not a number.
         """
         p, dt = self.parameters, self.time_step
-        e = speed - self.reference_speed(gap)
+        e = speed - self.reference_speed(gap, limit)
         if not isfinite(e):
             msg = f"speed = {speed} m/s, gap = {gap} m: expected numbers"
             raise ParameterError(msg)
@@ -60,11 +65,11 @@ class Pid:
         self._integral, self._error = u_i, e
         return min(max(-(u_p + u_i + u_d), -p.force_limit), p.force_limit)
 
-    def track(self, speed: float, gap: float) -> None:
+    def track(self, speed: float, gap: float, limit: float = inf) -> None:
         """While the MPC acts: empty the integrator, and keep e(k-1) at the current error.
 
         So the PID takes over without a kick of its derivative, and without an integral of errors
         that were not its own.
         """
         self._integral = 0.0
-        self._error = speed - self.reference_speed(gap)
+        self._error = speed - self.reference_speed(gap, limit)

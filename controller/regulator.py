@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ class Observation(NamedTuple):
     speed: float  # x_2(k) [m/s]
     gap: float  # [m] to the closest pedestrian in front now; inf: nobody
     obstacle_positions: NDArray[np.float64]  # (N,) [m] x_p(k+1) ... x_p(k+N); inf: nobody
+    speed_limit: float = inf  # [m/s] caps both reference speeds: a stop line, a vehicle ahead
 
 
 class Decision(NamedTuple):
@@ -57,35 +59,38 @@ class Regulator:
 
     def control(self, observation: Observation) -> Decision:
         """Decide on the force at t_k."""
-        position, speed, gap, obstacle_positions = observation
+        position, speed, gap, obstacle_positions, limit = observation
         if self.mpc is None:
-            decision = self._by_pid(speed, gap, "selected", "", 0)
+            decision = self._by_pid(speed, gap, limit, "selected", "", 0)
         else:
             # At a standstill the force is a brake that holds: a plan may start from none, while
             # c2 would tie it to the braking before and c5 would then have no solution.
             previous = 0.0 if speed <= STANDSTILL else self._previous_force
-            solution = self.mpc.solve(position, speed, previous, obstacle_positions)
+            reference = min(self.mpc.parameters.reference_speed, limit)
+            solution = self.mpc.solve(position, speed, previous, obstacle_positions, reference)
             if solution.found:
-                self.pid.track(speed, gap)
+                self.pid.track(speed, gap, limit)
                 decision = Decision(
                     solution.force,
                     "mpc",
                     "optimal",
                     solution.status,
                     solution.iterations,
-                    self.mpc.parameters.reference_speed,
+                    reference,
                     solution.forces,
                 )
             else:
                 infeasible = solution.status.startswith("infeasible")
                 reason = "infeasible" if infeasible else f"solver: {solution.status}"
-                decision = self._by_pid(speed, gap, reason, solution.status, solution.iterations)
+                decision = self._by_pid(
+                    speed, gap, limit, reason, solution.status, solution.iterations
+                )
         self._previous_force = decision.force
         return decision
 
     def _by_pid(
-        self, speed: float, gap: float, reason: str, status: str, iterations: int
+        self, speed: float, gap: float, limit: float, reason: str, status: str, iterations: int
     ) -> Decision:
-        force = self.pid.control(speed, gap)
-        reference = self.pid.reference_speed(gap)
+        force = self.pid.control(speed, gap, limit)
+        reference = self.pid.reference_speed(gap, limit)
         return Decision(force, "pid", reason, status, iterations, reference, None)

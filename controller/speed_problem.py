@@ -47,7 +47,7 @@ class SpeedProblem:
 
     Attributes:
         rows: (4N - 4, N), constant.
-        target: (N,) V_r [m/s].
+        target: (N,) V_r [m/s]; the caller may change it between two solves.
         lower, upper: (4N - 4,), filled by :meth:`update`.
         limits: (8,) dt, decay, dt/M, d_safe, v_min, v_max, u_max, du_max.
     """

@@ -151,3 +151,26 @@ def test_a_crossing_is_driven_to_its_end(solver):
         assert speed < 4.5
     assert position > 40.0
     assert 0 < acting.count("pid") < 0.5 * len(acting)
+
+
+@pytest.mark.parametrize("solver", ["osqp", "daqp"])
+def test_a_speed_limit_becomes_the_reference_of_whoever_drives(solver):
+    mpc = Mpc(MODEL, MpcParameters(solver=solver))
+    limited = Regulator(mpc, Pid()).control(see(3.0)._replace(speed_limit=3.2))
+    aimed = Mpc(MODEL, MpcParameters(solver=solver, reference_speed=3.2)).solve(
+        3.0, 3.0, 0.0, NOBODY
+    )
+    assert limited.force == pytest.approx(aimed.force, abs=1e-3)
+    assert limited.reference_speed == 3.2
+    pid = Regulator(None, Pid()).control(see(3.0)._replace(speed_limit=3.2))
+    assert pid.reference_speed == 3.2
+    assert pid.force == pytest.approx(
+        Pid(PidParameters(reference_speed=3.2)).control(3.0, math.inf)
+    )
+
+
+def test_a_speed_limit_that_comes_and_goes_leaves_no_trace_in_the_plan():
+    mpc, fresh = Mpc(MODEL), Mpc(MODEL)
+    mpc.solve(0.0, 4.0, 0.0, NOBODY, reference_speed=1.0)
+    again = mpc.solve(0.0, 3.0, 0.0, NOBODY)
+    assert again.force == pytest.approx(fresh.solve(0.0, 3.0, 0.0, NOBODY).force, abs=1e-3)
