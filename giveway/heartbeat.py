@@ -1,0 +1,112 @@
+"""Where a run stands, visible to another process even after this one has died.
+
+Sixty-four bytes of shared memory in a file: the child stores, its supervisor reads. A store costs
+what an assignment costs, so every phase of every control step is told. Nothing heavy is imported:
+the supervisor has to be there at once.
+"""
+
+from __future__ import annotations
+
+import enum
+import mmap
+import struct
+from typing import TYPE_CHECKING, NamedTuple, Self
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+HEARTBEAT_FILE = "heartbeat"
+_LAYOUT = struct.Struct("=8q")
+_PHASE, _STEP, _TIME, _CODE, _SUPERVISOR = range(5)  # the slots in use, int64 each
+_MILLISECONDS = 1000.0  # per second: SUMO's own resolution
+
+
+class Phase(enum.IntEnum):
+    """What a run is doing."""
+
+    STARTING = 0  # Python itself, before anybody told otherwise
+    LOADING = 1
+    CONTROLLING = 2
+    VEHICLE = 3
+    CROWD = 4
+    SUMO = 5
+    WRITING = 6
+    DONE = 7
+
+
+LOOP = frozenset({Phase.CONTROLLING, Phase.VEHICLE, Phase.CROWD, Phase.SUMO})
+_PLACES = {
+    Phase.STARTING: "while Python started",
+    Phase.LOADING: "while the run was being set up",
+    Phase.CONTROLLING: "in the controller at {time:.2f} s (step {step})",
+    Phase.VEHICLE: "in the vehicle FMU's step from {time:.2f} s (step {step})",
+    Phase.CROWD: "in the crowd's step from {time:.2f} s (step {step})",
+    Phase.SUMO: "inside SUMO's step from {time:.2f} s (step {step})",
+    Phase.WRITING: "while the results were being written",
+    Phase.DONE: "after everything had been done",
+}
+
+
+class Pulse(NamedTuple):
+    """One reading of a heartbeat."""
+
+    phase: Phase
+    step: int  # control step
+    time: float  # [s] on SUMO's clock
+    code: int  # exit code, once the phase is DONE
+    supervisor: int  # process id, 0 without one
+
+    @property
+    def place(self) -> str:
+        """Where that is, in words that continue a sentence."""
+        return _PLACES[self.phase].format(time=self.time, step=self.step)
+
+
+class Heartbeat:
+    """The child's side stores, the supervisor's side reads; both map the same file.
+
+    Args:
+        folder: of the journal; the file is made if there is none. None: the same interface on
+            plain memory.
+
+    Raises:
+        OSError: the file cannot be made or mapped.
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        if folder is None:
+            self._slots = memoryview(bytearray(_LAYOUT.size)).cast("q")
+            return
+        path = folder / HEARTBEAT_FILE
+        # Written, not only sized: a store into a hole of a full disk would kill us (SIGBUS).
+        with path.open("r+b" if path.exists() else "w+b", buffering=0) as file:
+            if len(file.read()) < _LAYOUT.size:
+                file.seek(0)
+                file.write(bytes(_LAYOUT.size))
+            self._slots = memoryview(mmap.mmap(file.fileno(), _LAYOUT.size)).cast("q")
+
+    @classmethod
+    def supervised_by(cls, process_id: int, folder: Path) -> Self:
+        """A new heartbeat that names its reader."""
+        heartbeat = cls(folder)
+        heartbeat._slots[_SUPERVISOR] = process_id
+        return heartbeat
+
+    def beat(self, phase: int) -> None:
+        """Tell what is being done from now on."""
+        self._slots[_PHASE] = phase
+
+    def step(self, step: int, time: float) -> None:
+        """Tell which control step begins, at which time [s] of SUMO's clock."""
+        self._slots[_STEP] = step
+        self._slots[_TIME] = round(time * _MILLISECONDS)
+
+    def finish(self, code: int) -> None:
+        """Tell that everything has been done, and the exit code: an end without this is a crash."""
+        self._slots[_CODE] = code
+        self._slots[_PHASE] = Phase.DONE
+
+    def read(self) -> Pulse:
+        """The latest state."""
+        phase, step, time, code, supervisor = self._slots[: _SUPERVISOR + 1].tolist()
+        return Pulse(Phase(phase), step, time / _MILLISECONDS, code, supervisor)
