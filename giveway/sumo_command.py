@@ -1,19 +1,26 @@
-"""How SUMO is started: our vehicle types, its flags, the scenario's additional files."""
+"""What giveway adds to a scenario: the types of its egos and pedestrians."""
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from giveway.errors import ScenarioError, SumoError
+from giveway.scenario_files import read_scenario
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from pathlib import Path
 
     from giveway.tracks import VehicleShape
 
 EGO_TYPE = "giveway_ego"
 PEDESTRIAN_TYPE = "giveway_pedestrian"
+
+ROAD_CLASSES: Final = (
+    *("passenger", "private", "taxi", "hov", "evehicle", "vip", "emergency", "authority", "army"),
+    *("bus", "coach", "tram", "delivery", "truck", "trailer"),
+    *("motorcycle", "moped", "scooter", "bicycle", "custom1", "custom2"),
+)
+"""SUMO's vehicle classes that drive where people walk."""
 
 
 def own_types(ego: VehicleShape) -> str:
@@ -28,10 +35,39 @@ def own_types(ego: VehicleShape) -> str:
 """
 
 
+def ego_type(vehicle_class: str) -> str:
+    """The type for an ego of ``vehicle_class`` that was taken over from the scenario.
+
+    Its length and width are to be set for the vehicle itself, to those it had.
+    """
+    known = vehicle_class if vehicle_class in ROAD_CLASSES else "passenger"
+    return f"{EGO_TYPE}_{known}"
+
+
+def all_types(egos: Mapping[str, VehicleShape]) -> str:
+    """The additional file with every type that giveway may give to a vehicle or person.
+
+    Args:
+        egos: the type's id of each inserted ego, to its body.
+    """
+    never_stuck = 'maxSpeed="100" speedDev="0" timeToTeleport="-1"'
+    inserted = [
+        f'    <vType id="{name}" vClass="passenger" length="{body.length}" width="{body.width}" '
+        f"{never_stuck}/>\n"
+        for name, body in egos.items()
+    ]
+    taken_over = [
+        f'    <vType id="{ego_type(name)}" vClass="{name}" {never_stuck}/>\n'
+        for name in ROAD_CLASSES
+    ]
+    walker = f'    <vType id="{PEDESTRIAN_TYPE}" vClass="ignoring" speedDev="0"/>\n'
+    return "".join(["<additional>\n", *inserted, *taken_over, walker, "</additional>\n"])
+
+
 def sumo_command(
     config_file: Path, types: Path, *, seed: int, step_length: float | None
 ) -> list[str]:
-    """The command line for libsumo.
+    """The command line for libsumo, without regard to outputs; :func:`prepare_start` is better.
 
     Args:
         config_file: the scenario's configuration.
@@ -40,10 +76,10 @@ def sumo_command(
         step_length: SUMO's step [s]; None keeps the scenario's.
 
     Raises:
-        ScenarioError: there is no such configuration.
-        SumoError: it is not readable.
+        ScenarioError: there is no such configuration, or it is not readable.
     """
-    additional = [str(types), *_additional_files(config_file)]
+    scenario = read_scenario(config_file)
+    additional = [str(types), *map(str, scenario.additional_files)]
     command = ["sumo", "-c", str(config_file)]
     command += ["--additional-files", ",".join(additional)]
     command += ["--pedestrian.model", "striping", "--gui-settings-file", ""]
@@ -53,21 +89,3 @@ def sumo_command(
     if step_length is not None:
         command += ["--step-length", f"{step_length:.6f}"]
     return command
-
-
-def _additional_files(config_file: Path) -> list[str]:
-    """The configuration's own additional files, absolute: naming ours replaces its list."""
-    try:
-        root = ET.parse(config_file).getroot()
-    except FileNotFoundError:
-        msg = f"{config_file}: no such file; expected a SUMO configuration (.sumocfg)"
-        raise ScenarioError(msg) from None
-    except (ET.ParseError, OSError) as error:
-        msg = f"{config_file}: not readable as a SUMO configuration: {error}"
-        raise SumoError(msg) from None
-    names: list[str] = []
-    for tag in ("additional-files", "additional", "a"):
-        for element in root.iter(tag):
-            value = element.get("value", element.get("v", ""))
-            names += [name.strip() for name in value.split(",") if name.strip()]
-    return [str((config_file.parent / name).resolve()) for name in names]

@@ -1,0 +1,260 @@
+"""A .sumocfg as what it names: input files, outputs, and the settings that a run depends on."""
+
+from __future__ import annotations
+
+import os
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+from urllib.parse import unquote
+
+from giveway.errors import ScenarioError
+from giveway.scenario_files.options import (
+    INPUTS,
+    INSTEAD_OF_SIMULATING,
+    LISTS,
+    OUTPUTS,
+    canonical,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+SUMO_SEED: Final = 23423  # what SUMO takes where neither scenario nor command line names a seed
+STRIPING: Final = "striping"  # SUMO's default pedestrian model, and the only one that can be moved
+
+_VARIABLE = re.compile(r"\$\{(\w+)\}")
+_TRUE = frozenset({"true", "1", "yes", "on", "x", "t"})
+_FALSE = frozenset({"false", "0", "no", "off", "-", "f"})
+
+
+@dataclass(frozen=True)
+class ScenarioFiles:
+    """What a .sumocfg says; all paths are absolute.
+
+    Attributes:
+        config_file: the .sumocfg.
+        options: each option that it sets, under the name that SUMO's help lists, to its value.
+        net_file: the road network.
+        route_files, additional_files: in SUMO's order of reading.
+        begin: first instant [s].
+        end: last instant [s]; None if the scenario ends when nobody is left.
+        step_length: SUMO's step [s].
+        seed: as the scenario names it; None leaves SUMO's own.
+        random: whether SUMO is to seed itself with the clock.
+        pedestrian_model: one of SUMO's, ``striping`` where none is named.
+        outputs: each output option set, to the file or files as the scenario names them.
+    """
+
+    config_file: Path
+    options: Mapping[str, str]
+    net_file: Path
+    route_files: tuple[Path, ...]
+    additional_files: tuple[Path, ...]
+    begin: float
+    end: float | None
+    step_length: float
+    seed: int | None
+    random: bool
+    pedestrian_model: str
+    outputs: Mapping[str, tuple[str, ...]]
+
+    @cached_property
+    def inputs(self) -> tuple[tuple[str, Path], ...]:
+        """Every file that SUMO will read because an option names it: (option, file)."""
+        return tuple(
+            (option, path)
+            for option in INPUTS
+            for path in _paths(self.config_file, self.options.get(option, ""))
+        )
+
+    @property
+    def missing(self) -> tuple[tuple[str, Path], ...]:
+        """Those of :attr:`inputs` that do not exist."""
+        return tuple((option, path) for option, path in self.inputs if not path.exists())
+
+    @property
+    def teleport_settings(self) -> dict[str, str]:
+        """The scenario's own options about teleporting."""
+        return {name: value for name, value in self.options.items() if "teleport" in name}
+
+    @property
+    def gui_settings(self) -> tuple[Path, ...]:
+        """The window's settings, which a run ignores."""
+        return _paths(self.config_file, self.options.get("gui-settings-file", ""))
+
+    def is_set(self, option: str) -> bool:
+        """Whether the scenario switches a yes-or-no option on."""
+        return self.options.get(option, "").strip().lower() in _TRUE
+
+    def require_inputs(self) -> None:
+        """Make sure that SUMO will find its files.
+
+        Raises:
+            ScenarioError: the first one that does not exist.
+        """
+        for option, path in self.missing:
+            msg = (
+                f"{self.config_file}: {option} names {path}, which does not exist; expected a file "
+                "(relative paths start at the .sumocfg's folder); put it there or correct the name"
+            )
+            raise ScenarioError(msg)
+        for option, path in self.inputs:
+            if path.is_dir():
+                msg = f"{self.config_file}: {option} names the folder {path}; expected a file"
+                raise ScenarioError(msg)
+            if not os.access(path, os.R_OK):
+                msg = (
+                    f"{self.config_file}: {option} names {path}, which you may not read; "
+                    "expected a readable file; change its permissions"
+                )
+                raise ScenarioError(msg)
+
+
+def read_scenario(config_file: Path) -> ScenarioFiles:
+    """What ``config_file`` says; whether the files it names exist is asked separately.
+
+    Options may stand in sections or flat, under any of SUMO's names, with the value in ``value``,
+    ``v`` or as text; lists are separated by commas; ``${NAME}`` stands for an environment
+    variable.
+
+    Raises:
+        ScenarioError: the file is missing, empty, not XML, or names no network, a double option
+            or a value of the wrong kind.
+    """
+    config_file = Path(os.path.abspath(config_file))  # noqa: PTH100 - resolve() follows links
+    options = _options(config_file)
+    for name in INSTEAD_OF_SIMULATING:
+        if name in options:
+            msg = (
+                f"{config_file}: {name} = '{options[name]}' makes SUMO write that file instead of "
+                "simulating; expected a configuration to simulate; remove the option"
+            )
+            raise ScenarioError(msg)
+    networks = _paths(config_file, options.get("net-file", ""))
+    if len(networks) != 1:
+        value = options.get("net-file", "")
+        msg = (
+            f"{config_file}: net-file = '{value}'; expected one road network; "
+            'add <net-file value="NETWORK.net.xml"/>'
+        )
+        raise ScenarioError(msg)
+    step_length = _time(config_file, options, "step-length", 1.0)
+    if step_length <= 0.0:
+        msg = f"{config_file}: step-length = {step_length:g}; expected more than 0 s, like 0.1"
+        raise ScenarioError(msg)
+    end = _time(config_file, options, "end", -1.0)
+    return ScenarioFiles(
+        config_file=config_file,
+        options=options,
+        net_file=networks[0],
+        route_files=_paths(config_file, options.get("route-files", "")),
+        additional_files=_paths(config_file, options.get("additional-files", "")),
+        begin=_time(config_file, options, "begin", 0.0),
+        end=end if end >= 0.0 else None,
+        step_length=step_length,
+        seed=_seed(config_file, options),
+        random=_flag(config_file, options, "random"),
+        pedestrian_model=options.get("pedestrian.model", STRIPING).strip(),
+        outputs={name: _names(options[name], name) for name in OUTPUTS if name in options},
+    )
+
+
+def _options(config_file: Path) -> dict[str, str]:
+    options: dict[str, str] = {}
+    for element in list(_root(config_file).iter())[1:]:
+        value = element.get("value", element.get("v", element.text or ""))
+        name = canonical(element.tag)
+        if not value.strip():
+            continue  # a section, or an option that is left as it is
+        if name in options:
+            msg = (
+                f"{config_file}: {name} = '{value}' stands there a second time "
+                f"(first '{options[name]}'); expected once; remove one"
+            )
+            raise ScenarioError(msg)
+        options[name] = _VARIABLE.sub(lambda found: os.environ.get(found[1], ""), value)
+    return options
+
+
+def _root(config_file: Path) -> ET.Element:
+    expected = "expected a SUMO configuration (.sumocfg)"
+    try:
+        content = config_file.read_bytes()  # SUMO does not read a compressed one either
+    except FileNotFoundError:
+        msg = f"{config_file}: no such file; {expected}"
+        raise ScenarioError(msg) from None
+    except OSError as error:
+        msg = f"{config_file}: cannot be read ({error}); {expected}"
+        raise ScenarioError(msg) from None
+    if not content.strip():
+        msg = f"{config_file}: the file is empty; {expected}"
+        raise ScenarioError(msg)
+    try:
+        return ET.fromstring(content)
+    except (ET.ParseError, ValueError, LookupError) as error:
+        msg = f"{config_file}: not XML ({error}); {expected}"
+        raise ScenarioError(msg) from None
+
+
+def _names(value: str, option: str) -> tuple[str, ...]:
+    """The files that an option names, as they are written."""
+    parts = value.split(",") if option in LISTS or option not in OUTPUTS else [value]
+    return tuple(part.strip() for part in parts if part.strip())
+
+
+def _paths(config_file: Path, value: str) -> tuple[Path, ...]:
+    """The files in a list; %20 and the like are read as SUMO does in a .sumocfg."""
+    return tuple(located(unquote(name), config_file) for name in _names(value, ""))
+
+
+def located(name: str, beside: Path) -> Path:
+    """The file that ``name`` means where it stands in the file ``beside``."""
+    path = Path(name).expanduser() if name.startswith("~/") else Path(name)
+    return Path(os.path.abspath(beside.parent / path))  # noqa: PTH100 - resolve() follows links
+
+
+def seconds(text: str) -> float:
+    """A time as SUMO writes it: seconds, ``h:m:s`` or ``d:h:m:s``.
+
+    Raises:
+        ValueError: it is none of these.
+    """
+    parts = [float(part) for part in text.split(":")]
+    if len(parts) == 1:
+        return parts[0]
+    if len(parts) not in (3, 4):
+        raise ValueError(text)
+    days, hours, minutes, rest = ([0.0] if len(parts) == 3 else []) + parts
+    return ((days * 24.0 + hours) * 60.0 + minutes) * 60.0 + rest
+
+
+def _time(config_file: Path, options: Mapping[str, str], name: str, default: float) -> float:
+    if name not in options:
+        return default
+    try:
+        return seconds(options[name].strip())
+    except ValueError:
+        msg = f"{config_file}: {name} = '{options[name]}'; expected seconds, h:m:s or d:h:m:s"
+        raise ScenarioError(msg) from None
+
+
+def _seed(config_file: Path, options: Mapping[str, str]) -> int | None:
+    if "seed" not in options:
+        return None
+    try:
+        return int(options["seed"])
+    except ValueError:
+        msg = f"{config_file}: seed = '{options['seed']}'; expected a whole number"
+        raise ScenarioError(msg) from None
+
+
+def _flag(config_file: Path, options: Mapping[str, str], name: str) -> bool:
+    value = options.get(name, "false").strip().lower()
+    if value not in _TRUE | _FALSE:
+        msg = f"{config_file}: {name} = '{options[name]}'; expected true or false"
+        raise ScenarioError(msg)
+    return value in _TRUE

@@ -1,0 +1,166 @@
+"""Scenario files that write: run from copies whose outputs go into the results folder."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from giveway.errors import ScenarioError
+from giveway.scenario_files.configuration import located
+from giveway.scenario_files.markup import rewrite
+from giveway.scenario_files.outputs import OutputFolder, is_file
+from giveway.scenario_files.reading import opened
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+_WRITES: Final = {
+    **dict.fromkeys(
+        (
+            *("e1Detector", "inductionLoop", "instantInductionLoop"),
+            *("e2Detector", "laneAreaDetector", "e3Detector", "entryExitDetector"),
+            *("edgeData", "laneData", "routeProbe", "vTypeProbe"),
+        ),
+        "file",
+    ),
+    "timedEvent": "dest",
+    "calibrator": "output",
+}
+"""Element to the attribute that names a file which SUMO writes."""
+
+_READS: Final = {"include": "href", "calibrator": "file", "variableSpeedSign": "file"} | {
+    "rerouter": "file"
+}
+"""Element to the attribute that names a further file with elements."""
+
+_PICTURES: Final = ("imgFile", "osgFile")
+_DEVICES: Final = ("device.ssm.file", "device.toc.file")  # parameters of a type or a vehicle
+_SSM: Final = "has.ssm.device"
+
+# What a file that writes or refers to another must contain; searched before anything is parsed.
+_SIGNS: Final = tuple(
+    sign.encode()
+    for sign in (
+        *("etector", "nductionLoop", "edgeData", "laneData", "routeProbe", "vTypeProbe"),
+        *("timedEvent", "calibrator", "variableSpeedSign", "rerouter", "<include"),
+        *(*_DEVICES, _SSM),
+        *('"file"', "'file'"),
+    )
+)
+_CHUNK: Final = 1 << 22  # [bytes]
+
+
+class Copies:
+    """Prepares scenario files so that a run writes nothing beside them.
+
+    A file that names no output is used where it is. Another one is copied, with its outputs
+    placed in the results folder and all else that it refers to made absolute.
+
+    Args:
+        config_file: the .sumocfg, to which the names in vehicles' parameters are relative.
+        scratch: folder for the copies; they are needed as long as the simulation runs.
+        outputs: where the outputs go.
+
+    Attributes:
+        config_file: as given.
+        has_ssm: whether a type or vehicle in the prepared files carries an SSM device.
+    """
+
+    def __init__(self, config_file: Path, scratch: Path, outputs: OutputFolder) -> None:
+        self.config_file = config_file
+        self._scratch = scratch
+        self._outputs = outputs
+        self._prepared: dict[Path, Path] = {}
+        self.has_ssm = False
+
+    @property
+    def made(self) -> dict[Path, Path]:
+        """Each copy to its original, for messages that name the copy."""
+        return {copy: file for file, copy in self._prepared.items() if copy != file}
+
+    def prepared(self, file: Path) -> Path:
+        """The file to give to SUMO instead of ``file``: itself, as a rule.
+
+        Raises:
+            ScenarioError: the file, or one that it includes, cannot be read.
+        """
+        if file in self._prepared:
+            return self._prepared[file]
+        self._prepared[file] = file  # a file that includes itself is SUMO's to refuse
+        try:
+            if _has_signs(file):
+                self._prepared[file] = self._copied(file)
+        except (OSError, EOFError) as error:
+            msg = f"{file}: cannot be read ({error}); the scenario needs it; put it there"
+            raise ScenarioError(msg) from error
+        return self._prepared[file]
+
+    def _copied(self, file: Path) -> Path:
+        self._scratch.mkdir(parents=True, exist_ok=True)
+        name = file.name.removesuffix(".gz")
+        copy = self._scratch / f"{len(self._prepared)}-{name}"
+        editor = _Editor(file, self)
+        with opened(file) as source, copy.open("wb") as target:
+            rewrite(source, target, editor.changes)
+        if editor.needed:
+            return copy
+        copy.unlink()
+        return file
+
+    def redirected(self, name: str, beside: Path) -> str:
+        """The output that ``name`` means in ``beside``, in the results folder."""
+        return str(self._outputs.place(located(name, beside)))
+
+
+class _Editor:
+    """What changes in the copy of one file."""
+
+    def __init__(self, file: Path, copies: Copies) -> None:
+        self._file = file
+        self._copies = copies
+        self.needed = False  # whether an output was found, here or in an included file
+
+    def changes(self, name: str, attributes: Mapping[str, str], parent: str) -> dict[str, str]:
+        changes = {}
+        for attribute in _PICTURES:
+            if attributes.get(attribute):
+                changes[attribute] = str(located(attributes[attribute], self._file))
+        written = attributes.get(_WRITES.get(name, ""), "")
+        if is_file(written):
+            changes[_WRITES[name]] = self._redirected(written, self._file)
+        referred = attributes.get(_READS.get(name, ""), "")
+        if referred:
+            there = located(referred, self._file)
+            copy = self._copies.prepared(there) if there.is_file() else there
+            self.needed |= copy != there
+            changes[_READS[name]] = str(copy)
+        if name == "param":
+            changes |= self._parameter(
+                attributes.get("key", ""), attributes.get("value", ""), parent
+            )
+        return changes
+
+    def _parameter(self, key: str, value: str, parent: str) -> dict[str, str]:
+        self._copies.has_ssm |= key == _SSM
+        if key in _DEVICES and is_file(value):
+            return {"value": self._redirected(value, self._copies.config_file)}
+        if key == "file" and parent == "tlLogic" and is_file(value):  # an actuated one's detectors
+            return {"value": self._redirected(value, self._file)}
+        return {}
+
+    def _redirected(self, name: str, beside: Path) -> str:
+        self.needed = True
+        return self._copies.redirected(name, beside)
+
+
+def _has_signs(file: Path) -> bool:
+    """Whether the file can name an output at all; reads it once, in pieces."""
+    longest = max(map(len, _SIGNS))
+    with opened(file) as stream:
+        tail = b""
+        while chunk := stream.read(_CHUNK):
+            text = tail + chunk
+            if any(sign in text for sign in _SIGNS):
+                return True
+            tail = text[-longest:]
+    return False

@@ -1,0 +1,120 @@
+"""XML rewritten as it streams by: only the attributes that are asked for change, byte for byte."""
+
+from __future__ import annotations
+
+import codecs
+import html
+import re
+from typing import IO, TYPE_CHECKING
+from xml.sax.saxutils import escape
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    Changes = Mapping[str, str]
+    Visitor = Callable[[str, Mapping[str, str], str], Changes]
+
+_CHUNK = 1 << 20  # [bytes]
+_ENDS = ((b"<!--", b"-->"), (b"<![CDATA[", b"]]>"), (b"<?", b"?>"))
+_TAG = re.compile(rb"<(/?)([\w:.-]+)((?:[^<>\"']|\"[^\"]*\"|'[^']*')*)>")
+_ATTRIBUTE = re.compile(rb"([\w:.-]+)\s*=\s*(\"[^\"]*\"|'[^']*')")
+_ENCODING = re.compile(rb"<\?xml[^>]*encoding\s*=\s*[\"']([\w.-]+)")
+
+
+def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor) -> None:
+    """Copy XML from ``source`` to ``target``, with some attributes changed.
+
+    Nothing is checked and nothing else changes: what is not well-formed stays so, for SUMO to
+    say. The memory used does not grow with the file, the depth of its nesting aside.
+
+    Args:
+        source: XML in an encoding that contains ASCII.
+        target: receives the copy.
+        visit: asked for each element: (name, attributes, name of the parent) -> the attributes
+            that change, to their new values; others in it are ignored.
+    """
+    copy = _Copy(target, visit)
+    pending = b""
+    while chunk := source.read(_CHUNK):
+        pending = copy.feed(pending + chunk)
+    target.write(pending)
+
+
+class _Copy:
+    """Where a copy stands: the elements that are open, the encoding."""
+
+    def __init__(self, target: IO[bytes], visit: Visitor) -> None:
+        self._target = target
+        self._visit = visit
+        self._open: list[str] = []
+        self._encoding = "utf-8"
+
+    def feed(self, text: bytes) -> bytes:
+        """Copy what is complete of ``text``; hand the rest back."""
+        position = 0
+        while (start := text.find(b"<", position)) >= 0:
+            self._target.write(text[position:start])
+            end = self._copy_markup(text, start)
+            if end is None:
+                return text[start:]
+            position = end
+        self._target.write(text[position:])
+        return b""
+
+    def _copy_markup(self, text: bytes, start: int) -> int | None:
+        """Copy the markup at ``start``; its end, None if that has not been read yet."""
+        for opening, closing in _ENDS:
+            if text.startswith(opening, start):
+                end = text.find(closing, start + len(opening))
+                if end < 0:
+                    return None
+                end += len(closing)
+                self._target.write(text[start:end])
+                self._note_encoding(text[start:end])
+                return end
+        found = _TAG.match(text, start)
+        if found is not None:
+            self._target.write(self._changed(found))
+            return found.end()
+        if text.startswith(b"<!", start) and len(text) - start > len("<![CDATA["):
+            end = text.find(b">", start)  # a document type
+            if end < 0:
+                return None
+            self._target.write(text[start : end + 1])
+            return end + 1
+        return None
+
+    def _note_encoding(self, markup: bytes) -> None:
+        declared = _ENCODING.match(markup)
+        if declared is not None:
+            try:
+                self._encoding = codecs.lookup(declared[1].decode("ascii")).name
+            except LookupError:
+                self._encoding = "utf-8"
+
+    def _changed(self, tag: re.Match[bytes]) -> bytes:
+        closing, name, inside = bool(tag[1]), tag[2].decode("ascii", "replace"), tag[3]
+        if closing:
+            if self._open:
+                self._open.pop()
+            return tag[0]
+        attributes = {
+            found[1].decode("ascii", "replace"): html.unescape(
+                found[2][1:-1].decode(self._encoding, "replace")
+            )
+            for found in _ATTRIBUTE.finditer(inside)
+        }
+        changes = self._visit(name, attributes, self._open[-1] if self._open else "")
+        if not inside.endswith(b"/"):
+            self._open.append(name)
+        if not changes:
+            return tag[0]
+        changed = _ATTRIBUTE.sub(lambda found: self._replaced(found, changes), inside)
+        return b"<" + tag[2] + changed + b">"
+
+    def _replaced(self, attribute: re.Match[bytes], changes: Changes) -> bytes:
+        value = changes.get(attribute[1].decode("ascii", "replace"))
+        if value is None:
+            return attribute[0]
+        quoted = escape(value, {'"': "&quot;"}).encode(self._encoding, "xmlcharrefreplace")
+        return attribute[1] + b'="' + quoted + b'"'

@@ -1,0 +1,122 @@
+"""SUMO's options that name files, and the ones that giveway has to know by all their names.
+
+The tables hold for SUMO 1.28; a test compares them with what ``sumo --save-template`` says, so
+that no output option of a later version is missed. libsumo ships without the program, which is
+why they stand here.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+OUTPUTS: Final = (
+    "amitran-output",
+    "battery-output",
+    "bt-output",
+    "chargingstations-output",
+    "collision-output",
+    "deadlock-output",
+    "device.rerouting.output",
+    "device.ssm.file",
+    "device.taxi.dispatch-algorithm.output",
+    "device.taxi.idle-algorithm.output",
+    "device.toc.file",
+    "edgedata-output",
+    "elechybrid-output",
+    "emission-output",
+    "error-log",
+    "fcd-output",
+    "full-output",
+    "lanechange-output",
+    "lanedata-output",
+    "link-output",
+    "log",
+    "message-log",
+    "netstate-dump",
+    "overheadwiresegments-output",
+    "pedestrian.jupedsim.py",
+    "pedestrian.jupedsim.wkt",
+    "person-fcd-output",
+    "person-summary-output",
+    "personinfo-output",
+    "personroute-output",
+    "queue-output",
+    "railsignal-block-output",
+    "railsignal-vehicle-output",
+    "save-state.files",
+    "save-state.prefix",
+    "statistic-output",
+    "stop-output",
+    "substations-output",
+    "summary-output",
+    "tripinfo-output",
+    "vehroute-output",
+    "vtk-output",
+)
+"""Every option whose value is a file that SUMO writes while it simulates."""
+
+LISTS: Final = frozenset({"save-state.files"})
+"""The outputs whose value is a list of files."""
+
+INSTEAD_OF_SIMULATING: Final = ("save-configuration", "save-schema", "save-template")
+"""With one of these SUMO writes that file and does not simulate."""
+
+INPUTS: Final = (
+    "net-file",
+    "route-files",
+    "additional-files",
+    "weight-files",
+    "load-state",
+    "fcd-output.filter-edges.input-file",
+    "device.ssm.filter-edges.input-file",
+    "astar.all-distances",
+    "astar.landmark-distances",
+    "device.fcd-replay.files",
+)
+"""Every option whose value is one or several files that SUMO reads without a window."""
+
+WINDOW_FILES: Final = (
+    "gui-settings-file",
+    "edgedata-files",
+    "alternative-net-file",
+    "selection-file",
+    "gui-testing.setting-output",
+)
+"""Files of the window alone: never touched by a run."""
+
+_NAMES: Final = {
+    "net-file": "n net",
+    "route-files": "r routes",
+    "additional-files": "a additional",
+    "weight-files": "w weights",
+    "device.fcd-replay.files": "device.fcd-replay.file",
+    "configuration-file": "c configuration",
+    "save-configuration": "C save-config",
+    "netstate-dump": "ndump netstate netstate-output",
+    "person-fcd-output": "person-fcd",
+    "summary-output": "summary",
+    "tripinfo-output": "tripinfo",
+    "personinfo-output": "personinfo",
+    "vehroute-output": "vehroutes",
+    "personroute-output": "personroutes",
+    "statistic-output": "statistics-output",
+    "log": "l log-file",
+    "begin": "b",
+    "end": "e",
+    "random": "abs-rand",
+    "seed": "srand",
+    "verbose": "v",
+    "gui-settings-file": "g",
+    "edgedata-files": "data-files m",
+    "alternative-net-file": "N",
+    "duration-log.disable": "no-duration-log",
+}
+SYNONYMS: Final = {
+    synonym: name for name, synonyms in _NAMES.items() for synonym in synonyms.split()
+}
+"""Other names of the options that giveway reads or sets, to the one that SUMO's help lists."""
+
+
+def canonical(name: str) -> str:
+    """The name under which SUMO's help lists the option; ``name`` itself if it is one already."""
+    return SYNONYMS.get(name, name)

@@ -1,0 +1,31 @@
+"""Scenario files as streams of bytes, compressed or not."""
+
+from __future__ import annotations
+
+import gzip
+from contextlib import contextmanager
+from typing import IO, TYPE_CHECKING, cast
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+_GZIP = b"\x1f\x8b"  # the magic number: SUMO looks at the content too, not at the name
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[IO[bytes]]:
+    """The file's content, decompressed where it is gzip.
+
+    Raises:
+        OSError: it cannot be read.
+        EOFError: its compressed content is cut off.
+    """
+    with path.open("rb") as raw:
+        compressed = raw.read(2) == _GZIP
+        raw.seek(0)
+        if not compressed:
+            yield raw
+            return
+        with gzip.open(raw) as stream:
+            yield cast("IO[bytes]", stream)

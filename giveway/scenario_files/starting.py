@@ -1,0 +1,256 @@
+"""How SUMO is started with somebody's scenario: what is kept, what is replaced, and why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+from urllib.parse import unquote
+
+from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, located
+from giveway.scenario_files.copies import Copies
+from giveway.scenario_files.extra_options import parse_options
+from giveway.scenario_files.options import OUTPUTS
+from giveway.scenario_files.outputs import OutputFolder, is_file
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from giveway.scenario_files.configuration import ScenarioFiles
+
+_SAVING_STATES: Final = ("save-state.times", "save-state.period")
+
+
+@dataclass(frozen=True)
+class StartOptions:
+    """What is wanted of SUMO beyond the scenario's own settings.
+
+    Attributes:
+        seed: SUMO's seed; None keeps the scenario's, or SUMO's own where it names none.
+        fallback_seed: the seed of a scenario that wants a random one, where ``seed`` is None.
+        step_length: SUMO's step [s]; None keeps the scenario's.
+        interact: whether persons or vehicles are to be moved; if not, SUMO's simulation is the
+            scenario's own to the last bit.
+        outputs: the folder for SUMO's output files; None drops them.
+        fcd, tripinfo, summary, ssm: write this output even if the scenario does not.
+        extra: further options as on SUMO's command line; they win over ours.
+    """
+
+    seed: int | None = None
+    fallback_seed: int = SUMO_SEED
+    step_length: float | None = None
+    interact: bool = True
+    outputs: Path | None = None
+    fcd: bool = False
+    tripinfo: bool = False
+    summary: bool = False
+    ssm: bool = False
+    extra: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Start:
+    """How to start SUMO.
+
+    Attributes:
+        command: for ``libsumo.start``.
+        remarks: what differs from the scenario, one line each, for the user.
+        outputs: each output file as the scenario has it, to the file written instead.
+        copies: each rewritten copy of a scenario file, to its original.
+        seed: the seed in effect.
+    """
+
+    command: tuple[str, ...]
+    remarks: tuple[str, ...]
+    outputs: Mapping[Path, Path]
+    copies: Mapping[Path, Path]
+    seed: int
+
+    def with_original_names(self, message: str) -> str:
+        """SUMO's ``message`` with the scenario's own files instead of our copies of them."""
+        for copy, original in self.copies.items():
+            message = message.replace(str(copy), str(original))
+        return message
+
+
+def prepare_start(
+    scenario: ScenarioFiles,
+    options: StartOptions,
+    scratch: Path,
+    *,
+    types: str = "<additional/>",
+) -> Start:
+    """Everything that SUMO needs to run ``scenario`` without touching its folder.
+
+    Args:
+        scenario: the scenario's files.
+        options: what is wanted.
+        scratch: an empty folder of the caller's, to be kept until SUMO is closed.
+        types: an additional file's text, read before the scenario's own: the types of whatever
+            is going to be added.
+
+    Raises:
+        ScenarioError: an input file is missing or cannot be read.
+        ResultsError: the output folder cannot be used.
+        ConfigError: ``options.extra`` holds what cannot be passed on.
+    """
+    scenario.require_inputs()
+    return _Preparation(scenario, options, scratch).start(types)
+
+
+class _Preparation:
+    """Gathers SUMO's options and what is to be said about them."""
+
+    def __init__(self, scenario: ScenarioFiles, options: StartOptions, scratch: Path) -> None:
+        self._scenario = scenario
+        self._wanted = options
+        self._scratch = scratch
+        self._outputs = OutputFolder(options.outputs or scratch / "outputs")
+        self._copies = Copies(scenario.config_file, scratch / "copies", self._outputs)
+        self._options: dict[str, str] = {}
+        self._remarks: list[str] = []
+
+    def start(self, types: str) -> Start:
+        """Put it all together."""
+        extra = parse_options(self._wanted.extra)
+        self._inputs(types, extra.pop("additional-files", ""))
+        extra |= {name: self._placed_extra(extra[name]) for name in OUTPUTS if name in extra}
+        self._randomness()
+        self._time()
+        if self._wanted.interact:
+            self._interaction()
+        self._own_outputs()
+        self._wanted_outputs()
+        self._say_where()
+        self._options |= {"gui-settings-file": "", "verbose": "false"}
+        self._options |= {"no-step-log": "true", "duration-log.disable": "true"}
+        self._options |= extra
+        command = ["sumo", "-c", str(self._scenario.config_file)]
+        for name, value in self._options.items():
+            command += [f"--{name}", value]
+        return Start(
+            tuple(command),
+            tuple(self._remarks),
+            dict(self._outputs.placed),
+            self._copies.made,
+            int(self._options.get("seed", self._scenario.seed or SUMO_SEED)),
+        )
+
+    def _inputs(self, types: str, more: str) -> None:
+        """Our types first; every file that writes is replaced by its copy."""
+        own = self._scratch / "giveway.add.xml"
+        own.write_text(types, encoding="utf-8")
+        # Naming additional files on the command line replaces the scenario's list.
+        files = [own, *map(self._copies.prepared, self._scenario.additional_files)]
+        files += [Path(name.strip()) for name in more.split(",") if name.strip()]
+        self._options["additional-files"] = ",".join(map(str, files))
+        for name, files in (
+            ("net-file", (self._scenario.net_file,)),
+            ("route-files", self._scenario.route_files),
+        ):
+            copies = [self._copies.prepared(file) for file in files]
+            if copies != list(files):
+                self._options[name] = ",".join(map(str, copies))
+
+    def _randomness(self) -> None:
+        seed = self._wanted.seed
+        if self._scenario.random:
+            seed = self._wanted.fallback_seed if seed is None else seed
+            self._options["random"] = "false"
+            self._remarks.append(
+                f"random: the scenario asks for a seed by the clock; seed {seed} is used instead, "
+                "so that the run can be repeated"
+            )
+        if seed is not None:
+            self._options["seed"] = str(seed)
+
+    def _time(self) -> None:
+        step = self._wanted.step_length
+        if step is None:
+            return
+        self._options["step-length"] = f"{step:.6f}"
+        if abs(step - self._scenario.step_length) > 1e-9:
+            self._remarks.append(
+                f"step-length: {step:g} s instead of the scenario's "
+                f"{self._scenario.step_length:g} s; SUMO's own traffic differs with the step"
+            )
+
+    def _interaction(self) -> None:
+        """What moving people and vehicles asks for."""
+        model = self._scenario.pedestrian_model
+        self._options["pedestrian.model"] = STRIPING
+        if model != STRIPING:
+            self._remarks.append(
+                f"pedestrian.model: striping instead of the scenario's {model}; only persons of "
+                "this model can be moved"
+            )
+        own = self._scenario.options
+        self._options["collision.action"] = "warn"
+        if own.get("collision.action", "warn") != "warn":
+            self._remarks.append(
+                f"collision.action: warn instead of the scenario's {own['collision.action']}; "
+                "a vehicle that is moved must not be taken off the road"
+            )
+        if "collision.check-junctions" not in own:
+            self._options["collision.check-junctions"] = "true"
+
+    def _own_outputs(self) -> None:
+        """Every output that the scenario's options name, and those that SUMO names itself."""
+        own = self._scenario.options
+        for name, files in self._scenario.outputs.items():
+            self._options[name] = ",".join(map(self._placed, files))
+        if any(name in own for name in _SAVING_STATES) and "save-state.prefix" not in own:
+            self._options["save-state.prefix"] = self._placed("state")  # beside the .sumocfg
+        if self._copies.has_ssm or any(name.startswith("device.ssm.") for name in own):
+            # SUMO's own default is a file per vehicle in the working folder
+            self._options.setdefault("device.ssm.file", self._placed("ssm.xml"))
+        for name in ("output-prefix", "output-suffix"):
+            self._without_folder(name)
+
+    def _placed(self, name: str) -> str:
+        if not is_file(name):
+            return name
+        return str(self._outputs.place(located(unquote(name), self._scenario.config_file)))
+
+    def _without_folder(self, name: str) -> None:
+        """A prefix that names a folder would lead out of the results folder."""
+        value = self._scenario.options.get(name, "")
+        last = value.replace("\\", "/").rsplit("/", 1)[-1]
+        if last != value:
+            self._options[name] = last
+            self._remarks.append(
+                f"{name}: '{last}' instead of the scenario's '{value}'; SUMO's outputs stay in "
+                "one folder"
+            )
+
+    def _wanted_outputs(self) -> None:
+        """Outputs that the user wants and the scenario does not have."""
+        wanted = self._wanted
+        for option, file, is_wanted in (
+            ("fcd-output", "fcd.xml", wanted.fcd),
+            ("tripinfo-output", "tripinfo.xml", wanted.tripinfo),
+            ("summary-output", "summary.xml", wanted.summary),
+            ("device.ssm.file", "ssm.xml", wanted.ssm),
+        ):
+            if is_wanted:
+                self._options.setdefault(option, self._placed(file))
+        if wanted.ssm and not any(
+            name.startswith("device.ssm.") for name in self._scenario.options
+        ):
+            self._options["device.ssm.probability"] = "1"
+
+    def _placed_extra(self, value: str) -> str:
+        """Outputs among the user's own options: a relative name goes into the output folder."""
+        return self._placed(value) if is_file(value) and not Path(value).is_absolute() else value
+
+    def _say_where(self) -> None:
+        files = sorted(path.name for path in self._outputs.placed.values())
+        if not files:
+            return
+        shown = ", ".join(files[:5]) + (f" and {len(files) - 5} more" if len(files) > 5 else "")
+        if self._wanted.outputs is None:
+            self._remarks.append(
+                f"outputs: {shown} are dropped; name a results folder to keep them"
+            )
+        else:
+            self._remarks.append(f"outputs: in {self._outputs.folder}: {shown}")
