@@ -6,15 +6,18 @@ from pedestrian_model.errors import (
     DivergenceError,
     ParameterError,
     PedestrianModelError,
+    SurroundingsError,
     VehicleError,
 )
 from pedestrian_model.influence import vehicle_influence
 from pedestrian_model.model import CrowdModel, Forces
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
 from pedestrian_model.prediction import Predictor
+from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
 from pedestrian_model.vehicles import Vehicles, constant_speed
 
 __all__ = [
+    "OPEN_GROUND",
     "PRESETS",
     "SIM",
     "TABLE2",
@@ -26,9 +29,12 @@ __all__ = [
     "ParameterError",
     "PedestrianModelError",
     "Predictor",
+    "Surroundings",
+    "SurroundingsError",
     "VciParameters",
     "VehicleError",
     "Vehicles",
+    "Walls",
     "arrived",
     "constant_speed",
     "vehicle_influence",

@@ -30,6 +30,8 @@ _NAMES = (
     "decay_0", "decay_1", "decay_2", "decay_3", "cos_pi_8", "sin_pi_8",
     # vehicle influence
     "le", "dx0", "alpha_x", "A", "b", "a_v", "b_v", "cap", "u_static",
+    # walls
+    "A_w", "b_w",
     # destination, limits
     "k_des", "s_des_2", "F_2", "inverse_F", "a_max", "v_max", "r_waypoint", "detour",
 )
@@ -78,6 +80,8 @@ def pack(parameters: VciParameters) -> NDArray[Any]:
         "b_v": (1.0 - p.vehicle_anisotropy) / 2.0,
         "cap": p.vehicle_exponent_cap,
         "u_static": p.static_speed,
+        "A_w": p.wall_strength,
+        "b_w": p.wall_decay,
         "k_des": p.destination_gain,
         "s_des_2": p.destination_smoothing**2,
         "F_2": p.influence_high,

@@ -1,4 +1,4 @@
-"""Where to walk next: the current way-point, or a corner of a standing car that is in the way.
+"""The way round a standing car: a corner of it as the next target.
 
 Without this, a person who walks into the side of a standing car is pushed back along his own line
 and never gets round it: a local minimum of the force field. All of this file is ours.
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from pedestrian_model._jit import inlined, kernel
 from pedestrian_model._mathematics import cosine_sine
-from pedestrian_model._rows import PX, PY, TX, TY, V0
+from pedestrian_model._rows import PX, PY, TX, TY
 from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 
 if TYPE_CHECKING:
@@ -20,32 +20,6 @@ if TYPE_CHECKING:
 
 _TOUCH = 1e-9  # [m] a path along the obstacle's edge does not cross it
 _CLEAR = 2.0  # an entry parameter beyond the segment's end: no crossing
-
-
-@inlined
-def set_targets(
-    rows: NDArray[np.float64],
-    order: NDArray[np.int64],
-    desired_speed: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    waypoint_start: NDArray[np.int64],
-    waypoint_index: NDArray[np.int64],
-    radius: float,
-) -> None:
-    """Pass the way-points within ``radius`` (never the last) and copy the targets to the rows."""
-    for k in range(desired_speed.shape[0]):
-        i = order[k]
-        last = waypoint_start[i + 1] - waypoint_start[i] - 1
-        at = waypoint_start[i] + waypoint_index[i]
-        while waypoint_index[i] < last:
-            dx, dy = waypoints[at, 0] - rows[PX, k], waypoints[at, 1] - rows[PY, k]
-            if dx * dx + dy * dy > radius * radius:
-                break
-            waypoint_index[i] += 1
-            at += 1
-        rows[TX, k] = waypoints[at, 0]
-        rows[TY, k] = waypoints[at, 1]
-        rows[V0, k] = desired_speed[i]
 
 
 @inlined

@@ -6,14 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pedestrian_model._detour import detour, set_targets
+from pedestrian_model._detour import detour
 from pedestrian_model._jit import kernel
-from pedestrian_model._rows import FX, FY, PX, PY, TX, TY, VFX, VFY, VX, VY, S
+from pedestrian_model._routes import Routes, set_targets
+from pedestrian_model._rows import FX, FY, PX, PY, SOFT, TX, TY, VFX, VFY, VX, VY, S
 from pedestrian_model._step import FINE, first_insane, gather_forces
 from pedestrian_model._vehicles import add_vehicle
+from pedestrian_model._walls import Ground, add_walls
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from pedestrian_model._routes import RouteArrays
+    from pedestrian_model._walls import GroundArrays
 
 
 @kernel
@@ -48,27 +53,32 @@ def forces_apart(
 def targets(
     position: NDArray[np.float64],
     desired_speed: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    waypoint_start: NDArray[np.int64],
+    routes: RouteArrays,
     waypoint_index: NDArray[np.int64],
     vehicles: NDArray[np.float64],
+    ground: GroundArrays,
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
     constants: NDArray[Any],
     out: NDArray[np.float64],
 ) -> None:
-    """Fill ``out`` (n, 2) with where each walks next; advances ``waypoint_index``: pass a copy."""
+    """Fill ``out`` (n, 5): target x, y, its s_des^2, force of the walls x, y.
+
+    Advances ``waypoint_index``: pass a copy.
+    """
     c = constants[0]
     n = position.shape[0]
     for i in range(n):
         index[0, i] = i
         rows[PX, i], rows[PY, i] = position[i, 0], position[i, 1]
-    set_targets(
-        rows, index[0], desired_speed, waypoints, waypoint_start, waypoint_index, c.r_waypoint
-    )
+        rows[FX, i], rows[FY, i] = 0.0, 0.0
+    where = Ground(*ground)
+    add_walls(rows, n, FX, FY, where, c)
+    set_targets(rows, index[0], desired_speed, Routes(*routes), waypoint_index, where.closed, c)
     detour(rows, n, vehicles, c)
     for i in range(n):
-        out[i, 0], out[i, 1] = rows[TX, i], rows[TY, i]
+        out[i, 0], out[i, 1], out[i, 2] = rows[TX, i], rows[TY, i], rows[SOFT, i]
+        out[i, 3], out[i, 4] = rows[FX, i], rows[FY, i]
 
 
 @kernel

@@ -26,9 +26,9 @@ BLOCK = 8
 (PX, PY, VX, VY, UX, UY,  # position, velocity, direction of the velocity
  FX, FY,                  # force from the other pedestrians
  VFX, VFY, S,             # force from the vehicles, signed distance to their contours
- TX, TY, V0,              # target, desired speed
+ TX, TY, V0, SOFT,        # target, desired speed, [m^2] s_des^2 of the target
  NX, NY, NVX, NVY,        # next state
- ROWS) = range(19)
+ ROWS) = range(20)
 # fmt: on
 
 #: Distance of the buffer's rows, not a multiple of 4096 bytes (cache sets).

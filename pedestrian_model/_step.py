@@ -6,10 +6,11 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from pedestrian_model._cells import add_near_pairs
-from pedestrian_model._detour import detour, set_targets
+from pedestrian_model._detour import detour
 from pedestrian_model._jit import fma, inlined, kernel
 from pedestrian_model._mathematics import cosine_sine
 from pedestrian_model._ring import add_all_pairs
+from pedestrian_model._routes import Routes, set_targets
 from pedestrian_model._rows import (
     BLOCK,
     FX,
@@ -21,6 +22,7 @@ from pedestrian_model._rows import (
     NY,
     PX,
     PY,
+    SOFT,
     TX,
     TY,
     V0,
@@ -30,10 +32,14 @@ from pedestrian_model._rows import (
     VY,
 )
 from pedestrian_model._vehicles import HEADING, SPEED, X, Y, add_vehicle
+from pedestrian_model._walls import Ground, add_walls
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from pedestrian_model._routes import RouteArrays
+    from pedestrian_model._walls import GroundArrays
 
 #: The result of a step that went well; otherwise the index of the offending pedestrian.
 FINE = -1
@@ -77,16 +83,16 @@ def gather_forces(
 @inlined
 def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
     """The next state of the first n rows: total force, limits, synchronous update."""
-    m, k_des, s_des_2, F_2, inverse_F = c.m, c.k_des, c.s_des_2, c.F_2, c.inverse_F
+    m, k_des, F_2, inverse_F = c.m, c.k_des, c.F_2, c.inverse_F
     most, v_max = c.m * c.a_max, c.v_max
     x, y, vx, vy = rows[PX], rows[PY], rows[VX], rows[VY]
     fx, fy, vfx, vfy = rows[FX], rows[FY], rows[VFX], rows[VFY]
-    to_x, to_y, v0 = rows[TX], rows[TY], rows[V0]
+    to_x, to_y, v0, s_des_2 = rows[TX], rows[TY], rows[V0], rows[SOFT]
     nx, ny, nvx, nvy = rows[NX], rows[NY], rows[NVX], rows[NVY]
     for k in range(n):
         # v_d = v0 (p - x)/sqrt(|p - x|^2 + s_des^2), f_d = k_des (v_d - v)
         dx, dy = to_x[k] - x[k], to_y[k] - y[k]
-        pace = v0[k] / math.sqrt(fma(dx, dx, fma(dy, dy, s_des_2)))
+        pace = v0[k] / math.sqrt(fma(dx, dx, fma(dy, dy, s_des_2[k])))
         f_v = math.sqrt(fma(vfx[k], vfx[k], vfy[k] * vfy[k]))
         beta = min(1.0, max(0.0, (F_2 - f_v) * inverse_F))
         # Yang & Özgüner 2019: F = sum (f_r + f_c + f_n) + f_v + beta f_d
@@ -114,10 +120,10 @@ def advance(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     desired_speed: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    waypoint_start: NDArray[np.int64],
+    routes: RouteArrays,
     waypoint_index: NDArray[np.int64],
     vehicles: NDArray[np.float64],
+    ground: GroundArrays,
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
     buffer: NDArray[np.float64],
@@ -133,6 +139,7 @@ def advance(
     insane = first_insane(position, velocity)
     if n == 0 or insane != FINE:
         return insane
+    ways, where = Routes(*routes), Ground(*ground)
     for step in range(substeps):
         gather_forces(
             position,
@@ -147,9 +154,8 @@ def advance(
             cell_list_from,
         )
         order = index[0]
-        set_targets(
-            rows, order, desired_speed, waypoints, waypoint_start, waypoint_index, c.r_waypoint
-        )
+        add_walls(rows, n, FX, FY, where, c)
+        set_targets(rows, order, desired_speed, ways, waypoint_index, where.closed, c)
         detour(rows, n, vehicles, c)
         _integrate(rows, n, dt, c)
         for k in range(n):
@@ -164,10 +170,10 @@ def predict(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     desired_speed: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    waypoint_start: NDArray[np.int64],
+    routes: RouteArrays,
     waypoint_index: NDArray[np.int64],
     vehicles: NDArray[np.float64],
+    ground: GroundArrays,
     state: NDArray[np.float64],
     reached: NDArray[np.int64],
     rows: NDArray[np.float64],
@@ -195,10 +201,10 @@ def predict(
             x,
             v,
             desired_speed,
-            waypoints,
-            waypoint_start,
+            routes,
             reached,
             vehicles[k],
+            ground,
             rows,
             index,
             buffer,

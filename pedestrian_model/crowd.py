@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from pedestrian_model._check import as_floats, check_not_negative, check_shape, check_values
-from pedestrian_model._jit import kernel
+from pedestrian_model._routes import fill_arrived, select_routes
 from pedestrian_model.errors import CrowdError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
+
+    from pedestrian_model._routes import RouteArrays
+
+_UNIT = 1e-6  # a direction's length may differ from one by this
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,6 +28,10 @@ class Crowd:
 
     The way-points of all pedestrians stand in one array; those of pedestrian i are
     ``waypoints[waypoint_start[i]:waypoint_start[i + 1]]``, the last one is the destination.
+
+    A way-point with a passage (direction_x, direction_y, half_width) is a line across that
+    direction; it counts as passed beyond the line, within its half-width. (0, 0, 0) is a point
+    only. A way-point with a signal is not passed while ``Surroundings.closed[signal]``.
 
     Raises:
         CrowdError: if an array has a wrong shape, or a value is not finite or out of range.
@@ -34,6 +43,8 @@ class Crowd:
     waypoints: NDArray[np.float64]  # (total, 2) [m]
     waypoint_start: NDArray[np.int64]  # (n + 1,) offsets into ``waypoints``
     waypoint_index: NDArray[np.int64]  # (n,) current target, counted from the pedestrian's first
+    waypoint_passage: NDArray[np.float64]  # (total, 3) unit direction, half-width [m]
+    waypoint_signal: NDArray[np.int64]  # (total,) which signal must be open, -1 for none
 
     def __post_init__(self) -> None:
         n = self.position.shape[0]
@@ -42,16 +53,22 @@ class Crowd:
             ("velocity", (n, 2)),
             ("desired_speed", (n,)),
             ("waypoints", (None, 2)),
+            ("waypoint_passage", (self.waypoints.shape[0], 3)),
         ):
             array = getattr(self, name)
             check_shape(array, shape, name, CrowdError)
             _check_memory(array, np.dtype(np.float64), name)
             check_values(array, name, CrowdError)
         check_not_negative(self.desired_speed, "desired_speed", CrowdError)
-        for name, length in (("waypoint_start", n + 1), ("waypoint_index", n)):
+        for name, length in (
+            ("waypoint_start", n + 1),
+            ("waypoint_index", n),
+            ("waypoint_signal", self.waypoints.shape[0]),
+        ):
             check_shape(getattr(self, name), (length,), name, CrowdError)
             _check_memory(getattr(self, name), np.dtype(np.int64), name)
         self._check_offsets()
+        self._check_passages()
 
     def _check_offsets(self) -> None:
         start, total = self.waypoint_start, self.waypoints.shape[0]
@@ -68,6 +85,24 @@ class Crowd:
             if bad.any():
                 raise CrowdError(f"pedestrian {int(np.argmax(bad))} {message}")
 
+    def _check_passages(self) -> None:
+        direction, half = self.waypoint_passage[:, :2], self.waypoint_passage[:, 2]
+        check_not_negative(half, "half-width of waypoint_passage", CrowdError)
+        bad = (half > 0.0) & (np.abs((direction**2).sum(axis=1) - 1.0) > 2.0 * _UNIT)
+        if bad.any():
+            at = int(np.argmax(bad))
+            raise CrowdError(
+                f"waypoint_passage[{at}] has direction {direction[at].tolist()}, "
+                "expected length 1: Crowd.create"
+            )
+        bad = self.waypoint_signal < -1
+        if bad.any():
+            at = int(np.argmax(bad))
+            raise CrowdError(
+                f"waypoint_signal[{at}] = {self.waypoint_signal[at]}, expected an index >= 0, "
+                "or -1 for none"
+            )
+
     def __len__(self) -> int:
         return int(self.position.shape[0])
 
@@ -78,6 +113,9 @@ class Crowd:
         velocity: ArrayLike,
         desired_speed: ArrayLike,
         waypoints: Sequence[ArrayLike],
+        *,
+        passages: Sequence[ArrayLike] | None = None,
+        signals: Sequence[ArrayLike] | None = None,
     ) -> Crowd:
         """A new crowd, each pedestrian on the way to the first of its way-points.
 
@@ -86,6 +124,9 @@ class Crowd:
             velocity: (n, 2) [m/s].
             desired_speed: (n,) or one number for all [m/s].
             waypoints: for each pedestrian (k_i, 2) [m] with k_i >= 1; the last is the destination.
+            passages: for each pedestrian (k_i, 3) direction_x, direction_y (of any length) and
+                half_width [m]; (0, 0, anything) is none. Default: none.
+            signals: for each pedestrian (k_i,) index of a signal, -1 for none. Default: none.
 
         Raises:
             CrowdError: naming the array, the index and the value that is not as it should be.
@@ -106,6 +147,7 @@ class Crowd:
         for i, route in enumerate(routes):
             check_shape(route, (None, 2), f"waypoints[{i}]", CrowdError)
             check_values(route, f"waypoints[{i}]", CrowdError)
+        total = sum(len(route) for route in routes)
         return cls(
             position=x.copy(),
             velocity=v.reshape(0, 2) if v.size == 0 else v.copy(),
@@ -113,6 +155,12 @@ class Crowd:
             waypoints=np.concatenate(routes) if routes else np.empty((0, 2)),
             waypoint_start=_offsets(np.array([len(route) for route in routes], dtype=np.int64)),
             waypoint_index=np.zeros(n, dtype=np.int64),
+            waypoint_passage=(
+                np.zeros((total, 3)) if passages is None else _passages(passages, routes)
+            ),
+            waypoint_signal=(
+                np.full(total, -1, dtype=np.int64) if signals is None else _signals(signals, routes)
+            ),
         )
 
     @classmethod
@@ -134,10 +182,25 @@ class Crowd:
         last: NDArray[np.float64] = self.waypoints[self.waypoint_start[1:] - 1]
         return last
 
+    @property
+    def routes(self) -> RouteArrays:
+        """All about the routes that a step never changes, as the kernels take it."""
+        return self.waypoints, self.waypoint_passage, self.waypoint_signal, self.waypoint_start
+
+    @cached_property
+    def signals(self) -> int:
+        """How many signals there must be: one more than the largest index of any way-point."""
+        return int(self.waypoint_signal.max(initial=-1)) + 1
+
     def copy(self) -> Crowd:
         """An independent state; what a step never changes is shared."""
         return _unchecked(
-            self.position.copy(), self.velocity.copy(), self.waypoint_index.copy(), self
+            self.__dict__
+            | {
+                "position": self.position.copy(),
+                "velocity": self.velocity.copy(),
+                "waypoint_index": self.waypoint_index.copy(),
+            }
         )
 
     def select(self, mask: NDArray[np.bool_]) -> Crowd:
@@ -151,54 +214,84 @@ class Crowd:
             raise CrowdError(
                 f"mask is {mask.dtype} of shape {mask.shape}, expected bool of ({len(self)},)"
             )
-        count = np.diff(self.waypoint_start)
-        return Crowd(
-            position=self.position[mask],
-            velocity=self.velocity[mask],
-            desired_speed=self.desired_speed[mask],
-            waypoints=self.waypoints[np.repeat(mask, count)],
-            waypoint_start=_offsets(count[mask]),
-            waypoint_index=self.waypoint_index[mask],
+        chosen = np.flatnonzero(mask)
+        start = _offsets(np.diff(self.waypoint_start)[chosen])
+        total = int(start[-1])
+        waypoints, passage = np.empty((total, 2)), np.empty((total, 3))
+        signal = np.empty(total, dtype=np.int64)
+        select_routes(self.routes, mask, start, waypoints, passage, signal)
+        return _unchecked(
+            {
+                "position": self.position[chosen],
+                "velocity": self.velocity[chosen],
+                "desired_speed": self.desired_speed[chosen],
+                "waypoints": waypoints,
+                "waypoint_start": start,
+                "waypoint_index": self.waypoint_index[chosen],
+                "waypoint_passage": passage,
+                "waypoint_signal": signal,
+            }
         )
 
     def concatenate(self, other: Crowd) -> Crowd:
         """This crowd followed by ``other``."""
-        return Crowd(
-            position=np.concatenate([self.position, other.position]),
-            velocity=np.concatenate([self.velocity, other.velocity]),
-            desired_speed=np.concatenate([self.desired_speed, other.desired_speed]),
-            waypoints=np.concatenate([self.waypoints, other.waypoints]),
-            waypoint_start=np.concatenate(
-                [self.waypoint_start, self.waypoint_start[-1] + other.waypoint_start[1:]]
-            ),
-            waypoint_index=np.concatenate([self.waypoint_index, other.waypoint_index]),
+        joined: dict[str, Any] = {
+            name: np.concatenate([getattr(self, name), getattr(other, name)]) for name in _JOINED
+        }
+        joined["waypoint_start"] = np.concatenate(
+            [self.waypoint_start, self.waypoint_start[-1] + other.waypoint_start[1:]]
         )
+        return _unchecked(joined)
+
+
+#: All fields but ``waypoint_start``, whose offsets move on.
+_JOINED = tuple(field.name for field in fields(Crowd) if field.name != "waypoint_start")
 
 
 def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
-    """Mask (n,): on the way to the last way-point and within ``radius`` [m] of it."""
+    """Mask (n,): on the way to the last way-point and within ``radius`` [m] of it, or its line."""
     mask = np.empty(len(crowd), dtype=np.bool_)
-    _fill_arrived(
-        crowd.position, crowd.waypoints, crowd.waypoint_start, crowd.waypoint_index, radius, mask
-    )
+    fill_arrived(crowd.position, crowd.routes, crowd.waypoint_index, radius, mask)
     return mask
 
 
-@kernel
-def _fill_arrived(
-    position: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    waypoint_start: NDArray[np.int64],
-    waypoint_index: NDArray[np.int64],
-    radius: float,
-    mask: NDArray[np.bool_],
+def _passages(
+    passages: Sequence[ArrayLike], routes: Sequence[NDArray[np.float64]]
+) -> NDArray[np.float64]:
+    """(total, 3) of all, the directions of length one."""
+    _check_count(passages, "passages", routes)
+    rows = [as_floats(rows, f"passages[{i}]", CrowdError) for i, rows in enumerate(passages)]
+    for i, (row, route) in enumerate(zip(rows, routes, strict=True)):
+        check_shape(row, (len(route), 3), f"passages[{i}]", CrowdError)
+        check_values(row, f"passages[{i}]", CrowdError)
+    out = np.concatenate(rows) if rows else np.empty((0, 3))
+    length = np.sqrt((out[:, :2] ** 2).sum(axis=1))
+    pointing = length > 0.0
+    out[pointing, :2] /= length[pointing, None]
+    out[~pointing] = 0.0
+    return out
+
+
+def _signals(
+    signals: Sequence[ArrayLike], routes: Sequence[NDArray[np.float64]]
+) -> NDArray[np.int64]:
+    """(total,) of all."""
+    _check_count(signals, "signals", routes)
+    rows = [np.asarray(row) for row in signals]
+    for i, (row, route) in enumerate(zip(rows, routes, strict=True)):
+        check_shape(row, (len(route),), f"signals[{i}]", CrowdError)
+        if row.dtype.kind not in "iu":
+            raise CrowdError(f"signals[{i}] is {row.dtype}, expected integers")
+    return np.concatenate(rows).astype(np.int64) if rows else np.empty(0, dtype=np.int64)
+
+
+def _check_count(
+    values: Sequence[ArrayLike], what: str, routes: Sequence[NDArray[np.float64]]
 ) -> None:
-    for i in range(len(mask)):
-        last = waypoint_start[i + 1] - 1
-        x = waypoints[last, 0] - position[i, 0]
-        y = waypoints[last, 1] - position[i, 1]
-        on_the_way = waypoint_start[i] + waypoint_index[i] == last
-        mask[i] = on_the_way and x * x + y * y <= radius * radius
+    if len(values) != len(routes):
+        raise CrowdError(
+            f"{what} has {len(values)} entries, expected one for each of {len(routes)}"
+        )
 
 
 def _offsets(count: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -212,14 +305,8 @@ def _check_memory(array: NDArray[np.generic], dtype: np.dtype[np.generic], name:
         raise CrowdError(f"{name} is {array.dtype}, expected C-contiguous {dtype}: Crowd.create")
 
 
-def _unchecked(
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    waypoint_index: NDArray[np.int64],
-    like: Crowd,
-) -> Crowd:
-    """A crowd ``like`` another in a new state, without the checks: the hot path."""
+def _unchecked(state: dict[str, Any]) -> Crowd:
+    """A crowd of these fields, valid already, without the checks: the hot path."""
     crowd = object.__new__(Crowd)
-    crowd.__dict__.update(like.__dict__)
-    crowd.__dict__.update(position=position, velocity=velocity, waypoint_index=waypoint_index)
+    crowd.__dict__.update(state)
     return crowd

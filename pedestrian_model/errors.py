@@ -19,5 +19,9 @@ class VehicleError(PedestrianModelError):
     """The description of the vehicles is malformed."""
 
 
+class SurroundingsError(PedestrianModelError):
+    """The walls or signals are malformed, or do not fit the crowd."""
+
+
 class DivergenceError(PedestrianModelError):
     """A step produced a state that is not finite."""

@@ -11,8 +11,9 @@ import numpy as np
 from pedestrian_model import _inspect, _step
 from pedestrian_model._constants import pack
 from pedestrian_model._rows import Workspace
-from pedestrian_model.errors import DivergenceError, ParameterError
+from pedestrian_model.errors import DivergenceError, ParameterError, SurroundingsError
 from pedestrian_model.parameters import SIM
+from pedestrian_model.surroundings import OPEN_GROUND
 from pedestrian_model.vehicles import COLUMNS
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from pedestrian_model.crowd import Crowd
     from pedestrian_model.parameters import VciParameters
+    from pedestrian_model.surroundings import Surroundings
     from pedestrian_model.vehicles import Vehicles
 
 #: The longest step the integration takes at once: k_col dt^2 / m = 0.31 is stable.
@@ -47,6 +49,7 @@ class Forces:
     collision: NDArray[np.float64]  # sum of f_c
     navigation: NDArray[np.float64]  # sum of f_n
     vehicle: NDArray[np.float64]  # f_v
+    wall: NDArray[np.float64]  # f_w
     destination: NDArray[np.float64]  # f_d, without beta
     beta: NDArray[np.float64]  # in [0, 1], what the vehicles leave of f_d
     target: NDArray[np.float64]  # [m] where f_d pulls: a way-point, or a corner of a standing car
@@ -55,7 +58,7 @@ class Forces:
     def total(self) -> NDArray[np.float64]:
         """The total force before the limits (Yang & Özgüner 2019, equation of motion)."""
         others = self.repulsion + self.collision + self.navigation
-        return others + self.vehicle + self.beta[:, None] * self.destination
+        return others + self.wall + self.vehicle + self.beta[:, None] * self.destination
 
 
 class CrowdModel:
@@ -87,34 +90,41 @@ class CrowdModel:
         self._constants = pack(parameters)
         self._workspace = Workspace()
 
-    def step(self, crowd: Crowd, vehicles: Vehicles) -> Crowd:
+    def step(
+        self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
+    ) -> Crowd:
         """The crowd one time step later; all forces come from the old state.
 
         Raises:
             DivergenceError: if a pedestrian's state is or becomes not finite.
+            SurroundingsError: if a way-point's signal is not one of the surroundings.
         """
         after = crowd.copy()
-        self.advance(after, vehicles)
+        self.advance(after, vehicles, surroundings)
         return after
 
-    def advance(self, crowd: Crowd, vehicles: Vehicles) -> None:
+    def advance(
+        self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
+    ) -> None:
         """Like ``step``, but changes position, velocity and waypoint_index of ``crowd`` in place.
 
         Bit-equal to ``step``, and allocates nothing unless the crowd has grown.
 
         Raises:
             DivergenceError: if a pedestrian's state is or becomes not finite.
+            SurroundingsError: if a way-point's signal is not one of the surroundings.
         """
+        check_signals(crowd, surroundings)
         work = self._workspace
         work.reserve(crowd.position.shape[0])
         bad = _step.advance(
             crowd.position,
             crowd.velocity,
             crowd.desired_speed,
-            crowd.waypoints,
-            crowd.waypoint_start,
+            crowd.routes,
             crowd.waypoint_index,
             vehicles.array,
+            surroundings.arrays,
             work.rows,
             work.index,
             work.buffer,
@@ -127,12 +137,16 @@ class CrowdModel:
         if bad != _step.FINE:
             raise divergence(bad, crowd, vehicles)
 
-    def forces(self, crowd: Crowd, vehicles: Vehicles) -> Forces:
+    def forces(
+        self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
+    ) -> Forces:
         """Each sub-force in the present state, for pictures and tests.
 
         Raises:
             DivergenceError: if a pedestrian's state is not finite.
+            SurroundingsError: if a way-point's signal is not one of the surroundings.
         """
+        check_signals(crowd, surroundings)
         none = replace(
             self.parameters,
             repulsion_strength=0.0,
@@ -148,9 +162,9 @@ class CrowdModel:
         # The pair forces are linear in their strengths: the kernel itself takes them apart.
         apart = {name: self._gather(crowd, vehicles, one) for name, one in only.items()}
         f_v = apart["repulsion"][2:4].T.copy()
-        target = self._targets(crowd, vehicles)
+        target, s_des_2, f_w = self._targets(crowd, vehicles, surroundings)
         away = target - crowd.position
-        distance = np.sqrt((away**2).sum(axis=1) + p.destination_smoothing**2)
+        distance = np.sqrt((away**2).sum(axis=1) + s_des_2)
         v_d = (crowd.desired_speed / distance)[:, None] * away
         size = np.sqrt((f_v**2).sum(axis=1))
         slope = (p.influence_high - size) / (p.influence_high - p.influence_low)
@@ -159,6 +173,7 @@ class CrowdModel:
             collision=apart["collision"][:2].T.copy(),
             navigation=apart["navigation"][:2].T.copy(),
             vehicle=f_v,
+            wall=f_w,
             destination=p.destination_gain * (v_d - crowd.velocity),
             beta=np.clip(slope, 0.0, 1.0),
             target=target,
@@ -187,22 +202,35 @@ class CrowdModel:
             raise divergence(bad, crowd, vehicles)
         return out
 
-    def _targets(self, crowd: Crowd, vehicles: Vehicles) -> NDArray[np.float64]:
-        """(n, 2) [m] where each walks next."""
-        out = np.zeros((len(crowd), 2))
+    def _targets(
+        self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Where each walks next (n, 2) [m], s_des^2 there (n,) [m^2], f_w (n, 2) [N]."""
+        out = np.zeros((len(crowd), 5))
         _inspect.targets(
             crowd.position,
             crowd.desired_speed,
-            crowd.waypoints,
-            crowd.waypoint_start,
+            crowd.routes,
             crowd.waypoint_index.copy(),
             vehicles.array,
+            surroundings.arrays,
             self._workspace.rows,
             self._workspace.index,
             self._constants,
             out,
         )
-        return out
+        return out[:, :2].copy(), out[:, 2].copy(), out[:, 3:].copy()
+
+
+def check_signals(crowd: Crowd, surroundings: Surroundings) -> None:
+    """Raise SurroundingsError if a way-point's signal is beyond ``surroundings.closed``."""
+    if crowd.signals > surroundings.closed.shape[0]:
+        at = int(np.argmax(crowd.waypoint_signal))
+        i = int(np.searchsorted(crowd.waypoint_start, at, side="right")) - 1
+        raise SurroundingsError(
+            f"pedestrian {i}: a way-point has signal {crowd.signals - 1}, but "
+            f"surroundings.closed has {surroundings.closed.shape[0]}: give one for each signal"
+        )
 
 
 def divergence(i: int, crowd: Crowd, vehicles: Vehicles) -> DivergenceError:

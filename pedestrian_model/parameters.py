@@ -34,6 +34,7 @@ _MAY_BE_ZERO = frozenset(
         "vehicle_strength",
         "vehicle_anisotropy",
         "static_speed",
+        "wall_strength",
         "influence_low",
         "waypoint_radius",
         "detour_margin",
@@ -80,6 +81,10 @@ class VciParameters:
     vehicle_anisotropy: float = 0.3119132  # l_v [-]
     vehicle_exponent_cap: float = 4.0  # [-] bounds the force deep inside a contour (ours)
     static_speed: float = 0.2  # [m/s] below, a vehicle is a rectangle (Yang & Özgüner 2019)
+
+    # From a wall (ours, in the form of Helbing, Farkas & Vicsek, Nature 2000).
+    wall_strength: float = 8000.0  # A_w [N] in touch with the wall
+    wall_decay: float = 22.0  # b_w [1/m]
 
     # To the destination, TSAS 2020.
     destination_gain: float = 545.3125  # k_des [N s/m]

@@ -10,14 +10,16 @@ from pedestrian_model import _step
 from pedestrian_model._constants import pack
 from pedestrian_model._rows import Workspace
 from pedestrian_model.errors import DivergenceError, ParameterError, VehicleError
-from pedestrian_model.model import CELL_LIST_FROM, substeps
+from pedestrian_model.model import CELL_LIST_FROM, check_signals, substeps
 from pedestrian_model.parameters import SIM
+from pedestrian_model.surroundings import OPEN_GROUND
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from pedestrian_model.crowd import Crowd
     from pedestrian_model.parameters import VciParameters
+    from pedestrian_model.surroundings import Surroundings
 
 
 class Predictor:
@@ -53,17 +55,25 @@ class Predictor:
         self._dt = self.time_step / self._substeps
         self._constants = pack(parameters)
         self._workspace = Workspace()
+        self._capacity = -1
         self._reserve(0)
 
     def _reserve(self, n: int) -> None:
-        """Buffers for exactly n pedestrians: the result must be contiguous."""
+        """Contiguous views of buffers that grow only: people come and go in each step."""
         self._workspace.reserve(n)
-        self._state = np.empty((2, n, 2))
-        self._reached = np.empty(n, dtype=np.int64)
-        self._out = np.empty((self.horizon, n, 2))
+        if n > self._capacity:
+            self._capacity = max(n, 2 * self._capacity)
+            self._memory = np.empty((2 + self.horizon) * self._capacity * 2)
+            self._all_reached = np.empty(self._capacity, dtype=np.int64)
+        both = self._memory[: (2 + self.horizon) * n * 2].reshape(2 + self.horizon, n, 2)
+        self._state, self._out = both[:2], both[2:]
+        self._reached = self._all_reached[:n]
 
     def predict(
-        self, crowd: Crowd, vehicles_trajectory: NDArray[np.float64]
+        self,
+        crowd: Crowd,
+        vehicles_trajectory: NDArray[np.float64],
+        surroundings: Surroundings = OPEN_GROUND,
     ) -> NDArray[np.float64]:
         """The positions (N, n, 2) [m] after 1 ... N steps; ``crowd`` is not changed.
 
@@ -71,6 +81,7 @@ class Predictor:
             crowd: the present state.
             vehicles_trajectory: (N, m, 7) the vehicles at 0 ... N - 1 steps, see ``Vehicles`` and
                 ``constant_speed``.
+            surroundings: walls and signals; those closed now stay closed over the horizon.
 
         Returns:
             A buffer that the next call overwrites (copy it to keep it). Bit-equal to N times
@@ -79,7 +90,9 @@ class Predictor:
         Raises:
             VehicleError: if the trajectory is not C-contiguous float64 of shape (N, m, 7).
             DivergenceError: if a pedestrian's state is or becomes not finite.
+            SurroundingsError: if a way-point's signal is not one of the surroundings.
         """
+        check_signals(crowd, surroundings)
         shape, flags = vehicles_trajectory.shape, vehicles_trajectory.flags
         if len(shape) != 3 or shape[0] != self.horizon or shape[2] != 7:
             raise VehicleError(
@@ -94,10 +107,10 @@ class Predictor:
             crowd.position,
             crowd.velocity,
             crowd.desired_speed,
-            crowd.waypoints,
-            crowd.waypoint_start,
+            crowd.routes,
             crowd.waypoint_index,
             vehicles_trajectory,
+            surroundings.arrays,
             self._state,
             self._reached,
             work.rows,
