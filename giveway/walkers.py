@@ -1,7 +1,14 @@
-"""The scenario's own persons: taken over where they walk, handed back to SUMO afterwards."""
+"""The scenario's own persons: taken over where they walk, handed back to SUMO afterwards.
+
+A person keeps everything in SUMO while we hold it: its plan, type, colour and parameters. Held, it
+is moved as a ghost (see giveway/sumo.py), and its place in SUMO's books lies far outside of its
+lane: otherwise SUMO's pedestrians would walk round the spot where it was taken over, and cars wait
+for ever at a crossing that it has long left.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import enum
 import itertools
 import math
@@ -11,7 +18,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from giveway.handover import Foot, FootPaths
 from giveway.traffic import angle_to_heading
+from giveway.walk_speeds import WalkSpeeds
 
 if TYPE_CHECKING:
     from collections.abc import Container, Sequence
@@ -19,16 +28,19 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _WALKING = 2  # SUMO's stage type
+_NOWHERE = -1000.0  # [m] on its lane: where a held person is in SUMO's books
+_SLOWEST = 0.1  # [m/s] nobody wants to walk more slowly
+_DETOUR = 5.0  # [m] so much farther may the walk's own edge be than the nearest one
 
 
 class Arrival(enum.Enum):
     """What becomes of a person that has reached the end of its walk."""
 
-    ARRIVED = "arrived"  # nothing was left to do: it has left SUMO
+    ARRIVED = "arrived"  # nothing is left to do: it leaves SUMO with the next step
     CONTINUED = "continued"  # a stop, a ride or another walk follows in SUMO
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Walker:
     """A person as SUMO walks it, at SUMO's present instant."""
 
@@ -45,100 +57,260 @@ class Walker:
     stages_left: int  # after this walk
 
 
+@dataclass(frozen=True, slots=True)
+class _Walk:
+    """What is remembered of a held person's walk."""
+
+    edges: tuple[str, ...]  # remaining, the current one first
+    arrival_position: float  # [m]
+    stages_left: int
+    type: str
+    has_own_speed: bool  # the scenario gives this walk a speed, which a fresh walk would not have
+    was_inside: bool  # taken over inside a junction
+    passed: int  # edges of the walk before ``edges``
+
+
 class ScenarioWalkers:
     """Who of the scenario's persons is SUMO's at present, and who is ours.
 
     Args:
-        sumo: the libsumo module.
+        sumo: the libsumo module, with a simulation running.
         ours: ids of persons that giveway added: never touched.
+
+    Attributes:
+        held: the ids of those whom we move at present.
+        counts: ``taken`` = ``handed_back`` + ``arrived`` + ``continued`` + ``lost`` + those held;
+            ``lost`` are held persons whom somebody else took out of SUMO.
     """
+
+    held: set[str]
+    counts: Counter[str]
 
     def __init__(self, sumo: Any, ours: Container[str]) -> None:
         self._sumo = sumo
         self._ours = ours
-        self.held: set[str] = set()
-        self.counts: Counter[str] = Counter()
-        self._free: dict[str, None] | None = None
-        self._walks: dict[str, Walker] = {}
+        self.held = set()
+        self.counts = Counter(taken=0, handed_back=0, arrived=0, continued=0, lost=0)
+        self._free: dict[str, None] = {}  # departed and SUMO's, in order of departure
+        self._seen_until = -math.inf  # [s] SUMO's clock when `_free` was brought up to date
+        self._walks: dict[str, _Walk] = {}
+        self._leaving: dict[str, int] = {}  # at their walk's end: stages left then
+        self._paths = FootPaths(sumo)
+        self._speeds = WalkSpeeds.of_running(sumo)
+        direct = getattr(sumo.libsumo, "_libsumo", None)  # without the wrapper's own call
+        self._position = getattr(direct, "person_getPosition", sumo.person.getPosition)
+
+    # --- who is where -------------------------------------------------------------------------
 
     def positions(self) -> tuple[list[str], NDArray[np.float64]]:
-        """Ids and positions (n, 2) [m] of every departed person that is not held."""
+        """Ids and positions (n, 2) [m] of every departed person that we do not hold.
+
+        To be asked once after each SUMO step; steps that were left out cost a look at everybody.
+        """
+        self._update()
+        try:
+            return self._read()
+        except self._sumo.TraCIException:  # somebody vanished without having arrived
+            self._look_at_everybody()
+            return self._read()
+
+    def _read(self) -> tuple[list[str], NDArray[np.float64]]:
+        ids = list(self._free)
+        flat = itertools.chain.from_iterable(map(self._position, ids))
+        return ids, np.fromiter(flat, dtype=np.float64, count=2 * len(ids)).reshape(-1, 2)
+
+    def _update(self) -> None:
         simulation = self._sumo.simulation
-        if self._free is None:
-            self._free = dict.fromkeys(
-                n for n in self._sumo.person.getIDList() if n not in self._ours
-            )
+        now = float(simulation.getTime())
+        if now == self._seen_until:
+            return
+        if now - self._seen_until > 1.5 * simulation.getDeltaT():
+            self._look_at_everybody()
         else:
             for name in simulation.getDepartedPersonIDList():
                 if name not in self._ours:
                     self._free[name] = None
             for name in simulation.getArrivedPersonIDList():
                 self._free.pop(name, None)
-        ids = list(self._free)
-        flat = itertools.chain.from_iterable(map(self._sumo.person.getPosition, ids))
-        return ids, np.fromiter(flat, dtype=np.float64, count=2 * len(ids)).reshape(-1, 2)
+                self._leaving.pop(name, None)
+                if name in self.held:
+                    self._lose(name)
+        self._seen_until = now
+        if self._leaving:
+            self._see_off()
+
+    def _look_at_everybody(self) -> None:
+        present = dict.fromkeys(self._sumo.person.getIDList())
+        self._free = {
+            name: None
+            for name in present
+            if name not in self.held and name not in self._ours and name not in self._leaving
+        }
+        for name in [name for name in self.held if name not in present]:
+            self._lose(name)
+        for name in [name for name in self._leaving if name not in present]:
+            del self._leaving[name]
+
+    def _see_off(self) -> None:
+        """Whoever should have ended its walk in SUMO's step by itself and has not is made to."""
+        person = self._sumo.person
+        for name, stages_left in self._leaving.items():
+            if person.getRemainingStages(name) > stages_left:
+                if stages_left:
+                    person.removeStage(name, 0)
+                else:
+                    person.removeStages(name)
+            if stages_left:
+                self._free[name] = None
+        self._leaving.clear()
+
+    def _lose(self, name: str) -> None:
+        self.held.discard(name)
+        del self._walks[name]
+        self.counts["lost"] += 1
+
+    # --- taking over --------------------------------------------------------------------------
 
     def take(self, ids: Sequence[str]) -> list[Walker]:
-        """Take over those of ``ids`` that walk at present."""
-        person, walkers = self._sumo.person, []
-        for name in ids:
-            if name in self.held or not person.getLaneID(name):
-                continue
-            stage = person.getStage(name)
-            if stage.type != _WALKING:
-                continue
-            x, y = person.getPosition(name)
-            road, edges = person.getRoadID(name), tuple(stage.edges)
-            walker = Walker(
-                id=name,
-                type=person.getTypeID(name),
-                x=x,
-                y=y,
-                heading=angle_to_heading(person.getAngle(name)),
-                speed=person.getSpeed(name),
-                desired_speed=max(person.getMaxSpeed(name), 0.1),
-                edges=edges[edges.index(road) :] if road in edges else edges,
-                lane=person.getLaneID(name),
-                arrival_position=stage.arrivalPos,
-                stages_left=person.getRemainingStages(name) - 1,
-            )
-            walkers.append(walker)
-            self.held.add(name)
-            self._walks[name] = walker
-            if self._free is not None:
-                self._free.pop(name, None)
-            self.counts["taken"] += 1
-        return walkers
+        """Take over those of ``ids`` who walk right now; the others are passed over.
+
+        From now on they are held: they must be moved in every SUMO step.
+        """
+        walkers = map(self._take, ids)
+        return [walker for walker in walkers if walker is not None]
+
+    def _take(self, name: str) -> Walker | None:
+        person = self._sumo.person
+        if name not in self._free:
+            return None
+        lane = person.getLaneID(name)
+        if not lane:  # waiting; this call is cheaper than to ask for the stage
+            return None
+        stage = person.getStage(name)
+        if stage.type != _WALKING:
+            return None
+        edges, arrival = tuple(stage.edges), float(stage.arrivalPos)
+        current = self._paths.index(name, edges, lane, arrival)
+        own_speed = self._speeds.speed(name, stage, person.getRemainingStages(name))
+        x, y = self._position(name)
+        speed = float(person.getSpeed(name))
+        walker = Walker(
+            id=name,
+            type=person.getTypeID(name),
+            x=x,
+            y=y,
+            heading=angle_to_heading(person.getAngle(name)),
+            speed=speed,
+            desired_speed=max(own_speed or float(person.getMaxSpeed(name)), speed, _SLOWEST),
+            edges=edges[current:],
+            lane=lane,
+            arrival_position=arrival,
+            stages_left=person.getRemainingStages(name) - 1,
+        )
+        inside = lane.startswith(":")
+        hideout = self._paths.lane(walker.edges[0]) if inside else lane
+        person.moveTo(name, hideout or lane, _NOWHERE)
+        self._walks[name] = _Walk(
+            edges=walker.edges,
+            arrival_position=arrival,
+            stages_left=walker.stages_left,
+            type=walker.type,
+            has_own_speed=own_speed is not None,
+            was_inside=inside,
+            passed=current,
+        )
+        self.held.add(name)
+        del self._free[name]
+        self.counts["taken"] += 1
+        return walker
+
+    # --- giving back --------------------------------------------------------------------------
 
     def hand_back(self, name: str, x: float, y: float, place: tuple[str, float]) -> bool:
-        """Give a held person back to SUMO at ``place``, an edge and a position [m] on it."""
-        if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(place[1])):
+        """Give a held person back to SUMO, which walks it on to the same destination.
+
+        Args:
+            name: the person's id.
+            x: where it is [m].
+            y: where it is [m].
+            place: the nearest edge for pedestrians, and the position [m] on it. If the person's
+                walk has an edge hardly farther away, it goes on there, else it gets a new route.
+
+        Returns:
+            False if SUMO finds no way; the person stays held then, unharmed.
+        """
+        if not all(map(math.isfinite, (x, y, place[1]))):
             return False
+        walk = self._walks[name]
         edge, position = place
-        person = self._sumo.person
+        nearest = self._paths.foot(edge, x, y)
+        foot = self._paths.at(edge, position, nearest.lateral if nearest else 0.0)
+        if foot is None or nearest is None:
+            return False
         try:
-            person.moveTo(name, f"{edge}_0", position)
+            step, own = self._on_walk(walk, x, y)
+            if own is None or own.distance > nearest.distance + _DETOUR:
+                if not self._new_route(name, walk, edge, foot.position):
+                    return False
+            else:
+                foot = own
+                self._refresh(name, walk, step)
+            self._sumo.person.moveTo(name, foot.lane, foot.position, foot.lateral)
         except self._sumo.TraCIException:
             return False
-        self._release(name)
-        self.counts["handed_back"] += 1
+        self._release(name, "handed_back")
+        self._free[name] = None
+        return True
+
+    def _on_walk(self, walk: _Walk, x: float, y: float) -> tuple[int, Foot | None]:
+        """The place on the rest of the walk that is nearest, and its edge's index."""
+        feet = [(k, self._paths.foot(edge, x, y)) for k, edge in enumerate(walk.edges)]
+        return min(feet, key=lambda candidate: candidate[1].distance if candidate[1] else math.inf)
+
+    def _refresh(self, name: str, walk: _Walk, step: int) -> None:
+        """Where SUMO would misread its books, start the walk anew on its edge ``step``.
+
+        A fresh walk has no speed of its own, so one that has it is kept wherever it works.
+        """
+        last = step == len(walk.edges) - 1
+        twice = walk.edges.count(walk.edges[step]) > 1
+        if twice or (walk.was_inside and (last or not walk.has_own_speed)):
+            stage = self._sumo.person.getStage(name)
+            stage.edges = walk.edges[step:]
+            self._sumo.person.replaceStage(name, 0, stage)
+
+    def _new_route(self, name: str, walk: _Walk, edge: str, position: float) -> bool:
+        """Replace the walk by one from ``position`` [m] on ``edge`` to the same place."""
+        stage = self._sumo.person.getStage(name)
+        found = self._sumo.simulation.findIntermodalRoute(
+            edge,
+            walk.edges[-1],
+            departPos=position,
+            arrivalPos=walk.arrival_position,
+            pType=walk.type,
+        )
+        if len(found) != 1 or found[0].type != _WALKING or not found[0].edges:
+            return False
+        stage.edges = found[0].edges
+        self._sumo.person.replaceStage(name, 0, stage)
         return True
 
     def arrive(self, name: str) -> Arrival:
-        """Let a held person who is at its walk's end arrive, or go on with its next stage."""
-        walker = self._walks[name]
-        if walker.stages_left == 0:
-            self._sumo.person.removeStages(name)
-            self.held.discard(name)
-            self.counts["arrived"] += 1
-            return Arrival.ARRIVED
-        self._sumo.person.removeStage(name, 0)
-        self._release(name)
-        self.counts["continued"] += 1
-        return Arrival.CONTINUED
+        """Let a held person end its walk in SUMO's next step.
 
-    def _release(self, name: str) -> None:
+        It is put on the very end of its walk, so that SUMO itself makes it arrive or go on with
+        what follows: a stop, a ride or another walk, on which it can be taken over again.
+        """
+        walk = self._walks[name]
+        end = self._paths.lane(walk.edges[-1])
+        with contextlib.suppress(self._sumo.TraCIException):  # else it is cut short after the step
+            self._sumo.person.moveTo(name, end or "", walk.arrival_position)
+        self._leaving[name] = walk.stages_left
+        arrival = Arrival.CONTINUED if walk.stages_left else Arrival.ARRIVED
+        self._release(name, arrival.value)
+        return arrival
+
+    def _release(self, name: str, as_what: str) -> None:
         self.held.discard(name)
         del self._walks[name]
-        if self._free is not None:
-            self._free[name] = None
+        self.counts[as_what] += 1

@@ -1,0 +1,118 @@
+"""The speeds that a scenario gives to single walks, which libsumo does not tell.
+
+``<walk ... speed="1.1"/>`` and ``<walk ... duration="60"/>`` override the person's own desired
+speed. They are read from the scenario's files, for the persons that have them only.
+"""
+
+from __future__ import annotations
+
+import gzip
+import io
+import math
+import xml.etree.ElementTree as ET
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+_OPTIONS = ("route-files", "additional-files")
+_PERSONS = frozenset({"person", "personFlow"})
+_PLAN = frozenset({"walk", "personTrip", "ride", "stop", "tranship", "access"})
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """One element of a person's plan; neither speed nor duration: as fast as the person likes."""
+
+    speed: float | None = None  # [m/s]
+    duration: float | None = None  # [s] for the whole walk
+    end: str = ""  # where it leads, an edge or a stopping place; empty if not known
+
+
+class WalkSpeeds:
+    """Speeds that the scenario gives to walks.
+
+    Args:
+        files: SUMO route and additional files, plain or gzipped; unreadable ones are passed over,
+            since SUMO has read them already.
+    """
+
+    def __init__(self, files: Iterable[Path]) -> None:
+        self._plans: dict[str, list[_Step]] = {}
+        for file in files:
+            try:
+                self._plans.update(_plans(file))
+            except (OSError, ET.ParseError, ValueError):
+                continue
+
+    @classmethod
+    def of_running(cls, sumo: Any) -> Self:
+        """Those of the simulation that runs in the libsumo module ``sumo``."""
+        names: list[str] = []
+        for option in _OPTIONS:
+            names += str(sumo.simulation.getOption(option)).split(",")
+        return cls(Path(name.strip()) for name in names if name.strip())
+
+    def speed(self, person: str, stage: Any, remaining: int) -> float | None:
+        """The speed [m/s] that the scenario gives to a walk; None if it gives none.
+
+        Args:
+            person: the person's id.
+            stage: the walk, as libsumo's ``person.getStage`` tells it.
+            remaining: how many stages the person has left, this one included.
+        """
+        if not self._plans:
+            return None
+        plan = self._plans.get(person) or self._plans.get(person.rpartition(".")[0])
+        # Counted from the end: SUMO splits trips in several stages when it comes to them.
+        if not plan or remaining > len(plan):
+            return None
+        step = plan[-remaining]
+        if step.end not in ("", stage.edges[-1], stage.destStop):
+            return None
+        if step.duration is not None:
+            return float(stage.length) / step.duration
+        return step.speed
+
+
+def _plans(file: Path) -> dict[str, list[_Step]]:
+    """The plans in which at least one walk has a speed or a duration, by person or flow."""
+    data = file.read_bytes()
+    if data.startswith(b"\x1f\x8b"):
+        data = gzip.decompress(data)
+    if b"<walk" not in data:  # far faster than to parse a large file of vehicles
+        return {}
+    return dict(_with_speeds(data))
+
+
+def _with_speeds(data: bytes) -> Iterator[tuple[str, list[_Step]]]:
+    depth, root = 0, ET.Element("routes")
+    for event, element in ET.iterparse(io.BytesIO(data), ("start", "end")):
+        depth += 1 if event == "start" else -1
+        if depth == 1 and event == "start":
+            root = element
+        if depth != 1 or event == "start":
+            continue
+        if element.tag in _PERSONS:
+            plan = [_step(child) for child in element if child.tag in _PLAN]
+            if any(step.speed is not None or step.duration is not None for step in plan):
+                yield element.get("id", ""), plan
+        root.clear()  # a city's traffic need not stay in memory
+
+
+def _step(element: ET.Element) -> _Step:
+    if element.tag != "walk":
+        return _Step()
+    edges = element.get("edges", "").split()
+    end = element.get("to") or element.get("busStop") or (edges[-1] if edges else "")
+    return _Step(_positive(element.get("speed")), _positive(element.get("duration")), end)
+
+
+def _positive(text: str | None) -> float | None:
+    try:
+        value = float(text or "")
+    except ValueError:  # SUMO also reads 0:01:30
+        return None
+    return value if 0.0 < value < math.inf else None
