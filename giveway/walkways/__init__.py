@@ -1,0 +1,7 @@
+"""Where people can walk: ways along sidewalks, walkingareas and crossings, and their walls."""
+
+from giveway.walkways.network import NearestLane, WalkNetwork
+from giveway.walkways.reading import PedLane, Signal
+from giveway.walkways.route import WalkRoute
+
+__all__ = ["NearestLane", "PedLane", "Signal", "WalkNetwork", "WalkRoute"]

@@ -1,0 +1,81 @@
+"""The walkable area of a network as polygons, and its edge as walls."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from giveway.walkways.inside import polygon_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.walkways.reading import PedLane, Survey
+
+    Array = NDArray[np.float64]
+
+_GAP = 0.15  # [m] half the width of a gap between neighbours that is closed
+_SLIVER = 0.1  # [m] half the width of a spit that is cut off
+_SMALLEST = 0.5  # [m2] a smaller hole is not walled
+_SIMPLE = 0.02  # [m] to which the outline is simplified
+_OVERLAP = 0.6  # [m] by which a crossing reaches into the walkingareas at its ends
+
+
+def walkable_area(survey: Survey) -> shapely.MultiPolygon:
+    """Lanes, walkingareas and crossings; junctions as well where lanes meet without them."""
+    parts = [_lane(edge.lane) for edge in survey.edges.values()]
+    parts += [_lane(lane, _OVERLAP) for lane in survey.crossings.values()]
+    parts += [polygon_of(area) for area in survey.walkingareas.values()]
+    parts += _bare_junctions(survey)
+    closed = shapely.union_all(parts).buffer(_GAP, join_style="mitre")
+    opened = closed.buffer(-_GAP - _SLIVER, join_style="mitre")
+    area = opened.buffer(_SLIVER, join_style="mitre").simplify(_SIMPLE)
+    polygons = [
+        shapely.Polygon(p.exterior, [h for h in p.interiors if shapely.Polygon(h).area > _SMALLEST])
+        for p in getattr(area, "geoms", [area])
+        if p.area > _SMALLEST
+    ]
+    return shapely.MultiPolygon(polygons)
+
+
+def walls(area: shapely.MultiPolygon) -> Array:
+    """The rings of an area as segments (k, 4) x0, y0, x1, y1 [m], the area on their left."""
+    segments = [np.empty((0, 4))]
+    for polygon in area.geoms:
+        for ring in (polygon.exterior, *polygon.interiors):
+            points = np.asarray(ring.coords)[:, :2]
+            if shapely.is_ccw(ring) != (ring is polygon.exterior):
+                points = points[::-1]
+            segments.append(np.hstack([points[:-1], points[1:]]))
+    return np.ascontiguousarray(np.vstack(segments))
+
+
+def _lane(lane: PedLane, extension: float = 0.0) -> shapely.Geometry:
+    """A lane as wide as it is, cut off straight at its ends."""
+    points = lane.shape
+    if extension:
+        first, last = points[0] - points[1], points[-1] - points[-2]
+        points = np.vstack(
+            [
+                points[0] + extension * first / np.hypot(*first),
+                points[1:-1],
+                points[-1] + extension * last / np.hypot(*last),
+            ]
+        )
+    line = shapely.LineString(points)
+    return line.buffer(lane.width / 2, cap_style="flat", join_style="mitre")
+
+
+def _bare_junctions(survey: Survey) -> list[shapely.Geometry]:
+    """The outlines of junctions at which a lane ends and no walkingarea begins."""
+    served = {(link.source, True) for link in survey.links}
+    served |= {(link.target, False) for link in survey.links}
+    bare: dict[str, list[Array]] = {}
+    for name, edge in survey.edges.items():
+        for last in (False, True):
+            if (name, last) not in served and edge.junctions[last] in survey.junctions:
+                bare.setdefault(edge.junctions[last], []).append(edge.lane.shape[-last])
+    hulls = [np.vstack([survey.junctions[name], *ends]) for name, ends in bare.items()]
+    return [shapely.MultiPoint(points).convex_hull.buffer(0.01) for points in hulls]

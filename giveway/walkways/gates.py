@@ -1,0 +1,75 @@
+"""Gates: the lines across a way, one after the other, that people walk through side by side.
+
+A gate spans the usable width of the way at one place. Everybody crosses it at their own side, a
+number from -1 (right end) to +1 (left end of the usable width, seen in walking direction), which
+they keep for the whole way: a crowd then uses the whole width and does not queue for one point.
+
+Gates are rows of one array, so that the way of one person is a single concatenation of pieces
+that many share. The columns are the middle x, y [m]; the spread x, y [m] from the middle to the
+left end; the unit direction of passage x, y; the signal that one waits for here, or -1.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+BODY_RADIUS = 0.27  # [m] of a pedestrian: half of a shoulder breadth of 0.54 m
+NO_GATES: Array = np.empty((0, 7))
+_NO_SIGNAL = -1
+
+
+def gate(
+    middle: Array, direction: Array, half_width: float = 0.0, *, signal: int = _NO_SIGNAL
+) -> Array:
+    """One gate (1, 7) across ``direction`` (unit), ``half_width`` [m] to either side."""
+    d_x, d_y = direction
+    spread = -d_y * half_width, d_x * half_width
+    return np.array([[middle[0], middle[1], *spread, d_x, d_y, signal]])
+
+
+def turned(gates: Array) -> Array:
+    """The same gates walked the other way round; signals are left out, they have a direction."""
+    back = gates[::-1].copy()
+    back[:, 2:6] *= -1.0
+    back[:, 6] = _NO_SIGNAL
+    return back
+
+
+def places(gates: Array, side: float) -> Array:
+    """Where (k, 2) [m] somebody on ``side`` [-1, 1] walks through each gate."""
+    return gates[:, 0:2] + side * gates[:, 2:4]
+
+
+def passages(gates: Array, side: float) -> Array:
+    """Unit direction and half width [m] (k, 3) of each gate around somebody on ``side``.
+
+    The half width reaches to the farther end of the gate and a body's radius beyond it: who has
+    been pushed to the other side of the way has passed all the same.
+    """
+    rows = np.empty((len(gates), 3))
+    rows[:, :2] = gates[:, 4:6]
+    rows[:, 2] = np.hypot(gates[:, 2], gates[:, 3]) * (1.0 + abs(side)) + BODY_RADIUS
+    return rows
+
+
+def signals(gates: Array) -> NDArray[np.int64]:
+    """The signal (k,) at each gate, or -1."""
+    return gates[:, 6].astype(np.int64)
+
+
+def side_at(gates: Array, position: tuple[float, float]) -> float:
+    """The side [-1, 1] on which a straight walk from ``position`` crosses the first gate."""
+    x, y = gates[0, 0:2]
+    s_x, s_y = gates[0, 2:4]
+    square = s_x * s_x + s_y * s_y
+    if square == 0.0:
+        return 0.0
+    side = ((position[0] - x) * s_x + (position[1] - y) * s_y) / square
+    return float(min(1.0, max(-1.0, side)))

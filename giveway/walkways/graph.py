@@ -1,0 +1,263 @@
+"""How the lanes around a junction hang together: the graph of its walkingareas and crossings.
+
+A *portal* is where a lane or a crossing meets a walkingarea. People go from portal to portal
+inside a walkingarea, and along a crossing from its one portal to the other. Lanes outside of
+junctions are no edges of this graph, so that a way found in it never leaves its junction.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+from collections import defaultdict
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from giveway.walkways.gates import NO_GATES, gate, turned
+from giveway.walkways.inside import Interior
+from giveway.walkways.polyline import Polyline, usable_half_width
+from giveway.walkways.reading import Signal
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.walkways.reading import Link, PedLane, Survey
+
+    Array = NDArray[np.float64]
+
+_KERB = 0.4  # [m] from the roadway: there one waits for green
+_PER_LEG = 1e-6  # [m] added to each leg of a way, against detours that rounding makes look shorter
+
+
+class End(NamedTuple):
+    """One end of a lane or crossing, given by its edge."""
+
+    edge: str
+    last: bool  # where its shape ends, not where it begins
+
+
+@dataclass(frozen=True)
+class Portal:
+    """Where an end of a lane or crossing meets a walkingarea."""
+
+    end: End
+    area: str
+    gate: Array  # (1, 7) walked into the area
+
+
+@dataclass(frozen=True)
+class Leg:
+    """The next step of the way from a portal, which stands in an area, to the target."""
+
+    portal: int  # index
+    crossing: str | None  # walked along it; None: through the area
+
+
+@dataclass(frozen=True)
+class Tree:
+    """The shortest ways from the portals of a junction to the end of one lane."""
+
+    distance: dict[int, float]  # [m] by portal
+    leg: dict[int, Leg]  # none at the target
+
+
+class WalkGraph:
+    """Portals, and the gates of ways between them; built when asked for, and kept.
+
+    Args:
+        survey: what the network file says.
+    """
+
+    def __init__(self, survey: Survey) -> None:
+        self._survey = survey
+        self.lines = {
+            name: Polyline.through(edge.lane.shape) for name, edge in survey.edges.items()
+        }
+        self._crossing_lines = {
+            name: Polyline.through(lane.shape) for name, lane in survey.crossings.items()
+        }
+        self.signals: list[Signal] = []
+        self._signal_of: dict[tuple[str, str], int] = {}
+        self._links: dict[End, list[str]] = defaultdict(list)
+        self._ends_at: dict[str, list[End]] = defaultdict(list)
+        for link in survey.links:
+            self._add(link)
+        self._inherit_signals()
+        self._portals: list[Portal] = []
+        self._portals_of: dict[End, list[int]] = {}
+        self._portals_in: dict[str, list[int]] = {}
+        self._interiors: dict[str, Interior] = {}
+        self._trees: dict[End, Tree] = {}
+        self._inside: dict[tuple[int, int], Array] = {}
+        self._across: dict[tuple[int, int], Array] = {}
+
+    def _add(self, link: Link) -> None:
+        """Note which ends meet; a signal counts for entering a crossing from an area."""
+        survey = self._survey
+        if link.target in survey.walkingareas:
+            area, end = link.target, End(link.source, last=True)
+        elif link.source in survey.walkingareas:
+            area, end = link.source, End(link.target, last=False)
+        else:
+            return
+        if end.edge not in survey.edges and end.edge not in survey.crossings:
+            return  # of a lane that pedestrians may not use
+        self._links[end].append(area)
+        self._ends_at[area].append(end)
+        if link.signal is not None and end.edge in survey.crossings:
+            self._signal_of[end.edge, area] = self._signal(*link.signal, end.edge)
+
+    def _signal(self, tls: str, index: int, crossing: str) -> int:
+        signal = Signal(tls, index, crossing)
+        if signal not in self.signals:
+            self.signals.append(signal)
+        return self.signals.index(signal)
+
+    def _inherit_signals(self) -> None:
+        """A crossing's one link counts for both directions unless the other has its own."""
+        for i, signal in enumerate(self.signals):
+            for last in (False, True):
+                for area in self._links.get(End(signal.crossing, last), ()):
+                    self._signal_of.setdefault((signal.crossing, area), i)
+
+    def interior(self, area: str) -> Interior:
+        """The inside of a walkingarea."""
+        found = self._interiors.get(area)
+        if found is None:
+            found = self._interiors[area] = Interior(self._survey.walkingareas[area])
+        return found
+
+    def lane(self, edge: str) -> PedLane:
+        """The lane of an edge or crossing."""
+        known = self._survey.edges.get(edge)
+        return self._survey.crossings[edge] if known is None else known.lane
+
+    def line(self, edge: str) -> Polyline:
+        """The centre line of an edge or crossing."""
+        found = self.lines.get(edge)
+        return self._crossing_lines[edge] if found is None else found
+
+    def has_line(self, edge: str) -> bool:
+        """Whether this is an edge or crossing that people walk on."""
+        return edge in self.lines or edge in self._crossing_lines
+
+    # --- portals ------------------------------------------------------------------------------
+
+    def portal(self, index: int) -> Portal:
+        """The portal with this index."""
+        return self._portals[index]
+
+    def portals_of(self, end: End) -> list[int]:
+        """The portals at one end of a lane or crossing."""
+        found = self._portals_of.get(end)
+        if found is None:
+            found = self._portals_of[end] = []
+            for area in dict.fromkeys(self._links.get(end, ())):
+                found.append(len(self._portals))
+                self._portals.append(Portal(end, area, self._gate_into(end, area)))
+        return found
+
+    def portals_in(self, area: str) -> list[int]:
+        """The portals of a walkingarea."""
+        found = self._portals_in.get(area)
+        if found is None:
+            ends = dict.fromkeys(self._ends_at.get(area, ()))
+            portals = itertools.chain.from_iterable(self.portals_of(end) for end in ends)
+            found = [i for i in portals if self._portals[i].area == area]
+            self._portals_in[area] = found
+        return found
+
+    def lane_end(self, end: End) -> Array:
+        """The gate (1, 7) across the end of a lane or crossing, walked out of it."""
+        line = self.line(end.edge)
+        half_width = usable_half_width(self.lane(end.edge).width)
+        if end.last:
+            return gate(line.points[-1], line.directions[-1], half_width)
+        return gate(line.points[0], -line.directions[0], half_width)
+
+    def _gate_into(self, end: End, area: str) -> Array:
+        row = self.lane_end(end)
+        if end.edge in self._crossing_lines:
+            # One waits on the kerb, and leaves the roadway before one turns.
+            depth = self.interior(area).depth(row[0, :2], row[0, 4:6], _KERB)
+            row[0, :2] += depth * row[0, 4:6]
+        return self.interior(area).fitted(row)
+
+    # --- ways ---------------------------------------------------------------------------------
+
+    def towards(self, target: End) -> Tree:
+        """The shortest ways to one end of a lane from all portals of its junction (Dijkstra)."""
+        found = self._trees.get(target)
+        if found is not None:
+            return found
+        tree = Tree({}, {})
+        heap: list[tuple[float, int, Leg | None]] = [
+            (0.0, i, None) for i in self.portals_of(target)
+        ]
+        while heap:
+            distance, i, leg = heapq.heappop(heap)
+            if i in tree.distance:
+                continue
+            tree.distance[i] = distance
+            if leg is not None:
+                tree.leg[i] = leg
+            here = self._portals[i]
+            for j in self.portals_in(here.area):
+                if j not in tree.distance:
+                    step = _length(self._portals[j].gate, self.inside(j, i), here.gate)
+                    heapq.heappush(heap, (distance + step + _PER_LEG, j, Leg(i, None)))
+            if here.end.edge in self._crossing_lines:
+                step = self._crossing_lines[here.end.edge].length + _PER_LEG
+                for j in self.portals_of(End(here.end.edge, not here.end.last)):
+                    if j not in tree.distance:
+                        heapq.heappush(heap, (distance + step, j, Leg(i, here.end.edge)))
+        self._trees[target] = tree
+        return tree
+
+    def inside(self, start: int, end: int) -> Array:
+        """The gates (k, 7) between two portals of a walkingarea."""
+        found = self._inside.get((start, end))
+        if found is None:
+            first, last = self._portals[start], self._portals[end]
+            found = self.interior(first.area).between(first.gate, turned(last.gate))
+            self._inside[start, end] = found
+            self._inside[end, start] = turned(found)
+        return found
+
+    def across(self, start: int, end: int) -> Array:
+        """The gates (k, 7) along a crossing, both portals included; the first has the signal."""
+        found = self._across.get((start, end))
+        if found is None:
+            first, last = self._portals[start], self._portals[end]
+            kerb = turned(first.gate)
+            kerb[0, 6] = self._signal_of.get((first.end.edge, first.area), -1)
+            found = np.vstack([kerb, self.along_crossing(first.end), last.gate])
+            self._across[start, end] = found
+        return found
+
+    def along_crossing(self, start: End) -> Array:
+        """The gates (k, 7) of a crossing's bends, walked from one end to the other."""
+        half_width = usable_half_width(self.lane(start.edge).width)
+        gates = self._crossing_lines[start.edge].gates(half_width)[1:-1]
+        return turned(gates) if start.last else gates
+
+    def follow(self, start: int, tree: Tree) -> tuple[Array, int]:
+        """The gates (k, 7) from a portal, itself left out, to the target's; and that portal."""
+        pieces = [NO_GATES]
+        here = start
+        while here in tree.leg:
+            leg = tree.leg[here]
+            if leg.crossing is None:
+                pieces.append(self.inside(here, leg.portal))
+            else:
+                pieces.append(self.across(here, leg.portal))
+            here = leg.portal
+        return np.vstack([*pieces, turned(self._portals[here].gate)]), here
+
+
+def _length(start: Array, between: Array, end: Array) -> float:
+    """Length [m] of the way through the middles of gates."""
+    middles = np.vstack([start[:, :2], between[:, :2], end[:, :2]])
+    return float(np.hypot(*np.diff(middles, axis=0).T).sum())

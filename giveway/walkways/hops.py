@@ -1,0 +1,161 @@
+"""The way along a sequence of edges: their bends, and the hops over the junctions between them."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from giveway.walkways import gates as g
+from giveway.walkways.graph import End
+from giveway.walkways.polyline import usable_half_width
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.walkways.graph import WalkGraph
+    from giveway.walkways.reading import Survey
+
+    Array = NDArray[np.float64]
+
+_AT_END = 1.0  # [m] lanes whose ends are this near to each other meet
+
+
+class Stretch(NamedTuple):
+    """An edge of the walk and the direction in which it is walked."""
+
+    edge: str
+    forward: bool
+
+    @property
+    def entry(self) -> End:
+        """The end at which one comes onto it."""
+        return End(self.edge, not self.forward)
+
+    @property
+    def exit(self) -> End:
+        """The end at which one leaves it."""
+        return End(self.edge, self.forward)
+
+
+class Hop(NamedTuple):
+    """The way over a junction from one lane's end to another's, both included."""
+
+    gates: Array
+    length: float  # [m]
+    connected: bool
+
+
+class Ways:
+    """Pieces of ways, each built when first asked for, and kept.
+
+    Args:
+        survey: what the network file says.
+        graph: its walkingareas and crossings.
+    """
+
+    def __init__(self, survey: Survey, graph: WalkGraph) -> None:
+        self._edges = survey.edges
+        self._graph = graph
+        self._hops: dict[tuple[End, End], Hop] = {}
+        self._bends: dict[Stretch, Array] = {}
+
+    def directed(self, walk: list[str]) -> list[list[Stretch]]:
+        """The walk with directions: both ways on the first edge, then by shared junctions."""
+        walks = []
+        for forward in (True, False):
+            stretches = [Stretch(walk[0], forward)]
+            meets = 0
+            for edge in walk[1:]:
+                exit_ = stretches[-1].exit
+                junction = self._edges[exit_.edge].junctions[exit_.last]
+                begins, ends = self._edges[edge].junctions
+                meets += junction in (begins, ends)
+                if junction in (begins, ends):
+                    stretches.append(Stretch(edge, junction == begins))
+                else:
+                    stretches.append(Stretch(edge, self._nearer_end(exit_, edge)))
+            walks.append((meets, stretches))
+        most = max(meets for meets, _ in walks)
+        return [stretches for meets, stretches in walks if meets == most]
+
+    def _nearer_end(self, exit_: End, edge: str) -> bool:
+        """Whether the beginning of an edge is nearer than its end."""
+        here = self._graph.lane_end(exit_)[0, :2]
+        line = self._graph.lines[edge].points
+        return math.dist(here, line[0]) <= math.dist(here, line[-1])
+
+    def onwards(self, stretches: list[Stretch], arrival: float) -> tuple[list[Array], float, int]:
+        """All gates from the exit of the first stretch on, their length [m] and gaps."""
+        pieces: list[Array] = []
+        length, gaps = 0.0, 0
+        for here, there in itertools.pairwise(stretches):
+            hop = self._hop(here.exit, there.entry)
+            pieces.append(hop.gates)
+            length += hop.length
+            gaps += not hop.connected
+            if there is not stretches[-1]:
+                pieces.append(self.bends(there))
+                length += self._graph.lines[there.edge].length
+        last = stretches[-1]
+        pieces.append(self.partly(last, None, arrival))
+        return pieces, length + abs(arrival - self.station(last.entry)), gaps
+
+    def _hop(self, start: End, end: End) -> Hop:
+        found = self._hops.get((start, end))
+        if found is None:
+            found = self._hops[start, end] = self._new_hop(start, end)
+        return found
+
+    def _new_hop(self, start: End, end: End) -> Hop:
+        graph = self._graph
+        leaving, entering = graph.lane_end(start), g.turned(graph.lane_end(end))
+        distance = math.dist(leaving[0, :2], entering[0, :2])
+        tree = graph.towards(end)
+        starts = [(tree.distance[i], i) for i in graph.portals_of(start) if i in tree.distance]
+        if starts:
+            distance, i = min(starts)
+            onwards, _ = graph.follow(i, tree)
+            return Hop(np.concatenate([leaving, onwards]), distance, connected=True)
+        meets = self._junction(start) == self._junction(end)
+        # Where there are no walkingareas, people go straight over the junction.
+        open_ground = not graph.portals_of(start) and not graph.portals_of(end)
+        straight = np.concatenate([leaving, entering])
+        return Hop(straight, distance, (meets and open_ground) or distance < _AT_END)
+
+    def _junction(self, end: End) -> str:
+        return self._edges[end.edge].junctions[end.last]
+
+    def station(self, end: End) -> float:
+        """Where [m] on its edge's centre line an end is."""
+        return self._graph.lines[end.edge].length if end.last else 0.0
+
+    def bends(self, stretch: Stretch) -> Array:
+        """The gates of an edge's bends, its ends left out."""
+        found = self._bends.get(stretch)
+        if found is None:
+            half_width = usable_half_width(self._edges[stretch.edge].lane.width)
+            found = self._graph.lines[stretch.edge].gates(half_width)[1:-1]
+            if not stretch.forward:
+                found = g.turned(found)
+            self._bends[stretch] = found
+        return found
+
+    def partly(self, stretch: Stretch, start: float | None, end: float) -> Array:
+        """The gates from one station [m] of an edge, or its entry, to another, that included."""
+        line = self._graph.lines[stretch.edge]
+        if start is None:
+            start = self.station(stretch.entry)
+        goal = line.gate_at(end, usable_half_width(self._edges[stretch.edge].lane.width))
+        if not stretch.forward:
+            goal = g.turned(goal)
+        bends = self.bends(stretch)
+        if not len(bends):
+            return goal
+        stations = np.array(line.stations[1:-1])
+        if not stretch.forward:
+            stations = stations[::-1]
+        low, high = (start, end) if stretch.forward else (end, start)
+        return np.concatenate([bends[(stations > low) & (stations < high)], goal])

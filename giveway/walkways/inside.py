@@ -1,0 +1,200 @@
+"""The shortest way inside a walkingarea, which need not be convex."""
+
+from __future__ import annotations
+
+import heapq
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from giveway.walkways.gates import BODY_RADIUS, NO_GATES, places
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.walkways.reading import PedLane
+
+    Array = NDArray[np.float64]
+
+_TOLERANCE = 0.05  # [m] that a way may lie outside of the area
+_SLIGHT = math.sin(math.radians(5.0))  # a corner that juts in by less does not stand in the way
+_INSET = 0.02  # [m] from a corner to the place that ways round it are looked for
+_SIDES = 0.0, -1.0, 1.0
+
+
+def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:
+    """A walkingarea's outline as a valid polygon; a degenerate one is widened to its width."""
+    if len(area.shape) >= 3:
+        polygon = shapely.Polygon(area.shape)
+        if not polygon.is_valid:
+            polygon = polygon.buffer(0.0)
+        if polygon.area > 0.01:
+            return polygon
+    line = shapely.Point(area.shape[0]) if len(area.shape) < 2 else shapely.LineString(area.shape)
+    return line.buffer(area.width / 2)
+
+
+class Interior:
+    """The inside of one walkingarea and its corners that jut in.
+
+    Args:
+        area: the walkingarea.
+    """
+
+    def __init__(self, area: PedLane) -> None:
+        self.polygon = polygon_of(area)
+        self._room = self.polygon.buffer(_TOLERANCE)
+        shapely.prepare(self._room)
+        self._corners, self._inwards = _corners(self.polygon)
+
+    def depth(self, middle: Array, direction: Array, wanted: float) -> float:
+        """How far [m], at most ``wanted``, one can go in from ``middle`` and be inside."""
+        for depth in (wanted, wanted / 2):
+            if self.polygon.contains(shapely.Point(middle + depth * direction)):
+                return depth
+        return 0.0
+
+    def fitted(self, row: Array) -> Array:
+        """A gate (1, 7) narrowed to where a body has room in this area."""
+        middle, spread = row[0, :2], row[0, 2:4]
+        half = float(np.hypot(*spread))
+        if half == 0.0:
+            return row
+        left = spread / half
+        reach = (half + BODY_RADIUS) * left
+        piece = self._piece_near(middle, shapely.LineString([middle - reach, middle + reach]))
+        if piece.is_empty:
+            return row
+        ends = (np.asarray(piece.coords)[:, :2] - middle) @ left
+        low, high = ends.min() + BODY_RADIUS, ends.max() - BODY_RADIUS
+        fitted = row.copy()
+        fitted[0, :2] += (low + high) / 2 * left
+        fitted[0, 2:4] = max(0.0, high - low) / 2 * left
+        return fitted
+
+    def between(self, start: Array, end: Array) -> Array:
+        """The gates (k, 7) of the way from one gate (1, 7) to another, those two left out."""
+        if not len(self._corners):
+            return NO_GATES
+        bends: dict[int, float] = {}
+        chord = end[0, :2] - start[0, :2]
+        for side in _SIDES:
+            a, b = places(start, side)[0], places(end, side)[0]
+            for corner in self._shortest(a, b):
+                bends[corner] = float((self._corners[corner] - start[0, :2]) @ chord)
+        if not bends:
+            return NO_GATES
+        order = sorted(bends, key=bends.__getitem__)
+        width = 2 * BODY_RADIUS + 2 * max(np.hypot(*start[0, 2:4]), np.hypot(*end[0, 2:4]))
+        return self._round(order, start[0, :2], end[0, :2], width)
+
+    def sees(self, a: Array, b: Array) -> bool:
+        """Whether the straight way between two points is inside."""
+        return bool(self._room.covers(shapely.LineString([a, b])))
+
+    def _round(self, order: list[int], start: Array, end: Array, width: float) -> Array:
+        """Gates from each corner inwards, at most ``width`` [m] wide."""
+        stops = [start, *(self._corners[i] for i in order), end]
+        gates = np.empty((len(order), 7))
+        for j, corner in enumerate(order):
+            vertex, inwards = self._corners[corner], self._inwards[corner]
+            room = min(self._reach(vertex, inwards), width)
+            half = max(0.0, room / 2 - BODY_RADIUS)
+            onwards = stops[j + 2] - stops[j]
+            left = 1.0 if onwards[0] * inwards[1] - onwards[1] * inwards[0] > 0.0 else -1.0
+            spread = left * half * inwards
+            direction = left * np.array([inwards[1], -inwards[0]])
+            gates[j] = *(vertex + room / 2 * inwards), *spread, *direction, -1.0
+        return gates
+
+    def _reach(self, vertex: Array, inwards: Array) -> float:
+        """How far [m] it is from a corner straight in to the other side."""
+        ray = shapely.LineString([vertex + 1e-3 * inwards, vertex + 100.0 * inwards])
+        return float(self._piece_near(vertex, ray).length)
+
+    def _piece_near(self, place: Array, line: shapely.LineString) -> shapely.Geometry:
+        """The part of a line inside the area that is nearest to a place."""
+        inside = self.polygon.intersection(line)
+        start = shapely.Point(place)
+        pieces = [piece for piece in getattr(inside, "geoms", [inside]) if piece.length > 0.0]
+        return min(pieces, key=lambda piece: piece.distance(start), default=shapely.LineString())
+
+    @cached_property
+    def _visible(self) -> NDArray[np.bool_]:
+        """(k, k) which corners see each other."""
+        near = self._near_corners
+        k = len(near)
+        ends = np.stack([np.repeat(near, k, axis=0), np.tile(near, (k, 1))], axis=1)
+        seen = shapely.covers(self._room, shapely.linestrings(ends))
+        return np.asarray(seen).reshape(k, k)
+
+    @cached_property
+    def _near_corners(self) -> Array:
+        return self._corners + _INSET * self._inwards
+
+    def _shortest(self, a: Array, b: Array) -> list[int]:
+        """The corners that the shortest way from ``a`` to ``b`` bends round (visibility graph)."""
+        if self.sees(a, b):
+            return []
+        near = self._near_corners
+        k = len(near)
+        seen_from = [
+            np.asarray(
+                shapely.covers(
+                    self._room,
+                    shapely.linestrings(np.stack([np.broadcast_to(p, near.shape), near], axis=1)),
+                )
+            )
+            for p in (a, b)
+        ]
+        heap = [(float(np.hypot(*(near[i] - a))), int(i), -1) for i in np.flatnonzero(seen_from[0])]
+        heapq.heapify(heap)
+        came_from: dict[int, int] = {}
+        while heap:
+            distance, i, previous = heapq.heappop(heap)
+            if i in came_from:
+                continue
+            came_from[i] = previous
+            if i == k:
+                break
+            for j in np.flatnonzero(self._visible[i]):
+                if j not in came_from:
+                    onwards = distance + float(np.hypot(*(near[j] - near[i])))
+                    heapq.heappush(heap, (onwards, int(j), i))
+            if seen_from[1][i]:
+                heapq.heappush(heap, (distance + float(np.hypot(*(b - near[i]))), k, i))
+        way: list[int] = []
+        i = came_from.get(k, -1)
+        while i >= 0:
+            way.append(i)
+            i = came_from[i]
+        return way[::-1]
+
+
+def _corners(polygon: shapely.Polygon | shapely.MultiPolygon) -> tuple[Array, Array]:
+    """The vertices (k, 2) that jut into a polygon, and the unit bisectors (k, 2) pointing in."""
+    vertices: list[Array] = []
+    inwards: list[Array] = []
+    simple = polygon.simplify(_TOLERANCE)
+    for part in getattr(simple, "geoms", [simple]):
+        for ring in (part.exterior, *part.interiors):
+            # Walked so that the inside is on the left: holes clockwise.
+            points = np.asarray(ring.coords)[:-1, :2]
+            if shapely.is_ccw(ring) != (ring is part.exterior):
+                points = points[::-1]
+            back = points - np.roll(points, 1, axis=0)
+            forth = np.roll(points, -1, axis=0) - points
+            back /= np.maximum(np.hypot(*back.T), 1e-12)[:, None]
+            forth /= np.maximum(np.hypot(*forth.T), 1e-12)[:, None]
+            turn = back[:, 0] * forth[:, 1] - back[:, 1] * forth[:, 0]
+            jut = turn < -_SLIGHT
+            along = (back + forth)[jut]
+            size = np.hypot(*along.T)
+            along = np.where(size[:, None] > 1e-6, along, back[jut])
+            along /= np.maximum(np.hypot(*along.T), 1e-12)[:, None]
+            vertices.append(points[jut])
+            inwards.append(np.column_stack([-along[:, 1], along[:, 0]]))
+    return np.vstack(vertices or [np.empty((0, 2))]), np.vstack(inwards or [np.empty((0, 2))])

@@ -1,0 +1,140 @@
+"""The walkable part of a SUMO network: lanes, ways and walls."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import shapely
+
+from giveway.walkways.area import walkable_area, walls
+from giveway.walkways.graph import WalkGraph
+from giveway.walkways.reading import PedLane, Signal, Survey, survey
+from giveway.walkways.route import Router, WalkRoute
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+
+class NearestLane(NamedTuple):
+    """The pedestrian lane nearest to a place."""
+
+    edge: str
+    lane: str
+    position: float  # [m] along the lane, as SUMO counts
+    distance: float  # [m] from the lane's centre line
+
+
+class WalkNetwork:
+    """Where people can walk in a SUMO network.
+
+    Attributes:
+        signals: the traffic-light links that govern crossings.
+        has_walkingareas, has_crossings: whether the network has any.
+        has_sidewalks: whether there is a lane that pedestrians may use and cars may not.
+        boundary: x_min, y_min, x_max, y_max [m] of the network.
+    """
+
+    signals: tuple[Signal, ...]
+    has_walkingareas: bool
+    has_sidewalks: bool
+    has_crossings: bool
+    boundary: tuple[float, float, float, float]
+
+    def __init__(self, found: Survey) -> None:
+        self._survey = found
+        self._graph = WalkGraph(found)
+        self._router = Router(found, self._graph)
+        self.signals = tuple(self._graph.signals)
+        self.has_walkingareas = bool(found.walkingareas)
+        self.has_sidewalks = found.has_sidewalks
+        self.has_crossings = bool(found.crossings)
+        self.boundary = found.boundary or _extent(found)
+
+    @classmethod
+    def read(cls, net_file: Path) -> WalkNetwork:
+        """Read a ``.net.xml`` or ``.net.xml.gz``.
+
+        Raises:
+            ScenarioError: the file is unreadable or no SUMO network.
+        """
+        return cls(survey(net_file))
+
+    def lane_of(self, edge: str) -> PedLane | None:
+        """The lane on which pedestrians walk on an edge; None if they may not or it is unknown."""
+        known = self._survey.edges.get(edge)
+        return None if known is None else known.lane
+
+    def route(
+        self,
+        edges: Sequence[str],
+        *,
+        position: tuple[float, float],
+        lane: str,
+        arrival_position: float,
+        offset_side: float | None = None,
+    ) -> WalkRoute:
+        """Way-points from where a person is to the end of its walk; never fails.
+
+        Args:
+            edges: the walk's remaining edges, the present one first; somebody in a walkingarea or
+                on a crossing has the edge that was left as the first, as SUMO lists them.
+            position: where the person is [m].
+            lane: SUMO's id of the present lane, maybe a walkingarea's or crossing's.
+            arrival_position: the end of the walk on the last edge, in SUMO's metres; a negative
+                one counts from the edge's end.
+            offset_side: the side of the way to keep to, from -1 (right end of its usable width)
+                to 1 (left); None for the one where the person is now.
+        """
+        return self._router.route(edges, position, lane, arrival_position, offset_side)
+
+    def nearest_lane(self, x: float, y: float) -> NearestLane | None:
+        """The nearest lane outside of junctions on which SUMO lets people walk, if there is one."""
+        edges, tree = self._index
+        if not edges:
+            return None
+        edge = edges[int(tree.nearest(shapely.Point(x, y)))]
+        lane, line = self._survey.edges[edge].lane, self._graph.lines[edge]
+        station, _ = line.project(x, y)
+        position = station / line.length * lane.length if line.length > 0.0 else 0.0
+        distance = shapely.LineString(line.points).distance(shapely.Point(x, y))
+        return NearestLane(edge, lane.id, position, float(distance))
+
+    @cached_property
+    def _index(self) -> tuple[list[str], shapely.STRtree]:
+        lines = self._graph.lines
+        shapes = [shapely.LineString(line.points) for line in lines.values()]
+        return list(lines), shapely.STRtree(shapes)
+
+    def walkable(self) -> shapely.MultiPolygon:
+        """Where people may walk: lanes, walkingareas, crossings, and junctions without them."""
+        return self._walkable
+
+    @cached_property
+    def _walkable(self) -> shapely.MultiPolygon:
+        return walkable_area(self._survey)
+
+    def wall_segments(self) -> Array:
+        """The edge of the walkable area as segments (k, 4) x0, y0, x1, y1 [m].
+
+        The walkable side is on the left.
+        """
+        return self._walls
+
+    @cached_property
+    def _walls(self) -> Array:
+        return walls(self._walkable)
+
+
+def _extent(found: Survey) -> tuple[float, float, float, float]:
+    """The extent of all that is walkable [m], for a file that does not say its own."""
+    shapes = [edge.lane.shape for edge in found.edges.values()]
+    points = np.vstack([*shapes, *found.junctions.values()] or [np.zeros((1, 2))])
+    (x_min, y_min), (x_max, y_max) = points.min(axis=0), points.max(axis=0)
+    return float(x_min), float(y_min), float(x_max), float(y_max)

@@ -1,0 +1,240 @@
+"""Reads the part of a SUMO network file that people walk on.
+
+The file is streamed through expat and only what concerns pedestrians is kept, so that a network of
+50 MB takes seconds and little memory.
+"""
+
+from __future__ import annotations
+
+import gzip
+import zlib
+from dataclasses import dataclass, field
+from typing import IO, TYPE_CHECKING
+from xml.parsers import expat
+
+import numpy as np
+
+from giveway.errors import ScenarioError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_PEDESTRIAN = "pedestrian"
+_CAR = "passenger"
+_DEFAULT_WIDTH = 3.2  # [m] SUMO's width of a lane that names none
+_GZIP_MAGIC = b"\x1f\x8b"
+
+
+@dataclass(frozen=True)
+class PedLane:
+    """The lane of an edge on which pedestrians walk.
+
+    ``length`` is the nominal one in which SUMO counts positions; the shape's may differ.
+    """
+
+    id: str
+    shape: Array  # (k, 2) [m], k >= 2
+    width: float  # [m]
+    length: float  # [m]
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A traffic-light link that lets people onto a crossing."""
+
+    tls: str
+    link: int  # index into the light's state string
+    crossing: str  # the crossing's edge id
+
+
+@dataclass(frozen=True)
+class WalkEdge:
+    """An edge between two junctions and the lane people walk on."""
+
+    id: str
+    junctions: tuple[str, str]  # where its lane begins and where it ends
+    lane: PedLane
+
+
+@dataclass(frozen=True)
+class Link:
+    """A connection between two places inside a junction, or between one and a lane outside.
+
+    SUMO lets people walk it both ways; the direction says only which ends meet.
+    """
+
+    source: str  # edge id
+    target: str  # edge id
+    signal: tuple[str, int] | None  # the light's id and link index
+
+
+@dataclass
+class Survey:
+    """What the network file says of walking; edges by id.
+
+    Attributes:
+        edges: normal edges with a lane for pedestrians.
+        walkingareas, crossings: the lane of each, whose shape is an area or a centre line.
+        links: connections with a walkingarea or crossing at one end.
+        junctions: the outline (k, 2) [m] of each junction, as far as it has one.
+        has_sidewalks: a lane that pedestrians may use and cars may not.
+        boundary: x_min, y_min, x_max, y_max [m] as the file says; None where it does not.
+    """
+
+    edges: dict[str, WalkEdge] = field(default_factory=dict)
+    walkingareas: dict[str, PedLane] = field(default_factory=dict)
+    crossings: dict[str, PedLane] = field(default_factory=dict)
+    links: list[Link] = field(default_factory=list)
+    junctions: dict[str, Array] = field(default_factory=dict)
+    has_sidewalks: bool = False
+    boundary: tuple[float, float, float, float] | None = None
+
+
+def survey(net_file: Path) -> Survey:
+    """Read a network file, gzipped or not.
+
+    Raises:
+        ScenarioError: unreadable, damaged, or no SUMO network.
+    """
+    reader = _Reader()
+    try:
+        with net_file.open("rb") as raw:
+            zipped = raw.read(2) == _GZIP_MAGIC
+            raw.seek(0)
+            with gzip.GzipFile(fileobj=raw) if zipped else raw as stream:
+                reader.read(stream)
+    except OSError as error:
+        # gzip's own complaints are OSErrors without a strerror.
+        msg = f"{net_file}: the network cannot be read: {error.strerror or error}"
+        raise ScenarioError(msg) from error
+    except (EOFError, zlib.error) as error:
+        msg = f"{net_file}: the network's gzip is damaged ({error}); write it again"
+        raise ScenarioError(msg) from error
+    except expat.ExpatError as error:
+        msg = f"{net_file}: not XML ({error}); expected a SUMO network, made by netconvert"
+        raise ScenarioError(msg) from error
+    except (KeyError, ValueError) as error:
+        msg = (
+            f"{net_file}: line {reader.line}: not understood ({error!r}); "
+            "expected a SUMO network, made by netconvert"
+        )
+        raise ScenarioError(msg) from error
+    if not reader.is_network:
+        msg = f"{net_file}: no <net> in it; expected a SUMO network, made by netconvert"
+        raise ScenarioError(msg)
+    return reader.survey
+
+
+class _Reader:
+    """Collects a :class:`Survey` from the start tags of a network file."""
+
+    def __init__(self) -> None:
+        self.survey = Survey()
+        self.is_network = False
+        self._edge: dict[str, str] = {}
+        self._exclusive = False
+        self._parser = expat.ParserCreate()
+        self._parser.buffer_text = True
+        self._parser.StartElementHandler = self._start
+        self._tags = {
+            "net": self._net,
+            "location": self._location,
+            "edge": self._edge_tag,
+            "lane": self._lane,
+            "junction": self._junction,
+            "connection": self._connection,
+        }
+
+    def read(self, stream: IO[bytes]) -> None:
+        self._parser.ParseFile(stream)
+
+    @property
+    def line(self) -> int:
+        return self._parser.CurrentLineNumber
+
+    def _start(self, tag: str, attributes: dict[str, str]) -> None:
+        handler = self._tags.get(tag)
+        if handler is not None:
+            handler(attributes)
+
+    def _net(self, _: dict[str, str]) -> None:
+        self.is_network = True
+
+    def _location(self, attributes: dict[str, str]) -> None:
+        x_min, y_min, x_max, y_max = map(float, attributes["convBoundary"].split(","))
+        self.survey.boundary = x_min, y_min, x_max, y_max
+
+    def _edge_tag(self, attributes: dict[str, str]) -> None:
+        self._edge = attributes
+        self._exclusive = False
+
+    def _lane(self, attributes: dict[str, str]) -> None:
+        edge = self._edge
+        function = edge.get("function")
+        if function == "internal" or not _admits(attributes, _PEDESTRIAN):
+            return
+        found = self.survey
+        if function == "walkingarea":
+            found.walkingareas[edge["id"]] = _ped_lane(attributes, at_least=1)
+        elif function == "crossing":
+            found.crossings[edge["id"]] = _ped_lane(attributes)
+        else:
+            found.has_sidewalks |= not _admits(attributes, _CAR)
+            # SUMO prefers the first lane for pedestrians only, else takes the first they may use.
+            exclusive = attributes.get("allow") == _PEDESTRIAN
+            if edge["id"] not in found.edges or (exclusive and not self._exclusive):
+                ends = edge["from"], edge["to"]
+                found.edges[edge["id"]] = WalkEdge(edge["id"], ends, _ped_lane(attributes))
+                self._exclusive = exclusive
+
+    def _junction(self, attributes: dict[str, str]) -> None:
+        # Internal junctions have no shape, the outer ones of dead ends only a line.
+        if attributes.get("shape") and attributes.get("type") != "internal":
+            self.survey.junctions[attributes["id"]] = _points(attributes["shape"])
+
+    def _connection(self, attributes: dict[str, str]) -> None:
+        source, target = attributes["from"], attributes["to"]
+        found = self.survey
+        if not (self._walked(source) or self._walked(target)):
+            return
+        signal = None
+        if "tl" in attributes:
+            signal = attributes["tl"], int(attributes["linkIndex"])
+        found.links.append(Link(source, target, signal))
+
+    def _walked(self, edge: str) -> bool:
+        return edge in self.survey.walkingareas or edge in self.survey.crossings
+
+
+def _admits(lane: dict[str, str], vehicle_class: str) -> bool:
+    """Whether a lane's ``allow`` or ``disallow`` lets a class use it, as SUMO reads them."""
+    allow = lane.get("allow")
+    if allow:
+        return allow == "all" or vehicle_class in allow.split()
+    disallow = lane.get("disallow", "")
+    return disallow != "all" and vehicle_class not in disallow.split()
+
+
+def _ped_lane(attributes: dict[str, str], at_least: int = 2) -> PedLane:
+    shape = _points(attributes["shape"])
+    if len(shape) < at_least:
+        raise ValueError(f"lane '{attributes['id']}' has {len(shape)} point(s)")
+    width = float(attributes.get("width", _DEFAULT_WIDTH))
+    return PedLane(attributes["id"], shape, width, float(attributes["length"]))
+
+
+def _points(text: str) -> Array:
+    """The (k, 2) points of a SUMO shape, heights dropped, repeated points too."""
+    points = np.array([[*map(float, p.split(",")[:2])] for p in text.split()], dtype=np.float64)
+    points = points.reshape(-1, 2)
+    if not np.isfinite(points).all():
+        raise ValueError(f"shape '{text[:40]}' is not finite")
+    if len(points) > 2:
+        moved = np.hypot(*np.diff(points, axis=0).T) > 1e-6
+        kept = points[np.concatenate([[True], moved])]
+        points = kept if len(kept) >= 2 else points[[0, -1]]
+    return points
