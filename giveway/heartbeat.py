@@ -109,4 +109,5 @@ class Heartbeat:
     def read(self) -> Pulse:
         """The latest state."""
         phase, step, time, code, supervisor = self._slots[: _SUPERVISOR + 1].tolist()
-        return Pulse(Phase(phase), step, time / _MILLISECONDS, code, supervisor)
+        known = Phase(phase) if phase in _PLACES else Phase.LOADING  # a wild pointer was here
+        return Pulse(known, step, time / _MILLISECONDS, code, supervisor)
