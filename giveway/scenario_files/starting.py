@@ -141,9 +141,9 @@ class _Preparation:
         own = self._scratch / "giveway.add.xml"
         own.write_text(types, encoding="utf-8")
         # Naming additional files on the command line replaces the scenario's list.
-        files = [own, *map(self._copies.prepared, self._scenario.additional_files)]
-        files += [Path(name.strip()) for name in more.split(",") if name.strip()]
-        self._options["additional-files"] = ",".join(map(str, files))
+        paths = [own, *map(self._copies.prepared, self._scenario.additional_files)]
+        paths += [Path(name.strip()) for name in more.split(",") if name.strip()]
+        self._options["additional-files"] = ",".join(map(str, paths))
         for name, files in (
             ("net-file", (self._scenario.net_file,)),
             ("route-files", self._scenario.route_files),
@@ -201,9 +201,10 @@ class _Preparation:
             self._options[name] = ",".join(map(self._placed, files))
         if any(name in own for name in _SAVING_STATES) and "save-state.prefix" not in own:
             self._options["save-state.prefix"] = self._placed("state")  # beside the .sumocfg
-        if self._copies.has_ssm or any(name.startswith("device.ssm.") for name in own):
+        has_ssm = self._copies.has_ssm or any(name.startswith("device.ssm.") for name in own)
+        if has_ssm and "device.ssm.file" not in own:
             # SUMO's own default is a file per vehicle in the working folder
-            self._options.setdefault("device.ssm.file", self._placed("ssm.xml"))
+            self._options["device.ssm.file"] = self._placed("ssm.xml")
         for name in ("output-prefix", "output-suffix"):
             self._without_folder(name)
 
@@ -232,8 +233,8 @@ class _Preparation:
             ("summary-output", "summary.xml", wanted.summary),
             ("device.ssm.file", "ssm.xml", wanted.ssm),
         ):
-            if is_wanted:
-                self._options.setdefault(option, self._placed(file))
+            if is_wanted and option not in self._options:
+                self._options[option] = self._placed(file)
         if wanted.ssm and not any(
             name.startswith("device.ssm.") for name in self._scenario.options
         ):
