@@ -198,7 +198,8 @@ class _Preparation:
         """Every output that the scenario's options name, and those that SUMO names itself."""
         own = self._scenario.options
         for name, files in self._scenario.outputs.items():
-            self._options[name] = ",".join(map(self._placed, files))
+            if any(map(is_file, files)):  # streams stay as the scenario has them
+                self._options[name] = ",".join(map(self._placed, files))
         if any(name in own for name in _SAVING_STATES) and "save-state.prefix" not in own:
             self._options["save-state.prefix"] = self._placed("state")  # beside the .sumocfg
         has_ssm = self._copies.has_ssm or any(name.startswith("device.ssm.") for name in own)
