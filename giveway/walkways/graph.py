@@ -47,12 +47,14 @@ class Portal:
     gate: Array  # (1, 7) walked into the area
 
 
-@dataclass(frozen=True)
-class Leg:
-    """The next step of the way from a portal, which stands in an area, to the target."""
+class Leg(NamedTuple):
+    """The next step of the way from a portal to the target."""
 
     portal: int  # index
-    crossing: str | None  # walked along it; None: through the area
+    crossing: bool  # along the portals' crossing, not through their area
+
+
+_ARRIVED = Leg(-1, crossing=False)
 
 
 @dataclass(frozen=True)
@@ -193,26 +195,24 @@ class WalkGraph:
         if found is not None:
             return found
         tree = Tree({}, {})
-        heap: list[tuple[float, int, Leg | None]] = [
-            (0.0, i, None) for i in self.portals_of(target)
-        ]
+        heap = [(0.0, i, _ARRIVED) for i in self.portals_of(target)]
         while heap:
             distance, i, leg = heapq.heappop(heap)
             if i in tree.distance:
                 continue
             tree.distance[i] = distance
-            if leg is not None:
+            if leg is not _ARRIVED:
                 tree.leg[i] = leg
             here = self._portals[i]
             for j in self.portals_in(here.area):
                 if j not in tree.distance:
                     step = _length(self._portals[j].gate, self.inside(j, i), here.gate)
-                    heapq.heappush(heap, (distance + step + _PER_LEG, j, Leg(i, None)))
+                    heapq.heappush(heap, (distance + step + _PER_LEG, j, Leg(i, crossing=False)))
             if here.end.edge in self._crossing_lines:
                 step = self._crossing_lines[here.end.edge].length + _PER_LEG
                 for j in self.portals_of(End(here.end.edge, not here.end.last)):
                     if j not in tree.distance:
-                        heapq.heappush(heap, (distance + step, j, Leg(i, here.end.edge)))
+                        heapq.heappush(heap, (distance + step, j, Leg(i, crossing=True)))
         self._trees[target] = tree
         return tree
 
@@ -243,18 +243,16 @@ class WalkGraph:
         gates = self._crossing_lines[start.edge].gates(half_width)[1:-1]
         return turned(gates) if start.last else gates
 
-    def follow(self, start: int, tree: Tree) -> tuple[Array, int]:
-        """The gates (k, 7) from a portal, itself left out, to the target's; and that portal."""
+    def follow(self, start: int, tree: Tree) -> Array:
+        """The gates (k, 7) from a portal, itself left out, to the target's."""
         pieces = [NO_GATES]
         here = start
         while here in tree.leg:
             leg = tree.leg[here]
-            if leg.crossing is None:
-                pieces.append(self.inside(here, leg.portal))
-            else:
-                pieces.append(self.across(here, leg.portal))
+            gates_between = self.across if leg.crossing else self.inside
+            pieces.append(gates_between(here, leg.portal))
             here = leg.portal
-        return np.vstack([*pieces, turned(self._portals[here].gate)]), here
+        return np.vstack([*pieces, turned(self._portals[here].gate)])
 
 
 def _length(start: Array, between: Array, end: Array) -> float:

@@ -70,7 +70,7 @@ class Ways:
             meets = 0
             for edge in walk[1:]:
                 exit_ = stretches[-1].exit
-                junction = self._edges[exit_.edge].junctions[exit_.last]
+                junction = self.junction(exit_)
                 begins, ends = self._edges[edge].junctions
                 meets += junction in (begins, ends)
                 if junction in (begins, ends):
@@ -117,15 +117,16 @@ class Ways:
         starts = [(tree.distance[i], i) for i in graph.portals_of(start) if i in tree.distance]
         if starts:
             distance, i = min(starts)
-            onwards, _ = graph.follow(i, tree)
+            onwards = graph.follow(i, tree)
             return Hop(np.concatenate([leaving, onwards]), distance, connected=True)
-        meets = self._junction(start) == self._junction(end)
+        meets = self.junction(start) == self.junction(end)
         # Where there are no walkingareas, people go straight over the junction.
         open_ground = not graph.portals_of(start) and not graph.portals_of(end)
         straight = np.concatenate([leaving, entering])
         return Hop(straight, distance, (meets and open_ground) or distance < _AT_END)
 
-    def _junction(self, end: End) -> str:
+    def junction(self, end: End) -> str:
+        """The junction at an end."""
         return self._edges[end.edge].junctions[end.last]
 
     def station(self, end: End) -> float:

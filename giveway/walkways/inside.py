@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
+import shapely.ops
 
 from giveway.walkways.gates import BODY_RADIUS, NO_GATES, places
 
@@ -91,9 +92,17 @@ class Interior:
         width = 2 * BODY_RADIUS + 2 * max(np.hypot(*start[0, 2:4]), np.hypot(*end[0, 2:4]))
         return self._round(order, start[0, :2], end[0, :2], width)
 
-    def sees(self, a: Array, b: Array) -> bool:
+    def _sees(self, a: Array, b: Array) -> bool:
         """Whether the straight way between two points is inside."""
         return bool(self._room.covers(shapely.LineString([a, b])))
+
+    def _inside(self, place: Array) -> Array:
+        """The place itself, or the nearest one inside: SUMO's people cut corners a little."""
+        point = shapely.Point(place)
+        if self._room.covers(point):
+            return place
+        nearest, _ = shapely.ops.nearest_points(self.polygon, point)
+        return np.array(nearest.coords[0])
 
     def _round(self, order: list[int], start: Array, end: Array, width: float) -> Array:
         """Gates from each corner inwards, at most ``width`` [m] wide."""
@@ -137,7 +146,8 @@ class Interior:
 
     def _shortest(self, a: Array, b: Array) -> list[int]:
         """The corners that the shortest way from ``a`` to ``b`` bends round (visibility graph)."""
-        if self.sees(a, b):
+        a, b = self._inside(a), self._inside(b)
+        if self._sees(a, b):
             return []
         near = self._near_corners
         k = len(near)

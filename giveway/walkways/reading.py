@@ -9,7 +9,7 @@ from __future__ import annotations
 import gzip
 import zlib
 from dataclasses import dataclass, field
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 from xml.parsers import expat
 
 import numpy as np
@@ -129,6 +129,12 @@ def survey(net_file: Path) -> Survey:
     return reader.survey
 
 
+class _Stream(Protocol):
+    """What expat reads from."""
+
+    def read(self, size: int = ..., /) -> bytes: ...
+
+
 class _Reader:
     """Collects a :class:`Survey` from the start tags of a network file."""
 
@@ -149,7 +155,7 @@ class _Reader:
             "connection": self._connection,
         }
 
-    def read(self, stream: IO[bytes]) -> None:
+    def read(self, stream: _Stream) -> None:
         self._parser.ParseFile(stream)
 
     @property

@@ -10,7 +10,7 @@ import numpy as np
 
 from giveway.walkways import gates as g
 from giveway.walkways.graph import End
-from giveway.walkways.hops import Stretch, Ways
+from giveway.walkways.hops import Hop, Stretch, Ways
 from giveway.walkways.polyline import usable_half_width
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class Router:
             return _stay(position, max(gaps, 1))
         place = lane[: lane.rfind("_")]
         arrival = self._arrival(walk[-1], arrival_position)
-        if place in self._survey.walkingareas or place in self._survey.crossings:
+        if lane.startswith(":"):
             pieces, more = self._from_junction(walk, place, position, arrival)
         else:
             pieces, more = self._from_lane(walk, place, position, arrival)
@@ -127,54 +127,67 @@ class Router:
     def _from_junction(
         self, walk: list[str], place: str, position: tuple[float, float], arrival: float
     ) -> tuple[list[Array], int]:
-        """The way of somebody in a walkingarea or on a crossing."""
-        target = walk[1:] or walk
+        """The way of somebody in a walkingarea, on a crossing or elsewhere inside a junction."""
+        ways = self._ways
+        junction = place[1 : place.rfind("_")]
         best: tuple[tuple[int, float], list[Array]] | None = None
-        for stretches in self._ways.directed(target):
-            begin = self._into(place, position, stretches[0].entry)
-            if begin is None:
-                continue
+        for whole in ways.directed(walk):
+            stretches = self._behind(whole, junction)
+            first = stretches[0]
+            begin, distance, connected = self._into(place, position, first.entry)
             if len(stretches) == 1:
-                end = self._ways.partly(stretches[0], None, arrival)
-                rest, length, gaps = [end], abs(arrival - self._ways.station(stretches[0].entry)), 0
+                rest, gaps = [ways.partly(first, None, arrival)], 0
+                distance += abs(arrival - ways.station(first.entry))
             else:
-                rest, length, gaps = self._ways.onwards(stretches, arrival)
-                rest = [self._ways.bends(stretches[0]), *rest]
-                length += self._graph.lines[stretches[0].edge].length
-            order = gaps, begin[1] + length
+                onwards, length, gaps = ways.onwards(stretches, arrival)
+                rest = [ways.bends(first), *onwards]
+                distance += self._graph.lines[first.edge].length + length
+            order = gaps + (not connected), distance
             if best is None or order < best[0]:
-                best = order, [begin[0], *rest]
-        if best is not None:
-            return best[1], best[0][0]
-        pieces, gaps = self._from_lane(target, "", position, arrival)
-        return pieces, gaps + 1
+                best = order, [begin, *rest]
+        assert best is not None
+        return best[1], best[0][0]
 
-    def _into(
-        self, place: str, position: tuple[float, float], entry: End
-    ) -> tuple[Array, float] | None:
-        """The gates from a place in a junction to a lane's end, and their length [m]."""
+    def _behind(self, stretches: list[Stretch], junction: str) -> list[Stretch]:
+        """The part of a walk behind a junction in which one is."""
+        for i, stretch in enumerate(stretches[:-1]):
+            if self._ways.junction(stretch.exit) == junction:
+                return stretches[i + 1 :]
+        return stretches
+
+    def _into(self, place: str, position: tuple[float, float], entry: End) -> Hop:
+        """The gates from a place in a junction to a lane's end."""
         graph = self._graph
         tree = graph.towards(entry)
-        if not tree.distance:
-            return None
+        found = None
         if place in self._survey.crossings:
-            return self._off_crossing(place, position, tree)
-        here = np.array(position)
-        interior = graph.interior(place)
+            found = self._off_crossing(place, position, tree)
+        elif place in self._survey.walkingareas:
+            found = self._out_of_area(place, position, tree)
+        if found is not None:
+            return Hop(*found, connected=True)
+        straight = g.turned(graph.lane_end(entry))
+        paved = place in self._survey.walkingareas or place in self._survey.crossings
+        open_ground = not paved and not graph.portals_of(entry)
+        return Hop(straight, math.dist(position, straight[0, :2]), connected=open_ground)
+
+    def _out_of_area(
+        self, place: str, position: tuple[float, float], tree: Tree
+    ) -> tuple[Array, float] | None:
+        """From the middle of a walkingarea: to the portal with the shortest way on."""
+        graph = self._graph
         exits = [
             (tree.distance[i] + math.dist(position, graph.portal(i).gate[0, :2]), i)
             for i in graph.portals_in(place)
-            if i in tree.distance and (i not in tree.leg or tree.leg[i].crossing is not None)
+            if i in tree.distance and (i not in tree.leg or tree.leg[i].crossing)
         ]
         if not exits:
             return None
         distance, i = min(exits)
         way_out = g.turned(graph.portal(i).gate)
-        between = interior.between(g.gate(here, way_out[0, 4:6]), way_out)
-        if i in tree.leg:
-            onwards, _ = graph.follow(i, tree)
-        else:
-            onwards = way_out
+        here = g.gate(np.array(position), way_out[0, 4:6])
+        between = graph.interior(place).between(here, way_out)
+        onwards = graph.follow(i, tree) if i in tree.leg else way_out
         return np.concatenate([between, onwards]), distance
 
     def _off_crossing(
@@ -190,8 +203,8 @@ class Router:
             for i in graph.portals_of(End(place, last)):
                 if i not in tree.distance:
                     continue
-                leg = tree.leg.get(i)
-                back = leg is not None and leg.crossing == place
+                # The shortest way from this end leads back over the crossing?
+                back = i in tree.leg and tree.leg[i].crossing
                 ways.append((back, tree.distance[i] + ahead, i, last))
         if not ways:
             return None
@@ -202,7 +215,7 @@ class Router:
             ahead_gates = ahead_gates[stations > station]
         else:
             ahead_gates = g.turned(ahead_gates[stations < station])
-        onwards, _ = graph.follow(i, tree)
+        onwards = graph.follow(i, tree)
         return np.concatenate([ahead_gates, graph.portal(i).gate, onwards]), distance
 
     # --- the way on ---------------------------------------------------------------------------
