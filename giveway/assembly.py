@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -19,23 +20,32 @@ from controller import (
     Regulator,
 )
 from fmus import FmuError, VehicleFmu, bundled_fmu, describe
-from giveway.corridor import Corridor
-from giveway.ego_path import EgoPath
+from giveway.departures import BODY, Departures
+from giveway.ego import Driver
 from giveway.errors import ConfigError, ControlError, CrowdError, ScenarioError, VehicleError
+from giveway.exchange import Exchange
+from giveway.population import Population
+from giveway.scenario_files import StartOptions, read_scenario
 from giveway.spawn import Spawned, spawn
 from giveway.sumo import SumoSession
+from giveway.sumo_command import all_types, inserted_type
 from giveway.tracks import VehicleShape
+from giveway.walkways import WalkNetwork
+from giveway.yielding import Yielding
+from giveway.zone import Zone
 from pedestrian_model import (
+    OPEN_GROUND,
     PRESETS,
     Crowd,
     CrowdModel,
     PedestrianModelError,
     Predictor,
-    VciParameters,
+    Surroundings,
     arrived,
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
     from contextlib import ExitStack
 
     from numpy.typing import NDArray
@@ -45,6 +55,7 @@ if TYPE_CHECKING:
 
 _BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
 ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
+LONGEST_STEP = 0.05  # [s] of the co-simulation: the paper's, and what the crowd is stable at
 
 
 @dataclass(frozen=True)
@@ -53,91 +64,195 @@ class Parts:
 
     config: RunConfig
     sumo: SumoSession
+    time_step: float  # [s]
     substeps: int  # control steps per SUMO step
-    path: EgoPath
-    departure: float  # [m] station of the front bumper at the start
-    shape: VehicleShape
-    vehicle: VehicleFmu
-    vehicle_description: dict[str, object]
-    regulator: Regulator
-    corridor: Corridor
-    horizon: int
-    predictor: Predictor | None  # None: the controller looks at the present only
-    spawned: Spawned
-    crowd: Crowd
+    horizon: int  # steps that anybody looks ahead
+    drivers: tuple[Driver, ...]
+    departures: Departures
+    population: Population
     crowd_model: CrowdModel
+    exchange: Exchange | None  # None: the scenario's walkers stay SUMO's
+    surroundings: Surroundings
+    yielding: Yielding | None  # None: SUMO's cars do not look for pedestrians
+    remarks: tuple[str, ...]  # what the user should know
 
     def arrived(self, crowd: Crowd) -> NDArray[np.bool_]:
         """(n,) who of ``crowd`` has reached the last way-point."""
         return arrived(crowd, ARRIVAL_RADIUS)
 
 
-def assemble(config: RunConfig, scenario: Scenario, stack: ExitStack) -> Parts:
-    """Set up every part; SUMO and the FMU are closed by ``stack``.
+def assemble(
+    config: RunConfig,
+    scenario: Scenario,
+    stack: ExitStack,
+    *,
+    outputs: Path | None = None,
+    interrupted: Callable[[], bool] = lambda: False,
+) -> Parts:
+    """Set up every part and let SUMO run up to the first departure; ``stack`` closes everything.
 
-    The cheap and the fallible come first, SUMO before the vehicle: what is wrong with a request
+    The cheap and the fallible come first, SUMO before the vehicles: what is wrong with a request
     is said before anything runs.
+
+    Args:
+        config: the run's.
+        scenario: its scenario.
+        stack: closes SUMO and the FMUs.
+        outputs: folder for SUMO's own outputs; None drops them.
+        interrupted: looked at while SUMO runs up to the first departure.
 
     Raises:
         GivewayError: a part cannot be set up as asked.
     """
-    shape = VehicleShape(config.vehicle.length, config.vehicle.width)
-    regulator = _regulator(config)
+    files = read_scenario(scenario.config_file)
+    zone = Zone(config.crowd.zone, config.crowd.zone_margin)
+    egos = config.each_ego()
+    _require_distinct(egos)
+    step_length = config.sumo.step_length or files.step_length
+    time_step = _time_step(config.time_step, step_length)
+    regulators = [_regulator(ego, time_step) for ego in egos]
+    walkers = not zone.nowhere and not (zone.follows_egos and not egos)
+    moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
     sumo = stack.enter_context(
-        SumoSession(
-            scenario.config_file,
-            seed=config.seed,
-            step_length=config.sumo.step_length,
-            ego_shape=shape,
+        SumoSession(files, _start_options(config, moved, outputs), _types(egos))
+    )
+    substeps = _substeps(time_step, sumo.step_length)
+    remarks = list(sumo.start.remarks)
+    network = WalkNetwork.read(files.net_file) if walkers or config.crowd.walls else None
+    if network is not None:
+        zone.require_overlap(network.boundary)
+        remarks += _remarks_on(network, files.net_file)
+    drivers = tuple(
+        _driver(ego, regulator, time_step, stack)
+        for ego, regulator in zip(egos, regulators, strict=True)
+    )
+    departures = Departures(drivers, sumo, scenario.config_file, time_step)
+    departures.run_until_first(interrupted)
+    population = _population(config, departures, sumo, files.net_file, network)
+    exchange = None
+    if network is not None:
+        exchange = Exchange(
+            sumo.module,
+            network,
+            zone if walkers else Zone("none", 0.0),
+            population,
+            walls=config.crowd.walls,
         )
-    )
-    _require_ego(config, scenario, sumo.end)
-    substeps = _substeps(config.time_step, sumo.step_length)
-    path = EgoPath.through(sumo.lanes.along(config.ego.route, config.ego.lane))
-    _require_room(config, path)
-    spawned = spawn(config.crowd, path, config.seed)
-    if config.ego.id in spawned.ids:
-        msg = f"--ego-id '{config.ego.id}': a pedestrian has this id; choose another"
-        raise ConfigError(msg)
-    vehicle = _vehicle(config, stack)
-    sumo.run_until(config.ego.depart_time)
-    sumo.add_ego(
-        config.ego.id,
-        config.ego.route,
-        lane=config.ego.lane,
-        position=config.ego.depart_position,
-        speed=config.ego.initial_speed,
-    )
-    if spawned.ids:
-        sumo.add_persons(spawned.ids, config.crowd.host_edge)
-    parameters = PRESETS[config.crowd.preset]
-    horizon = config.mpc.horizon if config.controller == "mpc" else 1
+    yielding = None
+    if config.traffic.yielding and (len(population) or walkers):
+        yielding = Yielding(sumo.vehicles, sumo.step_length, config.traffic.yield_distance)
     return Parts(
         config=config,
         sumo=sumo,
+        time_step=time_step,
         substeps=substeps,
-        path=path,
-        departure=config.ego.depart_position,
-        shape=shape,
-        vehicle=vehicle,
-        vehicle_description=_description(vehicle),
-        regulator=regulator,
-        corridor=Corridor(
-            path,
-            half_width=config.corridor_half_width,
-            horizon=horizon,
-            time_step=config.time_step,
-            walking_speed_limit=parameters.max_speed,
-        ),
-        horizon=horizon,
-        predictor=_predictor(config, parameters),
-        spawned=spawned,
-        crowd=_crowd(spawned),
-        crowd_model=CrowdModel(parameters, config.time_step),
+        horizon=max((driver.horizon for driver in drivers), default=1),
+        drivers=drivers,
+        departures=departures,
+        population=population,
+        crowd_model=CrowdModel(PRESETS[config.crowd.preset], time_step),
+        exchange=exchange,
+        surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
+        yielding=yielding,
+        remarks=tuple(remarks),
     )
 
 
-def _regulator(config: RunConfig) -> Regulator:
+def _require_distinct(egos: Sequence[RunConfig]) -> None:
+    names = [ego.ego.take_over[0] if ego.ego.take_over else ego.ego.id for ego in egos]
+    for name in names:
+        if names.count(name) > 1:
+            msg = f"ego '{name}': two egos have this id; give each [[egos]] entry its own"
+            raise ConfigError(msg)
+
+
+def _start_options(config: RunConfig, moved: bool, outputs: Path | None) -> StartOptions:
+    sumo = config.sumo
+    seed = config.seed if sumo.seed == "run" else sumo.seed
+    extra = sumo.options if sumo.end is None else ("--end", f"{sumo.end:g}", *sumo.options)
+    return StartOptions(
+        seed=None if seed == "scenario" else int(seed),
+        fallback_seed=config.seed,
+        step_length=sumo.step_length,
+        interact=moved,
+        outputs=outputs,
+        fcd=sumo.fcd,
+        tripinfo=sumo.tripinfo,
+        ssm=sumo.ssm,
+        summary=sumo.summary,
+        extra=extra,
+    )
+
+
+def _types(egos: Sequence[RunConfig]) -> str:
+    """The vehicle types of all egos to be inserted, and of those to be taken over."""
+    bodies = {
+        inserted_type(ego.ego.id): VehicleShape(
+            ego.vehicle.length or BODY.length, ego.vehicle.width or BODY.width
+        )
+        for ego in egos
+        if not ego.ego.take_over
+    }
+    return all_types(bodies)
+
+
+def _remarks_on(network: WalkNetwork, net_file: Path) -> list[str]:
+    if network.has_walkingareas or network.has_sidewalks:
+        return []
+    return [
+        f"{net_file.name}: neither sidewalks nor walkingareas; walkers keep to the side of the "
+        "roads and go straight over junctions; netconvert's --sidewalks.guess, --walkingareas and "
+        "--crossings.guess add them"
+    ]
+
+
+def _driver(
+    config: RunConfig, regulator: Regulator, time_step: float, stack: ExitStack
+) -> Driver:
+    parameters = PRESETS[config.crowd.preset]
+    vehicle = _vehicle(config, time_step, stack)
+    predictor = None
+    if config.controller == "mpc":
+        predictor = Predictor(parameters, time_step, config.mpc.horizon)
+    return Driver(
+        config, vehicle, _description(vehicle), regulator, predictor, parameters.max_speed
+    )
+
+
+def _population(
+    config: RunConfig,
+    departures: Departures,
+    sumo: SumoSession,
+    net_file: Path,
+    network: WalkNetwork | None,
+) -> Population:
+    """The pedestrians that giveway adds."""
+    if not config.crowd.pedestrians:
+        return Population()
+    spawned = spawn(config.crowd, departures.first_path, config.seed)
+    for name in departures.names:
+        if name in spawned.ids:
+            msg = f"--ego-id '{name}': a pedestrian has this id; choose another"
+            raise ConfigError(msg)
+    host = config.crowd.host_edge or _host(config, network or WalkNetwork.read(net_file), net_file)
+    sumo.add_persons(spawned.ids, host)
+    return Population(spawned.ids, _crowd(spawned))
+
+
+def _host(config: RunConfig, network: WalkNetwork, net_file: Path) -> str:
+    """The edge for pedestrians that is nearest to the spawn area."""
+    x_min, y_min, x_max, y_max = config.crowd.spawn_area
+    lane = network.nearest_lane((x_min + x_max) / 2, (y_min + y_max) / 2)
+    if lane is None:
+        msg = (
+            f"{net_file}: no lane for pedestrians, where SUMO could register the added ones; "
+            "build the network with netconvert --sidewalks.guess, or add none (--pedestrians 0)"
+        )
+        raise ScenarioError(msg)
+    return lane.edge
+
+
+def _regulator(config: RunConfig, time_step: float) -> Regulator:
     regulation = config.regulation
     try:
         pid = Pid(
@@ -150,14 +265,14 @@ def _regulator(config: RunConfig) -> Regulator:
                 buffer_distance=config.pid.buffer_distance,
                 force_limit=config.mpc.force_limit,
             ),
-            config.time_step,
+            time_step,
         )
         if config.controller == "pid":
             return Regulator(None, pid)
         model = LongitudinalModel(
             mass=config.vehicle.mass,
             friction=config.vehicle.friction,
-            time_step=config.time_step,
+            time_step=time_step,
         )
         mpc = Mpc(
             model,
@@ -177,12 +292,6 @@ def _regulator(config: RunConfig) -> Regulator:
     return Regulator(mpc, pid)
 
 
-def _predictor(config: RunConfig, parameters: VciParameters) -> Predictor | None:
-    if config.controller != "mpc":
-        return None
-    return Predictor(parameters, config.time_step, config.mpc.horizon)
-
-
 def _crowd(spawned: Spawned) -> Crowd:
     """Everybody already walks: at the desired speed, towards the destination."""
     way = spawned.destination - spawned.position
@@ -198,24 +307,29 @@ def _crowd(spawned: Spawned) -> Crowd:
         raise CrowdError(f"pedestrians cannot be placed: {error}") from error
 
 
-def _vehicle(config: RunConfig, stack: ExitStack) -> VehicleFmu:
+def _vehicle(config: RunConfig, time_step: float, stack: ExitStack) -> VehicleFmu:
     settings = config.vehicle
     bundled = _BUNDLED.get(settings.fmu)
     path = Path(settings.fmu) if bundled is None else bundled_fmu(bundled)
     start_values = {"M": settings.mass, "alpha": settings.friction, "exact": settings.exact}
     try:
-        vehicle = stack.enter_context(
-            VehicleFmu(path, step_size=config.time_step, start_values=start_values)
+        return stack.enter_context(
+            VehicleFmu(path, step_size=time_step, start_values=start_values)
         )
-        vehicle.start(position=0.0, speed=config.ego.initial_speed)
     except FmuError as error:
         raise VehicleError(str(error)) from error
-    return vehicle
 
 
 def _description(vehicle: VehicleFmu) -> dict[str, object]:
     """What the manifest says of the FMU."""
     return dataclasses.asdict(describe(vehicle.path))
+
+
+def _time_step(wanted: float | None, step_length: float) -> float:
+    """The control step [s]: as wanted, or 0.05 s, or the longest below that divides SUMO's."""
+    if wanted is not None:
+        return wanted
+    return step_length / max(1, math.ceil(step_length / LONGEST_STEP - 1e-9))
 
 
 def _substeps(time_step: float, step_length: float) -> int:
@@ -228,39 +342,7 @@ def _substeps(time_step: float, step_length: float) -> int:
     if substeps < 1 or abs(substeps * time_step - step_length) > 1e-9:
         msg = (
             f"--time-step {time_step:g}: SUMO's step of {step_length:g} s is not a whole multiple "
-            "of it; choose another time step [s] or --sumo-step-length"
+            "of it; choose another time step [s] or --sumo-step-length, or leave it out"
         )
         raise ConfigError(msg)
     return substeps
-
-
-def _require_ego(config: RunConfig, scenario: Scenario, end: float) -> None:
-    if config.ego.depart_time >= end:
-        msg = (
-            f"--ego-depart-time {config.ego.depart_time:g}: {scenario.config_file} ends at "
-            f"{end:g} s; let the ego depart before [s]"
-        )
-        raise ConfigError(msg)
-    if not config.ego.route:
-        msg = (
-            f"{scenario.config_file}: no route for the ego; name its edges with --ego-route "
-            f"EDGE,EDGE or in {scenario.name}.giveway.toml, [ego] route"
-        )
-        raise ConfigError(msg)
-    if config.crowd.pedestrians and not config.crowd.host_edge:
-        msg = (
-            f"{scenario.config_file}: no edge to host the added pedestrians; name one with "
-            "--crowd-host-edge, or add none with --pedestrians 0"
-        )
-        raise ConfigError(msg)
-
-
-def _require_room(config: RunConfig, path: EgoPath) -> None:
-    needed = config.ego.depart_position + config.ego.travel_distance
-    if needed > path.length:
-        msg = (
-            f"--ego-travel-distance {config.ego.travel_distance:g}: the ego's route is "
-            f"{path.length:.1f} m long and it departs at {config.ego.depart_position:g} m; "
-            "shorten the distance or lengthen --ego-route"
-        )
-        raise ScenarioError(msg)

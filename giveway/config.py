@@ -7,9 +7,18 @@ docs/reproduction.md explains.
 
 from __future__ import annotations
 
+import shlex
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, JsonValue, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    JsonValue,
+    ValidationError,
+    model_validator,
+)
 
 ControllerName = Literal["mpc", "pid"]
 
@@ -27,9 +36,25 @@ def _split(value: Any) -> Any:
     return [part.strip() for part in value.split(",")] if isinstance(value, str) else value
 
 
+def _words(value: Any) -> Any:
+    """Options for SUMO, written as in a shell."""
+    return shlex.split(value) if isinstance(value, str) else value
+
+
+def _seed(value: Any) -> Any:
+    return int(value) if isinstance(value, str) and value.isdecimal() else value
+
+
 Rectangle = Annotated[tuple[float, float, float, float], BeforeValidator(_split)]
 Displacement = Annotated[tuple[float, float], BeforeValidator(_split)]
-EdgeList = Annotated[tuple[str, ...], BeforeValidator(_split)]
+NameList = Annotated[tuple[str, ...], BeforeValidator(_split)]
+OptionList = Annotated[tuple[str, ...], BeforeValidator(_words)]
+SumoSeed = Annotated[
+    Annotated[int, Field(ge=0, le=2**31 - 1)] | Literal["scenario", "run"], BeforeValidator(_seed)
+]
+
+EGO_TABLES = ("controller", "ego", "vehicle", "regulation", "mpc", "pid")
+"""What may differ from ego to ego."""
 
 
 _FARTHEST = 1e7  # [m] beyond it a millimetre is lost in rounding
@@ -44,20 +69,31 @@ class Section(BaseModel):
 
 
 class EgoConfig(Section):
-    """Where the ego enters the network and how far it drives."""
+    """The ego: a vehicle of the scenario, or one that giveway inserts; and how far it drives."""
 
-    id: str = option("ego", None, "SUMO id of the ego", min_length=1)
-    route: EdgeList = option((), None, "edges that the ego drives along, comma-separated")
-    lane: int = option(0, None, "index of the departure lane, 0 is the rightmost", ge=0)
+    take_over: NameList = option(
+        (),
+        None,
+        "ids of the scenario's vehicles to drive from their departure on, comma-separated",
+        flag="--ego",
+    )
+    none: bool = option(False, None, "drive no vehicle at all", flag="--no-ego")
+    id: str = option("ego", None, "SUMO id of an inserted ego", min_length=1)
+    route: NameList = option((), None, "edges that an inserted ego drives along, comma-separated")
+    lane: int | None = option(
+        None, None, "index of its departure lane, 0 is the rightmost; none: the first for cars", ge=0
+    )
     depart_time: float = option(
-        0.0, "s", "simulation time at which the ego enters; at begin if that is later", ge=0, le=1e6
+        0.0, "s", "simulation time at which it enters; at begin if that is later", ge=0, le=1e7
     )
     depart_position: float = option(
-        0.0, "m", "front bumper's place on the first edge at departure", ge=0, le=1e6
+        0.0, "m", "its front bumper's place on the first edge at departure", ge=0, le=1e6
     )
-    initial_speed: float = option(4.0, "m/s", "speed at departure", ge=0, le=70)
-    travel_distance: float = option(
-        40.0, "m", "the run is complete when the ego has driven this far", gt=0, le=1e5
+    initial_speed: float | None = option(
+        None, "m/s", "speed at departure; none: 4 m/s, or SUMO's when taken over", ge=0, le=70
+    )
+    travel_distance: float | None = option(
+        None, "m", "its goal is this far along its way; none: the end of its route", gt=0, le=1e6
     )
 
 
@@ -70,15 +106,19 @@ class VehicleConfig(Section):
     mass: float = option(1000.0, "kg", "M of M s'' + alpha s' = u", gt=0, le=1e6)
     friction: float = option(100.0, "N.s/m", "alpha of M s'' + alpha s' = u", ge=0, le=1e6)
     exact: bool = option(False, None, "exact discretisation instead of the paper's forward Euler")
-    length: float = option(5.0, "m", "body length", gt=0, le=50)
-    width: float = option(2.0, "m", "body width", gt=0, le=10)
+    length: float | None = option(
+        None, "m", "body length; none: 5 m, or SUMO's when taken over", gt=0, le=50
+    )
+    width: float | None = option(
+        None, "m", "body width; none: 2 m, or SUMO's when taken over", gt=0, le=10
+    )
 
 
 class CrowdConfig(Section):
     """The pedestrians that giveway adds: how many, where, where to and how fast."""
 
     pedestrians: int = option(
-        30, "persons", "pedestrians to add", flag="--pedestrians", ge=0, le=20_000
+        0, "persons", "pedestrians to add", flag="--pedestrians", ge=0, le=20_000
     )
     spawn_area: Rectangle = option(
         (23.3, -23.4, 33.2, -12.0),
@@ -97,8 +137,24 @@ class CrowdConfig(Section):
     desired_speed_min: float = option(0.5, "m/s", "its lower truncation", gt=0, le=2.5)
     desired_speed_max: float = option(2.2, "m/s", "its upper truncation", gt=0, le=2.5)
     minimum_spacing: float = option(0.5, "m", "no two start closer than this", ge=0, le=10)
-    host_edge: str = option("", None, "edge that hosts the added persons inside SUMO")
+    host_edge: str = option(
+        "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"
+    )
     preset: Literal["SIM", "TABLE2"] = option("SIM", None, "parameter set of the VCI model")
+    zone: str = option(
+        "50",
+        None,
+        "where the scenario's own walkers follow the VCI model: metres round each ego, "
+        "'everywhere', 'none', or a polygon 'x,y x,y x,y ...' [m]",
+        flag="--zone",
+    )
+    zone_margin: float = option(
+        5.0, "m", "they are handed back to SUMO this far outside the zone", ge=0, le=1e4
+    )
+    walls: bool = option(
+        False, None, "the edges of sidewalks, crossings and walkingareas hold people back",
+        flag="--walls",
+    )
 
     @model_validator(mode="after")
     def _ordered(self) -> CrowdConfig:
@@ -132,6 +188,15 @@ class RegulationConfig(Section):
     gap_from: Literal["bumper", "centre"] = option(
         "bumper", None, "where the distance to who is in front starts"
     )
+    vehicles: bool = option(
+        True, None, "vehicles in front are obstacles too", flag="--respect-vehicles"
+    )
+    traffic_lights: bool = option(
+        True, None, "the ego stops at red lights", flag="--obey-lights"
+    )
+    comfortable_deceleration: float = option(
+        2.0, "m/s^2", "of the approach to a red light or a slower vehicle", gt=0, le=10
+    )
 
 
 class MpcConfig(Section):
@@ -158,11 +223,44 @@ class PidConfig(Section):
     )
 
 
+class TrafficConfig(Section):
+    """What SUMO's own vehicles know of the pedestrians that giveway moves."""
+
+    yielding: bool = option(
+        True, None, "SUMO's vehicles brake for pedestrians in their way", flag="--yield"
+    )
+    yield_distance: float = option(
+        2.0, "m", "they want to stop this far before a pedestrian", ge=0, le=50
+    )
+
+
 class SumoConfig(Section):
-    """How SUMO is run."""
+    """How SUMO is run, and which of its own outputs are wanted."""
 
     step_length: float | None = option(
         None, "s", "SUMO's step; none: the scenario's own", gt=0, le=60
+    )
+    seed: SumoSeed = option(
+        "scenario", None, "SUMO's seed: a number, 'scenario' (its own) or 'run' (the run's)"
+    )
+    end: float | None = option(None, "s", "SUMO's end; none: the scenario's own", gt=0, le=1e7)
+    fcd: bool = option(False, None, "write SUMO's floating car data", flag="--fcd")
+    tripinfo: bool = option(False, None, "write SUMO's trip information", flag="--tripinfo")
+    ssm: bool = option(False, None, "write SUMO's surrogate safety measures", flag="--ssm")
+    statistics: bool = option(False, None, "write SUMO's statistics", flag="--statistics")
+    options: OptionList = option(
+        (), None, "more options for SUMO, like '--emission-output e.xml'", flag="--sumo-options"
+    )
+
+
+class RecordConfig(Section):
+    """How densely trajectories are recorded."""
+
+    near: float = option(
+        50.0, "m", "who is this near to an ego is recorded at every control step", ge=0, le=1e6
+    )
+    far_period: float = option(
+        1.0, "s", "everybody else is recorded once in this time", gt=0, le=1e6
     )
 
 
@@ -170,13 +268,22 @@ class RunConfig(Section):
     """One run: a scenario, a seed, a controller, and everything that shapes them."""
 
     scenario: str = option("shared_space", None, "bundled name, folder or .sumocfg", min_length=1)
-    seed: int = option(1, None, "seed of the crowd and of SUMO", ge=0, le=2**31 - 1)
+    seed: int = option(1, None, "seed of the crowd that giveway adds", ge=0, le=2**31 - 1)
     controller: ControllerName = option("mpc", None, "who drives: mpc (PID as fallback) or pid")
-    time_step: float = option(
-        0.05, "s", "step of vehicle, controller and crowd", flag="--time-step", ge=0.001, le=0.5
+    time_step: float | None = option(
+        None,
+        "s",
+        "step of vehicle, controller and crowd; none: 0.05 s, or what divides SUMO's step",
+        flag="--time-step",
+        ge=0.001,
+        le=0.5,
     )
-    time_limit: float = option(
-        120.0, "s", "the run ends this long after the ego's departure", gt=0, le=86_400
+    time_limit: float | None = option(
+        None,
+        "s",
+        "the run ends this long after the first departure; none: with the scenario",
+        gt=0,
+        le=1e7,
     )
     ego: EgoConfig = EgoConfig()
     vehicle: VehicleConfig = VehicleConfig()
@@ -184,23 +291,78 @@ class RunConfig(Section):
     regulation: RegulationConfig = RegulationConfig()
     mpc: MpcConfig = MpcConfig()
     pid: PidConfig = PidConfig()
+    traffic: TrafficConfig = TrafficConfig()
     sumo: SumoConfig = SumoConfig()
-
-    @property
-    def corridor_half_width(self) -> float:
-        """The corridor's half width [m]: 1.25 for the paper's car of 2 m."""
-        chosen = self.regulation.corridor_half_width
-        return self.vehicle.width / 2 + 0.25 if chosen is None else chosen
+    record: RecordConfig = RecordConfig()
+    egos: tuple[dict[str, Any], ...] = Field(
+        (), description="one table per ego; what it leaves out is as in the run's own tables"
+    )
 
     @model_validator(mode="after")
-    def _reachable(self) -> RunConfig:
+    def _check_egos(self) -> RunConfig:
+        for config in self.each_ego():
+            config.require_speeds_in_reach()
+        return self
+
+    def each_ego(self) -> tuple[RunConfig, ...]:
+        """The configuration of each ego, complete and without ``egos``.
+
+        Raises:
+            ValueError: an entry of ``egos`` holds an unknown key or a value out of range.
+        """
+        if self.ego.none:
+            return ()
+        alone = self.model_copy(update={"egos": ()})
+        if self.egos:
+            drivers = [alone._with(number, entry) for number, entry in enumerate(self.egos)]
+        else:
+            drivers = [alone]
+        return tuple(one for driver in drivers for one in driver._one_per_vehicle())
+
+    def _with(self, number: int, entry: dict[str, Any]) -> RunConfig:
+        """This configuration with the keys of one entry of ``egos``."""
+        unknown = sorted(set(entry) - set(EGO_TABLES))
+        if unknown:
+            expected = ", ".join(EGO_TABLES)
+            msg = f"egos[{number}]: unknown key '{unknown[0]}'; expected one of {expected}"
+            raise ValueError(msg)
+        values = self.model_dump()
+        for key, value in entry.items():
+            values[key] = {**values[key], **value} if isinstance(value, dict) else value
+        try:
+            return RunConfig.model_validate(values)
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            key = ".".join(map(str, first["loc"]))
+            msg = f"egos[{number}]: {key} = {first['input']!r}: {first['msg']}"
+            raise ValueError(msg) from None
+
+    def _one_per_vehicle(self) -> list[RunConfig]:
+        names = self.ego.take_over
+        if len(names) < 2:
+            return [self]
+        return [
+            self.model_copy(update={"ego": self.ego.model_copy(update={"take_over": (name,)})})
+            for name in names
+        ]
+
+    @property
+    def corridor_margin(self) -> float:
+        """What the corridor is wider than half the vehicle, on each side [m]."""
+        return 0.25
+
+    def require_speeds_in_reach(self) -> None:
+        """Make sure that the MPC may drive at the speeds asked for.
+
+        Raises:
+            ValueError: it may not.
+        """
         low, high = self.mpc.speed_min, self.mpc.speed_max
         for key, speed in (
             ("[regulation] reference_speed", self.regulation.reference_speed),
             ("[ego] initial_speed", self.ego.initial_speed),
         ):
-            if self.controller == "mpc" and not low <= speed <= high:
+            if self.controller == "mpc" and speed is not None and not low <= speed <= high:
                 msg = f"{key} = {speed:g}: expected within [mpc] speed_min and speed_max"
                 msg += f", {low:g} to {high:g} [m/s]"
                 raise ValueError(msg)
-        return self

@@ -1,23 +1,39 @@
-"""Who is in front of the ego: the corridor about its path, now and in the predicted future.
+"""Who and what is in front of the ego: the corridor about its path, now and in the future.
 
 The paper speaks of "the closest pedestrian in front" without saying who that is. Our reading (an
 option): body centres ahead of the front bumper, at most ``half_width`` from the ego's path, at
-that instant. Nobody in front is an infinite distance.
+that instant. A vehicle is in front where a part of its outline is. Nobody in front is an infinite
+distance, and so is whoever is more than ``SIGHT`` ahead.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from giveway.ego_path import EgoPath, pose_at
+from giveway.ego_path import EgoPath, body_pose, segment_at
 from giveway.jit import kernel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+
+SIGHT = 100.0  # [m] along the path
+_BEHIND = 10.0  # [m] from there on nobody catches up with the front bumper within the horizon
+_OUTLINE = 1.0  # [m] between the points of a vehicle's outline that are looked at
+
+
+class Leader(NamedTuple):
+    """The closest vehicle in front."""
+
+    station: float  # [m] of its closest point; inf: none
+    speed: float  # [m/s] along the ego's path, at least 0
+
+
+NO_LEADER = Leader(math.inf, 0.0)
 
 
 class Corridor:
@@ -31,18 +47,26 @@ class Corridor:
         horizon: int,
         time_step: float,
         walking_speed_limit: float,
+        body_length: float = 5.0,
     ) -> None:
         self.path = path
         self.half_width = half_width
         self.time_step = time_step
+        self.body_length = body_length
         self._reach = walking_speed_limit * horizon * time_step  # [m] walked within the horizon
         self._ahead = np.full(horizon, np.inf)
+        self._vehicles_ahead = np.full(horizon, np.inf)
         self._nobody = np.full(horizon, np.inf)
 
     @property
     def nobody(self) -> Array:
         """(N,) what :meth:`closest_predicted` gives when nobody is ever in front."""
         return self._nobody
+
+    def _window(self, front: float) -> tuple[int, int]:
+        """The first and last segment of the path that lie within sight."""
+        stations = self.path.stations
+        return segment_at(stations, front - _BEHIND), segment_at(stations, front + SIGHT)
 
     def closest_now(self, positions: Array, front: float) -> tuple[float, bool]:
         """Station of the closest pedestrian in front [m], and whether a prediction is needed.
@@ -53,7 +77,13 @@ class Corridor:
         """
         path = self.path
         closest, reachable = closest_in_front(
-            path.vertices, path.stations, positions, front, self.half_width, self._reach
+            path.vertices,
+            path.stations,
+            *self._window(front),
+            positions,
+            front,
+            self.half_width,
+            self._reach,
         )
         return closest, reachable
 
@@ -66,65 +96,135 @@ class Corridor:
             speed: the ego's speed [m/s], held over the horizon as in the prediction.
         """
         path = self.path
-        advance = speed * self.time_step
         closest_ahead(
-            path.vertices, path.stations, positions, front, advance, self.half_width, self._ahead
+            path.vertices,
+            path.stations,
+            *self._window(front),
+            positions,
+            front,
+            speed * self.time_step,
+            self.half_width,
+            self._ahead,
         )
         return self._ahead
 
-    def fill_poses(self, poses: Array, front: float, speed: float, front_length: float) -> None:
-        """Write the ego's poses at steps 0 ... N-1 under constant speed into ``poses[:, 0]``.
+    def closest_vehicle(
+        self, poses: Array, own: int, front: float, speed: float
+    ) -> tuple[Leader, Array]:
+        """The closest vehicle in front now, and the stations (N,) [m] of the closest at 1 ... N.
 
         Args:
-            poses: (N, m, 7) vehicles of the prediction; row 0 of each step is the ego.
+            poses: (N, m, 7) of all vehicles at steps 0 ... N-1.
+            own: the ego's own row.
+            front: the front bumper's station now [m].
+            speed: the ego's speed [m/s], held over the horizon.
+        """
+        path, ahead = self.path, self._vehicles_ahead
+        station, along = vehicles_in_front(
+            path.vertices,
+            path.stations,
+            path.headings,
+            *self._window(front),
+            poses,
+            own,
+            front,
+            speed * self.time_step,
+            self.time_step,
+            self.half_width,
+            ahead,
+        )
+        return Leader(station, along), ahead
+
+    def fill_poses(self, poses: Array, row: int, front: float, speed: float) -> None:
+        """Write the ego's poses at steps 0 ... N-1 under constant speed into ``poses[:, row]``.
+
+        Args:
+            poses: (N, m, 7) vehicles of the prediction.
+            row: the ego's.
             front: the front bumper's station now [m].
             speed: the ego's speed [m/s].
-            front_length: from the reference point to the front bumper [m].
         """
         path = self.path
-        advance = speed * self.time_step
         fill_ego_poses(
-            path.vertices, path.stations, path.headings, front, advance, speed, front_length, poses
+            path.vertices,
+            path.stations,
+            path.headings,
+            front,
+            speed * self.time_step,
+            speed,
+            self.body_length,
+            row,
+            poses,
         )
+
+
+@kernel
+def look(
+    vertices: Array,
+    stations: Array,
+    first: int,
+    last: int,
+    x: float,
+    y: float,
+    front: float,
+    half_width: float,
+    reach: float,
+) -> tuple[float, bool]:
+    """Station of a point's closest passage in front (else inf), and could it walk there?"""
+    end = len(vertices) - 2
+    closest = np.inf
+    reachable = False
+    beyond_before = False  # is (x, y) beyond the end of the segment before?
+    for i in range(first, last + 1):
+        # Each segment counts on its own: a path that crosses itself or turns back comes past
+        # the same place twice, and only the passage ahead matters.
+        x_0, y_0 = vertices[i, 0], vertices[i, 1]
+        length = stations[i + 1] - stations[i]
+        e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
+        along = (x - x_0) * e_x + (y - y_0) * e_y
+        at_corner = along < 0.0 and i > 0 and beyond_before
+        beside = (along >= 0.0 or i == 0) and (along <= length or i == end)
+        beyond_before = along > length
+        if not (beside or at_corner):
+            continue
+        if at_corner:
+            along = 0.0
+        d_x, d_y = x - (x_0 + along * e_x), y - (y_0 + along * e_y)
+        distance = np.sqrt(d_x * d_x + d_y * d_y)
+        station = stations[i] + along
+        if distance <= half_width + reach and not (end == 0 and station + reach < front):
+            reachable = True
+        if front < station < closest and distance <= half_width:
+            closest = station
+    return closest, reachable
 
 
 @kernel
 def closest_in_front(
     vertices: Array,
     stations: Array,
+    first: int,
+    last: int,
     positions: Array,
     front: float,
     half_width: float,
     reach: float,
 ) -> tuple[float, bool]:
     """Station of the closest person in front; can anybody get there by walking ``reach``?"""
-    last = len(vertices) - 2
     closest = np.inf
     reachable = False
+    low_x, high_x = np.min(vertices[first : last + 2, 0]), np.max(vertices[first : last + 2, 0])
+    low_y, high_y = np.min(vertices[first : last + 2, 1]), np.max(vertices[first : last + 2, 1])
+    margin = half_width + reach
+    if first == 0 or last == len(vertices) - 2:
+        margin += SIGHT  # the path goes on straight beyond its ends
     for j in range(positions.shape[0]):
         x, y = positions[j, 0], positions[j, 1]
-        beyond_before = False  # is (x, y) beyond the end of the segment before?
-        for i in range(last + 1):
-            # Each segment counts on its own: a path that crosses itself or turns back comes past
-            # the same place twice, and only the passage ahead matters.
-            x_0, y_0 = vertices[i, 0], vertices[i, 1]
-            length = stations[i + 1] - stations[i]
-            e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
-            along = (x - x_0) * e_x + (y - y_0) * e_y
-            at_corner = along < 0.0 and i > 0 and beyond_before
-            beside = (along >= 0.0 or i == 0) and (along <= length or i == last)
-            beyond_before = along > length
-            if not (beside or at_corner):
-                continue
-            if at_corner:
-                along = 0.0
-            d_x, d_y = x - (x_0 + along * e_x), y - (y_0 + along * e_y)
-            distance = np.sqrt(d_x * d_x + d_y * d_y)
-            station = stations[i] + along
-            if distance <= half_width + reach and not (last == 0 and station + reach < front):
-                reachable = True
-            if front < station < closest and distance <= half_width:
-                closest = station
+        if x < low_x - margin or x > high_x + margin or y < low_y - margin or y > high_y + margin:
+            continue
+        station, near = look(vertices, stations, first, last, x, y, front, half_width, reach)
+        reachable |= near
+        closest = min(closest, station)
     return closest, reachable
 
 
@@ -132,6 +232,8 @@ def closest_in_front(
 def closest_ahead(
     vertices: Array,
     stations: Array,
+    first: int,
+    last: int,
     positions: Array,
     front: float,
     advance: float,
@@ -140,9 +242,87 @@ def closest_ahead(
 ) -> None:
     """Fill ``closest[i]`` for the predicted ``positions[i]`` at step i + 1."""
     for i in range(positions.shape[0]):
+        at = front + (i + 1) * advance
         closest[i], _ = closest_in_front(
-            vertices, stations, positions[i], front + (i + 1) * advance, half_width, 0.0
+            vertices, stations, first, last, positions[i], at, half_width, 0.0
         )
+
+
+@kernel
+def outline_in_front(
+    vertices: Array,
+    stations: Array,
+    first: int,
+    last: int,
+    vehicle: Array,
+    front: float,
+    half_width: float,
+) -> float:
+    """Station of the closest point of a vehicle's outline in front; inf: none is."""
+    cos, sin = np.cos(vehicle[2]), np.sin(vehicle[2])
+    rear, length, half = -vehicle[5], vehicle[4] + vehicle[5], vehicle[6] / 2.0
+    along = max(1, int(np.ceil(length / _OUTLINE)))
+    closest = np.inf
+    for i in range(along + 1):
+        to_x = rear + length * i / along
+        across = max(1, int(np.ceil(2.0 * half / _OUTLINE))) if i in (0, along) else 1
+        for j in range(across + 1):
+            to_y = -half + 2.0 * half * j / across
+            x = vehicle[0] + cos * to_x - sin * to_y
+            y = vehicle[1] + sin * to_x + cos * to_y
+            station, _ = look(vertices, stations, first, last, x, y, front, half_width, 0.0)
+            closest = min(closest, station)
+    return closest
+
+
+@kernel
+def vehicles_in_front(
+    vertices: Array,
+    stations: Array,
+    headings: Array,
+    first: int,
+    last: int,
+    poses: Array,
+    own: int,
+    front: float,
+    advance: float,
+    time_step: float,
+    half_width: float,
+    ahead: Array,
+) -> tuple[float, float]:
+    """The closest vehicle now (station, speed along the path); fills ``ahead`` for 1 ... N.
+
+    One that is in the corridor now is taken to follow the path at its present speed, any other
+    one to go straight on: so a car ahead in a bend stays ahead, and one from the side comes.
+    """
+    N = ahead.shape[0]
+    ahead[:] = np.inf
+    nearest, its_speed = np.inf, 0.0
+    x_0, y_0, _ = body_pose(vertices, stations, headings, front, 0.0)
+    for j in range(poses.shape[1]):
+        vehicle = poses[0, j]
+        size = vehicle[4] + vehicle[5] + vehicle[6]
+        away = np.hypot(vehicle[0] - x_0, vehicle[1] - y_0)
+        if j == own or away > SIGHT + size:
+            continue
+        station = outline_in_front(vertices, stations, first, last, vehicle, front, half_width)
+        if station < np.inf:
+            i = segment_at(stations, station)
+            along = max(0.0, vehicle[3] * np.cos(vehicle[2] - headings[i]))
+            if station < nearest:
+                nearest, its_speed = station, along
+            for k in range(N):
+                ahead[k] = min(ahead[k], station + (k + 1) * time_step * along)
+            continue
+        if away > N * (advance + abs(vehicle[3]) * time_step) + size + half_width:
+            continue  # it cannot meet the ego within the horizon
+        for k in range(1, min(N, poses.shape[0] - 1) + 1):
+            at = front + k * advance
+            station = outline_in_front(
+                vertices, stations, first, last, poses[k, j], at, half_width
+            )
+            ahead[k - 1] = min(ahead[k - 1], station)
+    return nearest, its_speed
 
 
 @kernel
@@ -153,13 +333,14 @@ def fill_ego_poses(
     front: float,
     advance: float,
     speed: float,
-    front_length: float,
+    length: float,
+    row: int,
     poses: Array,
 ) -> None:
-    """Reference point, heading and speed of the ego at steps 0 ... N-1 of a prediction."""
+    """The body's centre, heading and speed at steps 0 ... N-1 of a prediction."""
     for i in range(poses.shape[0]):
-        x, y, heading = pose_at(vertices, stations, headings, front + i * advance)
-        poses[i, 0, 0] = x - front_length * np.cos(heading)
-        poses[i, 0, 1] = y - front_length * np.sin(heading)
-        poses[i, 0, 2] = heading
-        poses[i, 0, 3] = speed
+        x, y, heading = body_pose(vertices, stations, headings, front + i * advance, length)
+        poses[i, row, 0] = x - 0.5 * length * np.cos(heading)
+        poses[i, row, 1] = y - 0.5 * length * np.sin(heading)
+        poses[i, row, 2] = heading
+        poses[i, row, 3] = speed

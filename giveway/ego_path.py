@@ -29,6 +29,9 @@ class Pose(NamedTuple):
     heading: float  # [rad] counter-clockwise from +x
 
 
+_SEARCH = 20.0  # [m] SUMO's metres along a lane differ from the polyline's by less
+
+
 @dataclass(frozen=True)
 class EgoPath:
     """A polyline with its stations and headings.
@@ -66,9 +69,22 @@ class EgoPath:
         """Arc length [m]."""
         return float(self.stations[-1])
 
-    def pose(self, station: float) -> Pose:
-        """Place and direction at ``station`` [m]."""
-        return Pose(*pose_at(self.vertices, self.stations, self.headings, station))
+    def pose(self, station: float, length: float = 0.0) -> Pose:
+        """A body's pose whose front's middle is at ``station`` [m]; its rear's is on the path too.
+
+        Args:
+            station: [m].
+            length: of the body [m]; 0 gives the path's own direction.
+        """
+        return Pose(*body_pose(self.vertices, self.stations, self.headings, station, length))
+
+    def locate(self, x: float, y: float, *, near: float) -> tuple[float, float]:
+        """Station [m] and lateral offset [m] of (x, y), looked for about the station ``near``."""
+        first = segment_at(self.stations, near - _SEARCH)
+        last = segment_at(self.stations, near + _SEARCH)
+        part = slice(first, last + 2)
+        station, lateral = project(self.vertices[part], self.stations[part], x, y)
+        return station, lateral
 
     def project(self, points: ArrayLike) -> tuple[Array, Array]:
         """Stations (n,) [m] and lateral offsets (n,) [m, left positive] of ``points`` (n, 2)."""
@@ -79,20 +95,39 @@ class EgoPath:
 
 
 @kernel
-def pose_at(
-    vertices: Array, stations: Array, headings: Array, station: float
-) -> tuple[float, float, float]:
-    """x, y [m] and heading [rad] at ``station`` [m]; straight beyond the ends."""
-    last = len(headings) - 1
-    i = 0
-    while i < last and station >= stations[i + 1]:
-        i += 1
+def segment_at(stations: Array, station: float) -> int:
+    """Index of the segment that ``station`` [m] lies on; the first or last one beyond the ends."""
+    last = len(stations) - 2
+    return min(max(np.searchsorted(stations, station, side="right") - 1, 0), last)
+
+
+@kernel
+def point_on(vertices: Array, stations: Array, i: int, station: float) -> tuple[float, float]:
+    """x, y [m] at ``station`` [m] on the line through segment i."""
     along = station - stations[i]
-    heading = headings[i]
     length = stations[i + 1] - stations[i]
     x = vertices[i, 0] + along * ((vertices[i + 1, 0] - vertices[i, 0]) / length)
     y = vertices[i, 1] + along * ((vertices[i + 1, 1] - vertices[i, 1]) / length)
-    return x, y, heading
+    return x, y
+
+
+@kernel
+def body_pose(
+    vertices: Array, stations: Array, headings: Array, station: float, length: float
+) -> tuple[float, float, float]:
+    """x, y [m] of the front's middle and heading [rad] of a body; straight beyond the ends.
+
+    The heading is that of the line from rear to front, as SUMO draws vehicles.
+    """
+    i = segment_at(stations, station)
+    x, y = point_on(vertices, stations, i, station)
+    j = segment_at(stations, station - length)
+    if i == j:
+        return x, y, headings[i]
+    x_r, y_r = point_on(vertices, stations, j, station - length)
+    if (x - x_r) ** 2 + (y - y_r) ** 2 < 1e-12:  # a path that returns to where it was
+        return x, y, headings[i]
+    return x, y, np.arctan2(y - y_r, x - x_r)
 
 
 @kernel

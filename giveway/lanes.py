@@ -1,8 +1,9 @@
-"""The lanes of the loaded network: the polyline of a route, and what there is to draw."""
+"""The lanes of the loaded network: the way along a route, and what there is to draw."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,34 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+CHANGE_LENGTH = 30.0  # [m] over which a vehicle changes to the next lane
+_SAMPLE = 1.0  # [m] between the points of a lane change
+
+
+class Link(NamedTuple):
+    """From a lane over a junction to the next edge's lane."""
+
+    lane: str
+    via: tuple[str, ...]  # lanes inside the junction
+
+
+class Light(NamedTuple):
+    """The traffic light at the end of a lane, for those who go on to the way's next lane."""
+
+    station: float  # [m] of the stop line along the way
+    system: str  # SUMO's id of the traffic light
+    link: int  # index of the movement in the system's state
+
+
+@dataclass(frozen=True)
+class Way:
+    """What lies along a route: the lanes' centre line and the traffic lights on it."""
+
+    points: Array  # (k, 2) [m]
+    lights: tuple[Light, ...]
 
 
 class Lanes:
@@ -26,47 +55,115 @@ class Lanes:
     def __init__(self, sumo: Any, config_file: Path) -> None:
         self._sumo = sumo
         self._config_file = config_file
+        self._edges = frozenset(sumo.edge.getIDList())
+        self._systems: dict[tuple[str, str], tuple[str, int]] | None = None
+        self._shapes: dict[str, Array] = {}
 
-    def along(self, edges: Sequence[str], lane: int) -> list[tuple[float, float]]:
-        """The polyline of the lanes along ``edges``, junctions included.
+    def along(
+        self, edges: Sequence[str], lane: int | None, *, kind: str = "passenger", start: float = 0.0
+    ) -> Way:
+        """The way along ``edges``, junctions included, with as few lane changes as possible.
+
+        Args:
+            edges: the route.
+            lane: index of the lane to start on; None: the best one.
+            kind: SUMO's vehicle class.
+            start: where on the first lane the vehicle starts [m]; it changes lanes after that.
 
         Raises:
-            ScenarioError: an edge or lane does not exist, or the lanes do not connect.
+            ScenarioError: an edge or lane does not exist or is not for such vehicles, or the
+                edges do not connect.
         """
-        known = set(self._sumo.edge.getIDList())
         for edge in edges:
-            if edge not in known:
+            if edge not in self._edges:
                 msg = f"{self._config_file}: ego route: no edge '{edge}' in the network"
                 raise ScenarioError(msg)
-        lanes = int(self._sumo.edge.getLaneNumber(edges[0]))
-        if lane >= lanes:
+        first = self._start_lanes(edges[0], lane, kind)
+        pairs, links = self._cheapest(edges, first, kind)
+        points: list[Array] = []
+        lights: list[Light] = []
+        driven = 0.0
+        for number, (entry, leave) in enumerate(pairs):
+            shape = self._changing(edges[number], entry, leave, start if number == 0 else 0.0)
+            points.append(shape)
+            driven += _length(shape)
+            if number < len(links):
+                link = links[number]
+                light = self._light(f"{edges[number]}_{leave}", link)
+                if light is not None:
+                    lights.append(Light(driven, *light))
+                inside = [self.shape(name) for name in link.via]
+                following = self.shape(link.lane)
+                onwards = np.concatenate([shape[-1:], *inside, following[:1]])
+                points.extend(inside)
+                driven += _length(onwards)
+        return Way(np.concatenate(points), tuple(lights))
+
+    def shape(self, lane: str) -> Array:
+        """(k, 2) [m] centre line of a lane."""
+        shape = self._shapes.get(lane)
+        if shape is None:
+            shape = self._shapes[lane] = np.array(self._sumo.lane.getShape(lane), dtype=np.float64)
+        return shape
+
+    def _start_lanes(self, edge: str, lane: int | None, kind: str) -> list[int]:
+        count = int(self._sumo.edge.getLaneNumber(edge))
+        if lane is not None and lane >= count:
             msg = (
-                f"{self._config_file}: ego lane {lane}: edge '{edges[0]}' has {lanes} lane(s); "
-                f"expected 0 to {lanes - 1}"
+                f"{self._config_file}: ego lane {lane}: edge '{edge}' has {count} lane(s); "
+                f"expected 0 to {count - 1}"
             )
             raise ScenarioError(msg)
-        current = f"{edges[0]}_{lane}"
-        drivable = [i for i in range(lanes) if self._admits_cars(f"{edges[0]}_{i}")]
-        if lane not in drivable:
+        drivable = self._drivable(edge, kind)
+        if (lane is None and not drivable) or (lane is not None and lane not in drivable):
+            named = f"lane '{edge}_{lane}' is" if lane is not None else f"edge '{edge}' is"
+            users = "cars" if kind == "passenger" else f"vehicles of class '{kind}'"
             msg = (
-                f"{self._config_file}: ego lane {lane}: lane '{current}' is not for cars; "
+                f"{self._config_file}: ego lane {lane}: {named} not for {users}; "
                 f"expected one of {drivable or 'no lane of this edge'}, name it with --ego-lane"
             )
             raise ScenarioError(msg)
-        points = list(self._sumo.lane.getShape(current))
-        for following in edges[1:]:
-            current, via = self._next_lane(current, following)
-            for lane_id in (*via, current):
-                points.extend(self._sumo.lane.getShape(lane_id))
-        return points
+        return drivable if lane is None else [lane]
 
-    def _admits_cars(self, lane: str) -> bool:
+    def _drivable(self, edge: str, kind: str) -> list[int]:
+        count = int(self._sumo.edge.getLaneNumber(edge))
+        return [i for i in range(count) if self.admits(f"{edge}_{i}", kind)]
+
+    def admits(self, lane: str, kind: str) -> bool:
+        """Whether vehicles (or persons) of SUMO's class ``kind`` may use ``lane``."""
         allowed = self._sumo.lane.getAllowed(lane)
-        disallowed = self._sumo.lane.getDisallowed(lane)
-        return (not allowed or "passenger" in allowed) and "passenger" not in disallowed
+        return (not allowed or kind in allowed) and kind not in self._sumo.lane.getDisallowed(lane)
 
-    def _next_lane(self, lane: str, edge: str) -> tuple[str, list[str]]:
-        """The lane of ``edge`` that ``lane`` leads to, and the junction's lanes between them."""
+    def _cheapest(
+        self, edges: Sequence[str], first: list[int], kind: str
+    ) -> tuple[list[tuple[int, int]], list[Link]]:
+        """The lanes on which to enter and leave each edge, and the links between them."""
+        # best[lane]: changes so far, (entry, leave) of each edge before, links taken
+        best: dict[int, tuple[int, list[tuple[int, int]], list[Link]]]
+        best = {lane: (0, [], []) for lane in first}
+        for edge, following in zip(edges[:-1], edges[1:], strict=True):
+            reached: dict[int, tuple[int, list[tuple[int, int]], list[Link]]] = {}
+            for leave in self._drivable(edge, kind) or sorted(best):
+                for link in self._links(f"{edge}_{leave}", following):
+                    target = int(link.lane.rpartition("_")[2])
+                    for entry, (changes, pairs, links) in best.items():
+                        cost = changes + abs(leave - entry)
+                        if target not in reached or cost < reached[target][0]:
+                            taken = [*pairs, (entry, leave)]
+                            reached[target] = (cost, taken, [*links, link])
+            if not reached:
+                msg = (
+                    f"{self._config_file}: ego route: edge '{edge}' has no connection to edge "
+                    f"'{following}'; choose another lane or route"
+                )
+                raise ScenarioError(msg)
+            best = reached
+        lane, (_, pairs, links) = min(best.items(), key=lambda item: (item[1][0], item[0]))
+        return [*pairs, (lane, lane)], links
+
+    def _links(self, lane: str, edge: str) -> list[Link]:
+        """The ways from ``lane`` over the junction to ``edge``."""
+        found = []
         for link in self._sumo.lane.getLinks(lane):
             target, inside = link[0], link[4]
             if self._sumo.lane.getEdgeID(target) != edge:
@@ -76,15 +173,50 @@ class Lanes:
                 via.append(inside)
                 onwards = self._sumo.lane.getLinks(inside)
                 inside = onwards[0][4] if onwards else ""
-            return target, via
-        msg = (
-            f"{self._config_file}: ego route: lane '{lane}' has no connection to edge '{edge}'; "
-            "choose another lane or route"
-        )
-        raise ScenarioError(msg)
+            found.append(Link(target, tuple(via)))
+        return found
 
-    def areas(self) -> list[tuple[NDArray[np.float64], float]]:
+    def _light(self, lane: str, link: Link) -> tuple[str, int] | None:
+        """The traffic light that governs ``link``."""
+        if self._systems is None:
+            self._systems = {}
+            for system in self._sumo.trafficlight.getIDList():
+                links = self._sumo.trafficlight.getControlledLinks(system)
+                for index, movements in enumerate(links):
+                    for source, target, _ in movements:
+                        self._systems[source, target] = (system, index)
+        return self._systems.get((lane, link.lane))
+
+    def _changing(self, edge: str, entry: int, leave: int, start: float) -> Array:
+        """The centre line from lane ``entry`` over to lane ``leave`` of one edge."""
+        before = self.shape(f"{edge}_{entry}")
+        if entry == leave:
+            return before
+        after = self.shape(f"{edge}_{leave}")
+        length = _length(before)
+        begin = min(max(start, 0.0), length)
+        span = min(abs(leave - entry) * CHANGE_LENGTH, length - begin)
+        samples = np.linspace(0.0, length, max(2, round(length / _SAMPLE)))
+        share = np.clip((samples - begin) / max(span, 1e-3), 0.0, 1.0)
+        weight = (share * share * (3.0 - 2.0 * share))[:, None]  # a smooth S
+        return (1.0 - weight) * _at(before, samples / length) + weight * _at(
+            after, samples / length
+        )
+
+    def areas(self) -> list[tuple[Array, float]]:
         """Centre line (k, 2) [m] and width [m] of every lane outside of junctions."""
         lane = self._sumo.lane
         names = [name for name in lane.getIDList() if not name.startswith(":")]
         return [(np.array(lane.getShape(name)), float(lane.getWidth(name))) for name in names]
+
+
+def _length(points: Array) -> float:
+    return float(np.hypot(*np.diff(points, axis=0).T).sum())
+
+
+def _at(points: Array, shares: Array) -> Array:
+    """The points of a polyline at ``shares`` in [0, 1] of its length."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    x = np.interp(shares * along[-1], along, points[:, 0])
+    y = np.interp(shares * along[-1], along, points[:, 1])
+    return np.column_stack([x, y])

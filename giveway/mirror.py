@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.corridor import SIGHT
 from giveway.errors import CrowdError, VehicleError
 from giveway.jit import kernel
+from giveway.traffic import NO_VEHICLES, BackgroundVehicles
 from pedestrian_model import Vehicles
 
 if TYPE_CHECKING:
-    from giveway.assembly import Parts
-    from giveway.recorder import Recorder
-    from giveway.traffic import BackgroundVehicles
-    from pedestrian_model import Crowd
+    from collections.abc import Sequence
+
+    from giveway.ego import Ego
+    from giveway.population import Population
+    from giveway.sumo import SumoSession
 
 Array = NDArray[np.float64]
 
@@ -31,114 +34,147 @@ class Mirror:
     SUMO steps once every ``substeps`` control steps; in between its vehicles go on straight at
     the speed they had.
 
+    Args:
+        session: the running simulation.
+        time_step: of the control [s].
+        substeps: control steps per SUMO step.
+        horizon: N, steps that anybody looks ahead.
+
     Attributes:
-        poses: (N, 1 + b, 7) vehicles over the prediction horizon; row 0 of each step is the ego,
-            which the corridor fills in; ``poses[0]`` is now.
+        background: SUMO's own vehicles at its latest instant.
+        poses: (N, e + b, 7) vehicles over the prediction horizon; the first e rows of each step
+            are the egos, which their corridors fill in; ``poses[0]`` is now.
         vehicles: a view of ``poses[0]`` for the crowd's step.
     """
 
+    background: BackgroundVehicles
     poses: Array
     vehicles: Vehicles
 
-    def __init__(self, parts: Parts, recorder: Recorder) -> None:
-        self._parts = parts
-        self._recorder = recorder
-        self._time_step = parts.config.time_step
-        self._substeps = parts.substeps
-        self._horizon = parts.horizon
-        people = len(parts.spawned.ids)
-        self._angles = np.zeros(people)
-        self._row = np.empty(people)
-        self._leaving: list[str] = []
-        self._read_background(parts.crowd.position)
+    def __init__(
+        self, session: SumoSession, time_step: float, substeps: int, horizon: int
+    ) -> None:
+        self._session = session
+        self._time_step = time_step
+        self._substeps = substeps
+        self._horizon = horizon
+        self._span = (substeps + horizon) * time_step  # [s]
+        self._egos = 0
+        self._angles = np.zeros(0)
+        self._row = np.zeros(0)
+        self.background = NO_VEHICLES
+        self._allocate((), 0)
 
-    def dismiss(self, arrived: NDArray[np.int64]) -> None:
-        """Let pedestrians leave SUMO with its next step."""
-        self._leaving += [self._parts.spawned.ids[i] for i in arrived]
+    def _allocate(self, egos: Sequence[Ego], others: int) -> None:
+        self._egos = len(egos)
+        self.poses = np.zeros((self._horizon, self._egos + others, 7))
+        self.poses[:, :, 4:] = 1.0  # a body of some size, until the row is filled
+        for row, ego in enumerate(egos):
+            half = ego.shape.length / 2
+            self.poses[:, row, 4:] = half, half, ego.shape.width
+        self.vehicles = Vehicles(self.poses[0])
 
-    def follow(self, k: int, front: float, present: NDArray[np.int64], crowd: Crowd) -> None:
-        """Bring SUMO to t_k if it has a step there, else carry its vehicles on.
+    # --- from SUMO ----------------------------------------------------------------------------
+
+    def read(self, egos: Sequence[Ego], people: Array) -> None:
+        """Take over where SUMO's own vehicles are now.
 
         Args:
-            k: the control step reached.
-            front: the ego's front bumper station [m] at t_k.
-            present: indices of the pedestrians in ``crowd``.
-            crowd: the crowd at t_k.
+            egos: on the road, in the order of their rows.
+            people: (n, 2) [m] the pedestrians now.
 
         Raises:
-            CrowdError, VehicleError: a value that SUMO must not be given (it hangs on them).
-            SumoError: SUMO failed or disagrees.
+            VehicleError: SUMO has a vehicle at no finite place.
         """
-        if k % self._substeps:
-            carry_on(self.poses, self._time_step)
-            return
-        parts = self._parts
-        pose = parts.path.pose(front)
-        if not all(map(math.isfinite, pose)):
-            msg = f"ego at step {k}: pose {tuple(pose)}; expected finite numbers from the FMU"
-            raise VehicleError(msg)
-        angles = self._row[: len(present)]
-        bad = walking_angles(crowd.position, crowd.velocity, present, self._angles, angles)
-        if bad >= 0:
-            name = parts.spawned.ids[present[bad]]
-            msg = (
-                f"pedestrian '{name}' at step {k}: position {crowd.position[bad].tolist()}; "
-                "expected finite numbers"
-            )
-            raise CrowdError(msg)
-        if self._leaving:
-            parts.sumo.remove_persons(self._leaving)
-            self._leaving.clear()
-        names = parts.spawned.ids
-        ids = names if len(present) == len(names) else [names[i] for i in present]
-        x, y = crowd.position.T.tolist()
-        parts.sumo.mirror(pose, ids, x, y, angles.tolist())
-        self._read_background(crowd.position)
-
-    def _read_background(self, people: Array) -> None:
-        """Take over where SUMO's own vehicles are now."""
-        background = self._parts.sumo.background_vehicles()
-        if background.ids:
-            self._recorder.background(self._parts.sumo.time, background)
-        elif hasattr(self, "poses") and self.poses.shape[1] == 1:
-            return
-        ahead = self._substeps * self._time_step + self._horizon * self._time_step
-        near = _near(background, people, ahead)
-        count = 1 + len(near)
-        if not hasattr(self, "poses") or self.poses.shape[1] != count:
-            self.poses = np.zeros((self._horizon, count, 7))
-            half = self._parts.shape.length / 2
-            self.poses[:, :, 4:] = half, half, self._parts.shape.width
-            self.vehicles = Vehicles(self.poses[0])
+        self.background = background = self._session.vehicles.background()
+        for name, x, y, speed in zip(
+            background.ids, background.x, background.y, background.speed, strict=True
+        ):
+            if not math.isfinite(x + y + speed):
+                msg = f"vehicle '{name}' at {self._session.time:g} s: SUMO has it at ({x}, {y}) "
+                msg += f"with {speed} m/s; expected finite numbers; check its route and type"
+                raise VehicleError(msg)
+        places = np.array([ego.pose[:2] for ego in egos]).reshape(-1, 2)
+        near = _relevant(background, people, places, self._span)
+        self._allocate(egos, len(near))
         if len(near):
+            now = self.poses[0, self._egos :]
             half_length = background.length[near] / 2
-            now = self.poses[0, 1:]
             now[:, 0] = background.x[near] - half_length * np.cos(background.heading[near])
             now[:, 1] = background.y[near] - half_length * np.sin(background.heading[near])
             now[:, 2] = background.heading[near]
             now[:, 3] = background.speed[near]
             now[:, 4] = now[:, 5] = half_length
             now[:, 6] = background.width[near]
-            extrapolate(self.poses, self._time_step)
+            extrapolate(self.poses, self._egos, self._time_step)
+
+    def place(self, egos: Sequence[Ego]) -> None:
+        """Fill the egos' rows from where they are now."""
+        for row, ego in enumerate(egos):
+            ego.corridor.fill_poses(self.poses, row, ego.front, ego.vehicle.speed)
+
+    def carry_on(self) -> None:
+        """Move SUMO's vehicles on by one control step, since SUMO itself does not step yet."""
+        if self.poses.shape[1] > self._egos:
+            carry_on(self.poses, self._egos, self._time_step)
+
+    # --- to SUMO ------------------------------------------------------------------------------
+
+    def push(self, step: int, egos: Sequence[Ego], population: Population) -> None:
+        """Move everybody in SUMO to where they are at the control step ``step``, and step SUMO.
+
+        Raises:
+            CrowdError, VehicleError: a value that SUMO must not be given (it hangs on them).
+            SumoError: SUMO failed or disagrees.
+        """
+        places = [(ego.id, ego.check_pose(step)) for ego in egos]
+        present, crowd = population.present, population.crowd
+        self._reserve(len(population.ids))
+        angles = self._row[: len(present)]
+        bad = walking_angles(crowd.position, crowd.velocity, present, self._angles, angles)
+        if bad >= 0:
+            msg = (
+                f"pedestrian '{population.ids[present[bad]]}' at step {step}: position "
+                f"{crowd.position[bad].tolist()}; expected finite numbers"
+            )
+            raise CrowdError(msg)
+        x, y = crowd.position.T.tolist()
+        self._session.mirror(places, population.names, x, y, angles.tolist())
+
+    def _reserve(self, people: int) -> None:
+        if people > len(self._angles):
+            more = max(people, 2 * len(self._angles))
+            self._angles = np.concatenate([self._angles, np.zeros(more - len(self._angles))])
+            self._row = np.empty(more)
 
 
-def _near(vehicles: BackgroundVehicles, people: Array, ahead: float) -> NDArray[np.int64]:
-    """Indices of the vehicles that can influence anybody in the crowd within ``ahead`` [s]."""
-    if not len(people) or not vehicles.ids:
+def _relevant(
+    vehicles: BackgroundVehicles, people: Array, egos: Array, ahead: float
+) -> NDArray[np.int64]:
+    """Indices of the vehicles that matter to anybody within ``ahead`` [s]."""
+    if not vehicles.ids:
         return np.empty(0, dtype=np.int64)
     speed = np.abs(vehicles.speed)
     reach = _INFLUENCE_RANGE + vehicles.length + vehicles.width + (_NOSE + ahead) * speed
-    low, high = people.min(axis=0), people.max(axis=0)
-    inside = (vehicles.x >= low[0] - reach) & (vehicles.x <= high[0] + reach)
-    inside &= (vehicles.y >= low[1] - reach) & (vehicles.y <= high[1] + reach)
-    return np.flatnonzero(inside)
+    matters = np.zeros(len(vehicles.ids), dtype=np.bool_)
+    if len(people):
+        low, high = people.min(axis=0), people.max(axis=0)
+        matters |= (
+            (vehicles.x >= low[0] - reach)
+            & (vehicles.x <= high[0] + reach)
+            & (vehicles.y >= low[1] - reach)
+            & (vehicles.y <= high[1] + reach)
+        )
+    for x, y in egos:
+        matters |= np.hypot(vehicles.x - x, vehicles.y - y) <= SIGHT + reach
+    return np.flatnonzero(matters)
 
 
 @kernel
-def extrapolate(poses: Array, time_step: float) -> None:
+def extrapolate(poses: Array, egos: int, time_step: float) -> None:
     """Fill the background vehicles' poses of steps 1 ... N-1 from step 0 at constant speed."""
     for i in range(1, poses.shape[0]):
-        for j in range(1, poses.shape[1]):
+        for j in range(egos, poses.shape[1]):
             distance = poses[0, j, 3] * time_step * i
             poses[i, j] = poses[0, j]
             poses[i, j, 0] += distance * np.cos(poses[0, j, 2])
@@ -146,10 +182,10 @@ def extrapolate(poses: Array, time_step: float) -> None:
 
 
 @kernel
-def carry_on(poses: Array, time_step: float) -> None:
+def carry_on(poses: Array, egos: int, time_step: float) -> None:
     """Move all background vehicles of all steps on by one time step at constant speed."""
     for i in range(poses.shape[0]):
-        for j in range(1, poses.shape[1]):
+        for j in range(egos, poses.shape[1]):
             distance = poses[i, j, 3] * time_step
             poses[i, j, 0] += distance * np.cos(poses[i, j, 2])
             poses[i, j, 1] += distance * np.sin(poses[i, j, 2])

@@ -8,17 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.jit import kernel
+from giveway.journal import Journal
 from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from giveway.ego_path import Pose
     from giveway.traffic import BackgroundVehicles
 
 Array = NDArray[np.float64]
 
+EGO_NUMBERS = 12  # of an EgoRow, the pose's three among them
+
 
 class EgoRow(NamedTuple):
-    """The ego at one control instant, in the order of :class:`EgoTrack`'s arrays."""
+    """An ego at one control instant, in the order of :class:`EgoTrack`'s arrays."""
 
     time: float
     position: float
@@ -28,100 +33,150 @@ class EgoRow(NamedTuple):
     force: float
     gap: float
     reference_speed: float
+    vehicle_gap: float
+    stop_gap: float
     acting: str
     reason: str
     status: str
     iterations: int
 
 
-class Rows:
-    """A table of float64 that grows by doubling."""
-
-    def __init__(self, columns: int) -> None:
-        self._buffer = np.empty((1024, columns))
-        self._count = 0
-
-    def block(self, rows: int) -> Array:
-        """A view of the next ``rows`` rows, for the caller to fill."""
-        start, self._count = self._count, self._count + rows
-        while self._count > len(self._buffer):
-            self._buffer = np.concatenate([self._buffer, np.empty_like(self._buffer)])
-        return self._buffer[start : self._count]
-
-    @property
-    def filled(self) -> Array:
-        """The rows filled so far (a view)."""
-        return self._buffer[: self._count]
-
-
 class Recorder:
     """Collects what the loop knows at each control instant.
 
     Args:
-        pedestrian_ids: every pedestrian of the run; blocks refer to them by index.
+        journal: keeps the rows where a dying process cannot take them along.
     """
 
-    def __init__(self, pedestrian_ids: tuple[str, ...]) -> None:
-        self._ids = pedestrian_ids
-        self._ego: list[EgoRow] = []
-        self._crowd = Rows(6)  # step, pedestrian, x, y, vx, vy
-        self._timings = Rows(len(Timings.NAMES))
-        self._background: list[tuple[float, BackgroundVehicles]] = []
+    def __init__(self, journal: Journal | None = None) -> None:
+        self.journal = journal or Journal(None)
+        rows, names = self.journal.rows, self.journal.names
+        self._clock = rows("clock", 1)  # time
+        self._ego = rows("ego", 2 + EGO_NUMBERS + 4)  # instant, ego, numbers, words, iterations
+        self._crowd = rows("crowd", 6)  # instant, pedestrian, x, y, vx, vy
+        self._background = rows("background", 9)  # time, vehicle, type, x, y, heading, ...
+        self._timings = rows("timing", len(Timings.NAMES))
+        self._words = names("words")
+        self._egos = names("egos")
+        self._pedestrians = names("pedestrians")
+        self._vehicles = names("vehicles")
+        self._steps = 0
 
     @property
     def steps(self) -> int:
         """Control instants recorded so far."""
-        return len(self._ego)
+        return self._steps
 
-    def ego(self, row: EgoRow) -> None:
-        """Record the ego at the next control instant."""
-        self._ego.append(row)
+    def instant(self, time: float) -> None:
+        """Begin the next control instant, at ``time`` [s]."""
+        self._clock.block(1)[0, 0] = time
+        self._steps += 1
+
+    def name_pedestrians(self, ids: Sequence[str]) -> None:
+        """Note the names of pedestrians, in the order of their indices."""
+        for name in ids:
+            self._pedestrians.index(name)
+
+    def ego(self, ego_id: str, row: EgoRow) -> None:
+        """Record an ego at the present control instant."""
+        word = self._words.index
+        self._ego.block(1)[0] = (
+            self._steps - 1,
+            self._egos.index(ego_id),
+            row[0],
+            row[1],
+            *row[2],
+            *row[3:10],
+            word(row.acting),
+            word(row.reason),
+            word(row.status),
+            row.iterations,
+        )
 
     def crowd(self, present: NDArray[np.int64], position: Array, velocity: Array) -> None:
-        """Record the pedestrians ``present`` at the instant of the latest ego row."""
-        step = len(self._ego) - 1
-        fill_block(step, present, position, velocity, self._crowd.block(len(present)))
+        """Record the pedestrians ``present`` at the present control instant."""
+        block = self._crowd.block(len(present))
+        fill_block(self._steps - 1, present, position, velocity, block)
 
-    def background(self, time: float, vehicles: BackgroundVehicles) -> None:
-        """Record SUMO's own vehicles at ``time`` [s]."""
-        if vehicles.ids:
-            self._background.append((time, vehicles))
+    def background(self, time: float, vehicles: BackgroundVehicles, wanted: Sequence[int]) -> None:
+        """Record those of SUMO's own vehicles at ``time`` [s] whose indices are ``wanted``."""
+        if not len(wanted):
+            return
+        index = self._vehicles.index
+        block = self._background.block(len(wanted))
+        block[:, 0] = time
+        block[:, 1] = [index(vehicles.ids[i]) for i in wanted]
+        block[:, 2] = [index(vehicles.types[i]) for i in wanted]
+        for column, values in enumerate(vehicles.numbers, start=3):
+            block[:, column] = values[wanted]
 
     def timing(self, *seconds: float) -> None:
         """Record the computing times of one control step, in the order of ``Timings.NAMES``."""
         self._timings.block(1)[0] = seconds
 
-    def ego_track(self) -> EgoTrack:
-        """The ego's rows as arrays."""
-        rows = self._ego
-        numbers = np.array(
-            [(r.time, r.position, *r.pose, *r[3:8]) for r in rows], dtype=np.float64
-        ).reshape(-1, 10)
-        time, position, x, y, heading, speed, acceleration, force, gap, reference_speed = (
-            np.ascontiguousarray(column) for column in numbers.T
+    def tables(self) -> Tables:
+        """Everything recorded so far."""
+        return Tables(
+            {
+                "clock": self._clock.filled,
+                "ego": self._ego.filled,
+                "crowd": self._crowd.filled,
+                "background": self._background.filled,
+                "timing": self._timings.filled,
+            },
+            {
+                "words": self._words.names,
+                "egos": self._egos.names,
+                "pedestrians": self._pedestrians.names,
+                "vehicles": self._vehicles.names,
+            },
         )
-        return EgoTrack(
-            time=time,
-            position=position,
-            front_x=x,
-            front_y=y,
-            heading=heading,
-            speed=speed,
-            acceleration=acceleration,
-            force=force,
-            gap=gap,
-            reference_speed=reference_speed,
-            acting=np.array([r.acting for r in rows], dtype=np.str_),
-            reason=np.array([r.reason for r in rows], dtype=np.str_),
-            solver_status=np.array([r.status for r in rows], dtype=np.str_),
-            solver_iterations=np.array([r.iterations for r in rows], dtype=np.int64),
+
+
+class Tables:
+    """Recorded rows, from a recorder or from the journal of a run that died.
+
+    Args:
+        rows: by table, as :class:`Recorder` lays them out.
+        names: what their indices mean.
+    """
+
+    def __init__(self, rows: dict[str, Array], names: dict[str, tuple[str, ...]]) -> None:
+        self._rows = rows
+        self._names = names
+        instants = len(rows["clock"])  # a journal may end within an instant: what it has counts
+        self.time = np.ascontiguousarray(rows["clock"][:, 0])  # (T,) [s]
+        self._ego = rows["ego"][rows["ego"][:, 0] < instants]
+
+    @property
+    def egos(self) -> tuple[str, ...]:
+        """Ids of the egos, in the order of their departure."""
+        return self._names["egos"]
+
+    def ego_track(self, ego_id: str) -> tuple[int, EgoTrack]:
+        """The first control instant of an ego, and its rows as arrays."""
+        number = self._names["egos"].index(ego_id)
+        rows = self._ego[self._ego[:, 1] == number]
+        columns = [np.ascontiguousarray(column) for column in rows.T]
+        word = self._words
+        acting, reason, status, iterations = columns[-4:]
+        track = EgoTrack(
+            *columns[2:-4],
+            acting=word(acting),
+            reason=word(reason),
+            solver_status=word(status),
+            solver_iterations=iterations.astype(np.int64),
         )
+        return int(rows[0, 0]), track
+
+    def _words(self, indices: Array) -> NDArray[np.str_]:
+        return np.array(self._names["words"], dtype=np.str_)[indices.astype(np.int64)]
 
     def crowd_track(self) -> CrowdTrack:
         """The crowd's rows as arrays."""
-        step, pedestrian, x, y, vx, vy = (
-            np.ascontiguousarray(column) for column in self._crowd.filled.T
-        )
+        rows = self._rows["crowd"]
+        rows = rows[rows[:, 0] < len(self.time)]
+        step, pedestrian, x, y, vx, vy = (np.ascontiguousarray(column) for column in rows.T)
         return CrowdTrack(
             step=step.astype(np.int64),
             pedestrian=pedestrian.astype(np.int64),
@@ -129,30 +184,20 @@ class Recorder:
             y=y,
             vx=vx,
             vy=vy,
-            ids=self._ids,
+            ids=self._names["pedestrians"],
         )
 
     def background_track(self) -> BackgroundTrack:
         """The background vehicles' rows as arrays."""
-        instants = self._background
-        if not instants:
-            nothing, nobody = np.empty(0), np.empty(0, dtype=np.str_)
-            return BackgroundTrack(nothing, nobody, nobody, *(nothing for _ in range(6)))
-        return BackgroundTrack(
-            np.concatenate([np.full(len(v.ids), time) for time, v in instants]),
-            np.concatenate([np.array(v.ids, dtype=np.str_) for _, v in instants]),
-            np.concatenate([np.array(v.types, dtype=np.str_) for _, v in instants]),
-            np.concatenate([v.x for _, v in instants]),
-            np.concatenate([v.y for _, v in instants]),
-            np.concatenate([v.heading for _, v in instants]),
-            np.concatenate([v.speed for _, v in instants]),
-            np.concatenate([v.length for _, v in instants]),
-            np.concatenate([v.width for _, v in instants]),
-        )
+        columns = [np.ascontiguousarray(column) for column in self._rows["background"].T]
+        names = np.array(self._names["vehicles"], dtype=np.str_)
+        time, vehicle, kind, *numbers = columns
+        who, what = names[vehicle.astype(np.int64)], names[kind.astype(np.int64)]
+        return BackgroundTrack(time, who, what, *numbers)
 
     def timings(self) -> Timings:
         """The computing times as an array."""
-        return Timings(self._timings.filled.copy())
+        return Timings(self._rows["timing"].copy())
 
 
 @kernel

@@ -1,11 +1,12 @@
-"""The master loop: vehicle FMU, controller, crowd and SUMO, one control step after the other.
+"""The master loop: vehicle FMUs, controllers, crowd and SUMO, one control step after the other.
 
 The order of one step, from t_k to t_k+1 (Yang & Özgüner 2019, algorithm 1):
 
-1. read: the ego from its FMU, SUMO's own vehicles where SUMO has just stepped;
-2. predict the crowd, solve for the force u(k);
+1. where SUMO has just stepped, read it: egos that depart, walkers who enter or leave the zone,
+   lights, SUMO's own vehicles and whom they yield to;
+2. for each ego: predict the crowd, solve for the force u(k);
 3. record the state at t_k and u(k);
-4. step the vehicle and the crowd, both from the state at t_k, so that their order is irrelevant;
+4. step the vehicles and the crowd, both from the state at t_k, so that their order is irrelevant;
 5. where SUMO's step ends at t_k+1: move everybody there, step SUMO, compare.
 
 All that may raise comes before the moves of 5. The controller sits inside the master, without a
@@ -24,21 +25,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import ControllerError, Observation
+from controller import ControllerError
 from fmus import FmuError
 from giveway.errors import ControlError, CrowdError, VehicleError
+from giveway.heartbeat import Phase
+from giveway.jit import kernel
 from giveway.mirror import Mirror
-from giveway.recorder import EgoRow, Recorder
 from pedestrian_model import PedestrianModelError
 
 if TYPE_CHECKING:
     from giveway.assembly import Parts
+    from giveway.ego import Ego
+    from giveway.recorder import Recorder
 
 Array = NDArray[np.float64]
 
 
 class Ending(enum.StrEnum):
-    """Why a run ended."""
+    """Why a run, or one ego's drive, ended."""
 
     COMPLETED = "completed"  # the ego has driven its distance
     TIME_LIMIT = "time limit"  # it has not within the time limit
@@ -51,11 +55,11 @@ class Ending(enum.StrEnum):
 class Progress:
     """Where a run stands, for whoever watches."""
 
-    time: float  # [s] since the ego's departure
-    position: float  # [m] driven
-    speed: float  # [m/s]
+    time: float  # [s] since the run's first instant
+    position: float  # [m] driven by the first ego on the road; nan without one
+    speed: float  # [m/s] of it
     acting: str  # which controller acts
-    pedestrians: int  # still walking
+    pedestrians: int  # in the crowd
 
 
 Watcher = Callable[[Progress], None]
@@ -67,136 +71,212 @@ class Loop:
     Args:
         parts: what the run is made of, set up and at its initial state.
         recorder: gathers the rows.
+
+    Attributes:
+        endings: of each ego that has left the road or was on it when the run ended.
     """
+
+    endings: dict[str, Ending]
 
     def __init__(self, parts: Parts, recorder: Recorder) -> None:
         self._parts = parts
         self._recorder = recorder
-        self._config = parts.config
+        self._beat = recorder.journal.heartbeat
         self._start = parts.sumo.time
-        self._time_step = parts.config.time_step
+        self._time_step = parts.time_step
         self._k = 0
-        self._crowd = parts.crowd
-        self._present = np.arange(len(parts.spawned.ids))
-        self._mirror = Mirror(parts, recorder)
-        centre = parts.shape.length / 2 if parts.config.regulation.gap_from == "centre" else 0.0
-        self._gap_origin = -centre  # [m] from the front bumper to where gaps are measured from
-
-    @property
-    def ledger(self) -> dict[str, int]:
-        """Where the pedestrians are: those added are those arrived plus those still walking."""
-        added, walking = len(self._parts.spawned.ids), len(self._present)
-        return {"added": added, "arrived": added - walking, "walking": walking}
+        self._population = parts.population
+        self._egos: list[Ego] = []
+        self.drives: list[Ego] = []  # everybody who ever was on the road
+        self.endings = {}
+        self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
+        self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
+        self._far_background = -self._far_steps
+        self._named = 0
 
     def run(self, watcher: Watcher | None, interrupted: Callable[[], bool]) -> Ending:
-        """Step until the goal, a limit or an interrupt.
+        """Step until every ego is done, a limit or an interrupt.
 
         Raises:
             GivewayError: a part failed; everything recorded so far stays recorded.
         """
         try:
-            return self._run(watcher, interrupted)
+            ending = self._run(watcher, interrupted)
         except FmuError as error:
             raise VehicleError(f"step {self._k}: {error}") from error
         except ControllerError as error:
             raise ControlError(f"controller at step {self._k}: {error}") from error
         except PedestrianModelError as error:
             raise CrowdError(self._blame(error)) from error
+        for ego in self._egos:
+            self.endings.setdefault(ego.id, ending)
+        if ending in {Ending.SCENARIO_END, Ending.TIME_LIMIT}:
+            self._parts.departures.require_all()
+        return ending
 
     def _blame(self, error: PedestrianModelError) -> str:
         """Name the pedestrian whose state is not finite by its id."""
-        state = np.concatenate([self._crowd.position, self._crowd.velocity], axis=1)
+        crowd, population = self._population.crowd, self._population
+        state = np.concatenate([crowd.position, crowd.velocity], axis=1)
         bad = np.flatnonzero(~np.isfinite(state).all(axis=1))
         if not len(bad):
             return f"crowd at step {self._k}: {error}"
-        name = self._parts.spawned.ids[self._present[bad[0]]]
+        name = population.ids[population.present[bad[0]]]
         return (
             f"pedestrian '{name}' at step {self._k}: position and velocity "
             f"{state[bad[0]].tolist()}; expected finite numbers [m, m/s]"
         )
 
     def _run(self, watcher: Watcher | None, interrupted: Callable[[], bool]) -> Ending:
-        limit = self._config.time_limit
-        last_step = min(limit, self._parts.sumo.end - self._start) / self._time_step - 1e-6
+        parts = self._parts
+        limit = np.inf if parts.config.time_limit is None else parts.config.time_limit
+        last_step = min(limit, parts.sumo.end - self._start) / self._time_step - 1e-6
         while True:
-            acting = self._observe_and_control()
-            vehicle = self._parts.vehicle
+            if self._k % parts.substeps == 0:
+                self._read_sumo()
+            acting = self._control()
             if watcher is not None:
-                elapsed = self._k * self._time_step
-                crowd = len(self._present)
-                watcher(Progress(elapsed, vehicle.position, vehicle.speed, acting, crowd))
-            if vehicle.position >= self._config.ego.travel_distance:
+                watcher(self._progress(acting))
+            self._see_arrivals()
+            if parts.drivers and not self._egos and not parts.departures.waiting:
                 return Ending.COMPLETED
             if self._k >= last_step:
                 over = limit / self._time_step - 1e-6 <= self._k
                 return Ending.TIME_LIMIT if over else Ending.SCENARIO_END
+            if not self._egos and parts.sumo.end == np.inf and not parts.sumo.expects_more:
+                return Ending.SCENARIO_END
             if interrupted():
                 return Ending.INTERRUPTED
             self._advance()
 
-    def _observe_and_control(self) -> str:
-        """Steps 1 to 3; keeps the command for :meth:`_advance`."""
+    def _progress(self, acting: str) -> Progress:
+        elapsed, people = self._k * self._time_step, len(self._population)
+        if not self._egos:
+            return Progress(elapsed, np.nan, np.nan, acting, people)
+        vehicle = self._egos[0].vehicle
+        return Progress(elapsed, vehicle.position, vehicle.speed, acting, people)
+
+    # --- step 1 -------------------------------------------------------------------------------
+
+    def _read_sumo(self) -> None:
+        parts = self._parts
+        arrivals = parts.departures.due(self._k)
+        self._egos += arrivals
+        self.drives += arrivals
+        if parts.exchange is not None:
+            parts.exchange.update(self._places())
+        people = self._population.crowd.position
+        self._mirror.read(self._egos, people)
+        for ego in self._egos:
+            if ego.lights.systems:
+                states = parts.sumo.light_states(ego.lights.systems)
+                ego.lights.update(states, ego.front, ego.vehicle.speed)
+        if parts.yielding is not None:
+            parts.yielding.update(self._mirror.background, self._population.crowd)
+        self._record_background()
+
+    def _places(self) -> Array:
+        """(e, 2) [m] the egos' front bumpers."""
+        return np.array([ego.pose[:2] for ego in self._egos]).reshape(-1, 2)
+
+    # --- steps 2 and 3 ------------------------------------------------------------------------
+
+    def _control(self) -> str:
+        """Decide on every ego's force, and record the instant."""
         began = perf_counter()
-        parts, vehicle = self._parts, self._parts.vehicle
-        speed = vehicle.speed
-        front = parts.departure + vehicle.position
-        poses = self._mirror.poses
-        parts.corridor.fill_poses(poses, front, speed, parts.shape.length / 2)
-        closest, reachable = parts.corridor.closest_now(self._crowd.position, front)
-        origin = front + self._gap_origin
-        gap = closest - origin
+        time = self._start + self._k * self._time_step
+        self._beat.step(self._k, time)
+        self._beat.beat(Phase.CONTROLLING)
+        recorder, mirror = self._recorder, self._mirror
+        recorder.instant(time)
+        mirror.place(self._egos)
+        crowd, surroundings = self._population.crowd, self._parts.surroundings
+        predicting = controlling = 0.0
+        acting = ""
+        for row, ego in enumerate(self._egos):
+            look_at = perf_counter()
+            seen = ego.look(row, mirror.poses, crowd, surroundings)
+            decide_at = perf_counter()
+            decision = ego.decide(self._k, seen)
+            controlled_at = perf_counter()
+            recorder.ego(ego.id, ego.row(time, seen, decision))
+            predicting += decide_at - look_at
+            controlling += controlled_at - decide_at
+            acting = acting or decision.acting
+        self._record_crowd()
+        recorder.journal.commit()
+        self._began, self._predicting, self._controlling = began, predicting, controlling
+        return acting
 
-        ahead = parts.corridor.nobody
-        if reachable and parts.predictor is not None:
-            predicted = parts.predictor.predict(self._crowd, poses)
-            ahead = parts.corridor.closest_predicted(predicted, front, speed)
-        predicted_at = perf_counter()
+    def _record_crowd(self) -> None:
+        """Everybody near an ego, and from time to time everybody."""
+        population = self._population
+        if len(population.ids) > self._named:
+            self._recorder.name_pedestrians(population.ids[self._named :])
+            self._named = len(population.ids)
+        present, crowd = population.present, population.crowd
+        if self._k % self._far_steps:
+            near = self._near(crowd.position)
+            if near is not None:
+                chosen = np.flatnonzero(near)
+                self._recorder.crowd(
+                    present[chosen], crowd.position[chosen], crowd.velocity[chosen]
+                )
+                return
+        self._recorder.crowd(present, crowd.position, crowd.velocity)
 
-        decision = parts.regulator.control(Observation(origin, speed, gap, ahead))
-        self._force = decision.force
-        if not np.isfinite(decision.force):
-            msg = (
-                f"controller '{decision.acting}' at step {self._k}: force = {decision.force}; "
-                "expected a finite number [N]; please report this with the run's config.toml"
-            )
-            raise ControlError(msg)
-        self._began, self._predicted_at, self._controlled_at = began, predicted_at, perf_counter()
+    def _near(self, places: Array) -> NDArray[np.bool_] | None:
+        """Which of ``places`` are near an ego; None: all."""
+        near = np.empty(len(places), dtype=np.bool_)
+        count = mark_near(places, self._places(), self._parts.config.record.near, near)
+        return None if count == len(places) else near
 
-        self._recorder.ego(
-            EgoRow(
-                self._start + self._k * self._time_step,
-                vehicle.position,
-                parts.path.pose(front),
-                speed,
-                vehicle.acceleration,
-                decision.force,
-                gap,
-                decision.reference_speed,
-                decision.acting,
-                decision.reason,
-                decision.status,
-                decision.iterations,
-            )
-        )
-        self._recorder.crowd(self._present, self._crowd.position, self._crowd.velocity)
-        return decision.acting
+    def _record_background(self) -> None:
+        background = self._mirror.background
+        if not background.ids:
+            return
+        wanted: NDArray[np.int64] = np.arange(len(background.ids))
+        if self._k - self._far_background >= self._far_steps:
+            self._far_background = self._k
+        else:
+            near = self._near(np.column_stack([background.x, background.y]))
+            wanted = wanted if near is None else np.flatnonzero(near)
+        time = self._start + self._k * self._time_step
+        self._recorder.background(time, background, wanted)
+
+    # --- steps 4 and 5 ------------------------------------------------------------------------
+
+    def _see_arrivals(self) -> None:
+        """Egos that have driven their distance leave the road."""
+        for ego in [ego for ego in self._egos if ego.arrived]:
+            self.endings[ego.id] = Ending.COMPLETED
+            self._egos.remove(ego)
+            if self._egos or self._parts.departures.waiting:
+                self._parts.sumo.vehicles.dismiss(ego.id)
+                self._mirror.read(self._egos, self._population.crowd.position)
+                self._mirror.place(self._egos)
 
     def _advance(self) -> None:
-        """Steps 4 and 5."""
-        parts = self._parts
+        parts, mirror = self._parts, self._mirror
         recorded_at = perf_counter()
-        parts.vehicle.step(self._force)
+        self._beat.beat(Phase.VEHICLE)
+        for ego in self._egos:
+            ego.advance()
         vehicle_at = perf_counter()
+        self._beat.beat(Phase.CROWD)
         self._step_crowd()
         crowd_at = perf_counter()
         self._k += 1
-        self._mirror.follow(
-            self._k, parts.departure + parts.vehicle.position, self._present, self._crowd
-        )
+        self._beat.beat(Phase.SUMO)
+        if self._k % parts.substeps:
+            mirror.carry_on()
+        else:
+            mirror.push(self._k, self._egos, self._population)
+            parts.departures.note()
         ended = perf_counter()
         self._recorder.timing(
-            self._predicted_at - self._began,
-            self._controlled_at - self._predicted_at,
+            self._predicting,
+            self._controlling,
             vehicle_at - recorded_at,
             crowd_at - vehicle_at,
             ended - crowd_at,
@@ -205,12 +285,29 @@ class Loop:
 
     def _step_crowd(self) -> None:
         """Move the crowd under the vehicles at t_k; who has arrived leaves."""
-        parts = self._parts
-        if not len(self._present):
+        parts, population = self._parts, self._population
+        if not len(population):
             return
-        parts.crowd_model.advance(self._crowd, self._mirror.vehicles)
-        there = parts.arrived(self._crowd)
-        if there.any():
-            self._mirror.dismiss(self._present[there])
-            self._crowd = self._crowd.select(~there)
-            self._present = self._present[~there]
+        surroundings = parts.surroundings
+        parts.crowd_model.advance(population.crowd, self._mirror.vehicles, surroundings)
+        there = parts.arrived(population.crowd)
+        if not there.any():
+            return
+        names = population.release(there)  # they leave SUMO with its next step
+        ours = names if parts.exchange is None else parts.exchange.arrive(names)
+        parts.sumo.remove_persons(ours)
+        population.count("arrived", len(ours))
+
+
+@kernel
+def mark_near(places: Array, egos: Array, distance: float, near: NDArray[np.bool_]) -> int:
+    """Mark the places within ``distance`` [m] of an ego; how many there are."""
+    count = 0
+    for i in range(len(places)):
+        near[i] = False
+        for j in range(len(egos)):
+            d_x, d_y = places[i, 0] - egos[j, 0], places[i, 1] - egos[j, 1]
+            if d_x * d_x + d_y * d_y <= distance * distance:
+                near[i] = True
+        count += near[i]
+    return count

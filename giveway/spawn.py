@@ -31,18 +31,29 @@ class Spawned:
     desired_speed: Array  # (n,) [m/s]
 
 
-def spawn(config: CrowdConfig, path: EgoPath, seed: int) -> Spawned:
+def spawn(config: CrowdConfig, path: EgoPath | None, seed: int) -> Spawned:
     """Draw ``config.pedestrians`` people, uniformly in the spawn area, none closer than allowed.
 
     With ``two_sided`` every second one stands on, and walks to, the mirror image about the ego's
     path where it passes the spawn area. The first k of a larger crowd of the same seed are not the
     same people: the spacing rule couples them.
 
+    Args:
+        config: how many, where, where to, how fast.
+        path: the ego's, for ``two_sided``; None where no ego is inserted.
+        seed: of the draw.
+
     Raises:
-        CrowdError: the area is too small for so many people at this spacing.
+        CrowdError: the area is too small for so many people at this spacing, or there is no ego
+            about whose path to mirror.
     """
     random = np.random.default_rng(seed)
-    axis = _axis(config, path) if config.two_sided else None
+    axis = None
+    if config.two_sided:
+        if path is None:
+            msg = "--two-sided: mirrors about the way of an inserted ego; insert one (--ego-route)"
+            raise CrowdError(msg)
+        axis = _axis(config, path)
     position = _scatter(config, random, axis)
     desired_speed = _truncated_normal(config, random)
     destination = position + np.asarray(config.walk)

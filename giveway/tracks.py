@@ -9,8 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+import numpy as np
+
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
 
@@ -36,6 +37,8 @@ class EgoTrack:
     force: NDArray[np.float64]  # (T,) [N] the command applied during [t_k, t_k+1]
     gap: NDArray[np.float64]  # (T,) [m] to the closest pedestrian in front; inf: nobody
     reference_speed: NDArray[np.float64]  # (T,) [m/s] of the controller that acted
+    vehicle_gap: NDArray[np.float64]  # (T,) [m] to the closest vehicle in front; inf: none
+    stop_gap: NDArray[np.float64]  # (T,) [m] to where a red light stops it; inf: none
     acting: NDArray[np.str_]  # (T,) which controller acted: "mpc" or "pid"
     reason: NDArray[np.str_]  # (T,) why it acted, e.g. "optimal", "infeasible", "selected"
     solver_status: NDArray[np.str_]  # (T,) of the QP; empty where none ran
@@ -44,15 +47,23 @@ class EgoTrack:
 
 @dataclass(frozen=True)
 class CrowdTrack:
-    """The crowd as flat records, one per pedestrian present at a control instant, in time order."""
+    """The crowd as flat records, one per pedestrian recorded at a control instant, in time order."""
 
-    step: NDArray[np.int64]  # (R,) index into ``EgoTrack.time``
+    step: NDArray[np.int64]  # (R,) index into the control instants
     pedestrian: NDArray[np.int64]  # (R,) index into ``ids``
     x: NDArray[np.float64]  # (R,) [m] body centre
     y: NDArray[np.float64]  # (R,) [m]
     vx: NDArray[np.float64]  # (R,) [m/s]
     vy: NDArray[np.float64]  # (R,) [m/s]
     ids: tuple[str, ...]  # one per pedestrian
+
+    def during(self, first: int, instants: int) -> CrowdTrack:
+        """The records of ``instants`` control instants from ``first`` on, counted from there."""
+        a, b = np.searchsorted(self.step, (first, first + instants))
+        if first == 0 and b == len(self.step):
+            return self
+        columns = (self.pedestrian, self.x, self.y, self.vx, self.vy)
+        return CrowdTrack(self.step[a:b] - first, *(c[a:b] for c in columns), self.ids)
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,11 @@ class BackgroundVehicles:
     length: NDArray[np.float64]  # (m,) [m]
     width: NDArray[np.float64]  # (m,) [m]
 
+    @property
+    def numbers(self) -> tuple[NDArray[np.float64], ...]:
+        """All columns but ids and types."""
+        return self.x, self.y, self.heading, self.speed, self.length, self.width
+
 
 NO_VEHICLES = BackgroundVehicles((), (), *(np.empty(0) for _ in range(6)))
 

@@ -1,0 +1,279 @@
+"""One vehicle that giveway drives: its FMU, its controller, its way."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from controller import Observation
+from fmus import FmuError
+from giveway.corridor import NO_LEADER, Corridor, Leader
+from giveway.errors import ControlError, VehicleError
+from giveway.recorder import EgoRow
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from controller import Decision, Regulator
+    from fmus import VehicleFmu
+    from giveway.config import RunConfig
+    from giveway.ego_path import EgoPath, Pose
+    from giveway.lights import Lights
+    from giveway.tracks import VehicleShape
+    from pedestrian_model import Crowd, Predictor, Surroundings
+
+    Array = NDArray[np.float64]
+
+_KEPT = 0.5  # [m] that the approach to a vehicle ends before the safe distance
+_BEYOND = 0.5  # [m] beyond the stopping place no plan may lead
+_RECOVERY = 2.0  # [s] in which a safe distance that is lost is to be regained
+_PREDICT_ALL = 150  # persons; of a larger crowd only who matters to the ego is predicted
+_INTERACTION = 8.0  # [m] the VCI model's radius of interaction
+
+
+@dataclass
+class Driver:
+    """A controller with its FMU, ready for its vehicle to depart.
+
+    Attributes:
+        config: of this ego alone.
+        description: of the FMU, for the manifest.
+        predictor: None: the controller looks at the present only.
+    """
+
+    config: RunConfig
+    vehicle: VehicleFmu
+    description: dict[str, object]
+    regulator: Regulator
+    predictor: Predictor | None
+    walking_speed_limit: float  # [m/s]
+
+    @property
+    def id(self) -> str:
+        """SUMO's id of the vehicle."""
+        taken = self.config.ego.take_over
+        return taken[0] if taken else self.config.ego.id
+
+    @property
+    def taken_over(self) -> bool:
+        """Whether the vehicle is the scenario's."""
+        return bool(self.config.ego.take_over)
+
+    def start(self, speed: float) -> None:
+        """Set the FMU to where it departs.
+
+        Raises:
+            VehicleError: it fails.
+        """
+        try:
+            self.vehicle.start(position=0.0, speed=speed)
+        except FmuError as error:
+            raise VehicleError(str(error)) from error
+
+    @property
+    def horizon(self) -> int:
+        """Steps that the controller looks ahead."""
+        return self.config.mpc.horizon if self.config.controller == "mpc" else 1
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What the ego reacts to at one instant."""
+
+    person: float  # station [m] of the closest pedestrian in front; inf: nobody
+    leader: Leader
+    stop: float  # station [m] where a red light wants the front bumper; inf: none
+    ahead: Array  # (N,) stations [m] of the closest obstacle at steps 1 ... N
+    predicted: bool
+
+
+class Ego:
+    """A vehicle on the road.
+
+    Args:
+        driver: who drives it; its FMU has been started.
+        path: its way.
+        departure: station [m] of the front bumper where the FMU's position is 0.
+        shape: its body.
+        lights: the traffic lights on its way.
+        goal: the FMU's position [m] at which it is done.
+        time_step: [s].
+        first: the control step at which it departed.
+    """
+
+    def __init__(
+        self,
+        driver: Driver,
+        path: EgoPath,
+        departure: float,
+        shape: VehicleShape,
+        lights: Lights,
+        goal: float,
+        time_step: float,
+        first: int,
+    ) -> None:
+        config = driver.config
+        self.driver = driver
+        self.config = config
+        self.id = driver.id
+        self.path = path
+        self.departure = departure
+        self.shape = shape
+        self.lights = lights
+        self.goal = goal
+        self.first = first
+        self.vehicle = driver.vehicle
+        half_width = config.regulation.corridor_half_width
+        self.corridor = Corridor(
+            path,
+            half_width=shape.width / 2 + config.corridor_margin
+            if half_width is None
+            else half_width,
+            horizon=driver.horizon,
+            time_step=time_step,
+            walking_speed_limit=driver.walking_speed_limit,
+            body_length=shape.length,
+        )
+        self._span = driver.horizon * time_step  # [s]
+        self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
+        self._force = 0.0
+        self._heed_vehicles = config.regulation.vehicles
+        self._heed_lights = config.regulation.traffic_lights
+
+    @property
+    def front(self) -> float:
+        """Station of the front bumper [m]."""
+        return self.departure + self.vehicle.position
+
+    @property
+    def pose(self) -> Pose:
+        """Where the front bumper's centre is, and the direction of the body."""
+        return self.path.pose(self.front, self.shape.length)
+
+    @property
+    def arrived(self) -> bool:
+        """Whether it has driven its distance."""
+        return self.vehicle.position >= self.goal
+
+    def check_pose(self, step: int) -> Pose:
+        """The pose, which SUMO must not be given if it is not finite (it hangs).
+
+        Raises:
+            VehicleError: it is not finite.
+        """
+        pose = self.pose
+        if not all(map(math.isfinite, pose)):
+            msg = f"ego '{self.id}' at step {step}: pose {tuple(pose)}; expected finite numbers"
+            raise VehicleError(f"{msg} from the FMU")
+        return pose
+
+    def look(
+        self, row: int, poses: Array, crowd: Crowd, surroundings: Surroundings
+    ) -> Seen:
+        """Find what is in front, now and over the horizon.
+
+        Args:
+            row: the ego's row among the vehicles.
+            poses: (N, m, 7) of all vehicles at steps 0 ... N-1.
+            crowd: the pedestrians now.
+            surroundings: the walls and lights that they heed.
+        """
+        front, speed, corridor = self.front, self.vehicle.speed, self.corridor
+        person, reachable = corridor.closest_now(crowd.position, front)
+        ahead = corridor.nobody
+        predictor = self.driver.predictor
+        predicted = reachable and predictor is not None
+        if predicted and predictor is not None:
+            positions = predictor.predict(
+                self._relevant(crowd, speed), poses[: predictor.horizon], surroundings
+            )
+            ahead = corridor.closest_predicted(positions, front, speed)
+        leader, stop = NO_LEADER, math.inf
+        if self._heed_vehicles and poses.shape[1] > 1:
+            leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
+            ahead = np.minimum(ahead, vehicles)
+        if self._heed_lights:
+            stop = self.lights.stop_at(front, speed)
+            if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
+                allowed = stop + _BEYOND + self._origin
+                ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
+        return Seen(person, leader, stop, ahead, predicted)
+
+    def _relevant(self, crowd: Crowd, speed: float) -> Crowd:
+        """Those of a large crowd that the plan, or somebody whom it depends on, may meet."""
+        if len(crowd) <= _PREDICT_ALL:
+            return crowd
+        config, span = self.config, self._span
+        x, y, _ = self.pose
+        strongest = config.mpc.force_limit / config.vehicle.mass
+        reach = (speed + strongest * span / 2.0) * span + config.regulation.safe_distance
+        reach += self.driver.walking_speed_limit * span + _INTERACTION
+        reach += self.shape.length + self.corridor.half_width
+        d_x, d_y = crowd.position[:, 0] - x, crowd.position[:, 1] - y
+        return crowd.select(d_x * d_x + d_y * d_y <= reach * reach)
+
+    def decide(self, step: int, seen: Seen) -> Decision:
+        """The force for the step from t_k on; kept for :meth:`advance`.
+
+        Raises:
+            ControlError: the controller gave no finite force.
+        """
+        regulation = self.config.regulation
+        origin = self.front + self._origin
+        stop = seen.stop + self._origin + regulation.safe_distance
+        gap = min(seen.person, seen.leader.station, stop) - origin
+        limit = self._speed_limit(seen)
+        observation = Observation(origin, self.vehicle.speed, gap, seen.ahead, limit)
+        decision = self.driver.regulator.control(observation)
+        if not math.isfinite(decision.force):
+            msg = (
+                f"controller '{decision.acting}' of '{self.id}' at step {step}: force = "
+                f"{decision.force}; expected a finite number [N]; please report this with the "
+                "run's config.toml"
+            )
+            raise ControlError(msg)
+        self._force = decision.force
+        return decision
+
+    def _speed_limit(self, seen: Seen) -> float:
+        """From which speed the comfortable deceleration brings it to a light or behind a leader."""
+        regulation = self.config.regulation
+        b = regulation.comfortable_deceleration
+        limit = math.inf
+        if seen.stop < math.inf:
+            limit = math.sqrt(2.0 * b * max(0.0, seen.stop - self.front))
+        if seen.leader.station < math.inf:
+            v = seen.leader.speed
+            room = seen.leader.station - self.front - self._origin - regulation.safe_distance
+            room -= _KEPT
+            behind = math.sqrt(v * v + 2.0 * b * room) if room > 0.0 else v + room / _RECOVERY
+            limit = min(limit, max(0.0, behind))
+        return limit
+
+    def advance(self) -> None:
+        """Step the FMU with the force decided on."""
+        self.vehicle.step(self._force)
+
+    def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
+        """What the tables keep of this instant."""
+        front = self.front
+        origin = front + self._origin
+        return EgoRow(
+            time,
+            self.vehicle.position,
+            self.pose,
+            self.vehicle.speed,
+            self.vehicle.acceleration,
+            decision.force,
+            seen.person - origin,
+            decision.reference_speed,
+            seen.leader.station - origin,
+            seen.stop - front,
+            decision.acting,
+            decision.reason,
+            decision.status,
+            decision.iterations,
+        )

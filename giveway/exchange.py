@@ -1,0 +1,138 @@
+"""Who of the scenario's walkers joins our crowd, and who goes back to SUMO."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from giveway.walkers import Arrival, ScenarioWalkers
+from pedestrian_model import Crowd, Surroundings, Walls
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from giveway.population import Population
+    from giveway.walkers import Walker
+    from giveway.walkways import WalkNetwork
+    from giveway.zone import Zone
+
+    Array = NDArray[np.float64]
+
+HANDED_BACK_WITHIN = 20.0  # [m] of a lane for pedestrians
+_CLOSED = frozenset("rRyYus")  # states of a crossing's light at which nobody sets out
+
+
+class Exchange:
+    """Takes the scenario's walkers over in the zone and hands them back outside.
+
+    Args:
+        sumo: the libsumo module.
+        network: where people can walk.
+        zone: where they are ours.
+        population: our crowd.
+        walls: whether the edges of walkways hold people back.
+    """
+
+    def __init__(
+        self, sumo: Any, network: WalkNetwork, zone: Zone, population: Population, *, walls: bool
+    ) -> None:
+        self._lights = sumo.trafficlight
+        self._network = network
+        self._zone = zone
+        self._population = population
+        self._walkers = ScenarioWalkers(sumo, population.added)
+        self._systems = sorted({signal.tls for signal in network.signals})
+        self.unconnected = 0  # hops of routes that the network does not connect
+        self.surroundings = Surroundings(
+            walls=Walls.create(network.wall_segments()) if walls else None,
+            closed=np.zeros(len(network.signals), dtype=np.bool_),
+        )
+
+    def update(self, egos: Array) -> None:
+        """Once after each SUMO step: lights, then who leaves, then who joins.
+
+        Args:
+            egos: (e, 2) [m] centres of the egos.
+        """
+        self._read_lights()
+        self._hand_back(egos)
+        self._take_over(egos)
+
+    def _read_lights(self) -> None:
+        """A crossing whose light is not green is closed."""
+        if not len(self._population):
+            return
+        states = {name: self._lights.getRedYellowGreenState(name) for name in self._systems}
+        closed = self.surroundings.closed
+        for i, signal in enumerate(self._network.signals):
+            closed[i] = states[signal.tls][signal.link] in _CLOSED
+
+    def _take_over(self, egos: Array) -> None:
+        if self._zone.nowhere:
+            return
+        ids, places = self._walkers.positions()
+        inside = self._zone.enters(places, egos)
+        if not inside.any():
+            return
+        walkers = self._walkers.take([ids[i] for i in np.flatnonzero(inside)])
+        if walkers:
+            self._population.take_in([walker.id for walker in walkers], self._crowd(walkers))
+
+    def _crowd(self, walkers: Sequence[Walker]) -> Crowd:
+        routes = [
+            self._network.route(
+                walker.edges,
+                position=(walker.x, walker.y),
+                lane=walker.lane,
+                arrival_position=walker.arrival_position,
+            )
+            for walker in walkers
+        ]
+        self.unconnected += sum(route.gaps for route in routes)
+        velocity = [
+            (w.speed * math.cos(w.heading), w.speed * math.sin(w.heading)) for w in walkers
+        ]
+        return Crowd.create(
+            [(w.x, w.y) for w in walkers],
+            velocity,
+            [w.desired_speed for w in walkers],
+            [route.waypoints for route in routes],
+            passages=[route.passages for route in routes],
+            signals=[route.signals for route in routes],
+        )
+
+    def _hand_back(self, egos: Array) -> None:
+        """Those outside go back if a walkway is near; the others walk on as ours."""
+        population = self._population
+        if self._zone.everywhere or not self._walkers.held:
+            return
+        outside = ~self._zone.keeps(population.crowd.position, egos)
+        if not outside.any():
+            return
+        gone = np.zeros(len(population), dtype=np.bool_)
+        for i in np.flatnonzero(outside):
+            name = population.ids[population.present[i]]
+            if name not in self._walkers.held:
+                continue  # one that giveway added
+            x, y = population.crowd.position[i].tolist()
+            lane = self._network.nearest_lane(x, y)
+            if lane is None or lane.distance > HANDED_BACK_WITHIN:
+                continue
+            gone[i] = self._walkers.hand_back(name, x, y, (lane.edge, lane.position))
+        if gone.any():
+            population.count("handed_back", len(population.release(gone)))
+
+    def arrive(self, names: Sequence[str]) -> list[str]:
+        """Let walkers end their walk in SUMO's next step; those of ``names`` that are not its."""
+        others = []
+        for name in names:
+            if name not in self._walkers.held:
+                others.append(name)
+                continue
+            arrival = self._walkers.arrive(name)
+            self._population.count("arrived" if arrival is Arrival.ARRIVED else "continued")
+        return others

@@ -1,0 +1,193 @@
+"""SUMO's vehicles: read, taken over, inserted, slowed down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from giveway.errors import ScenarioError
+from giveway.sumo_command import ego_type, inserted_type
+from giveway.traffic import NO_VEHICLES, BackgroundVehicles, angle_to_heading
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from numpy.typing import NDArray
+
+    from giveway.lanes import Lanes
+    from giveway.tracks import VehicleShape
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class VehicleState:
+    """One of SUMO's vehicles at one instant."""
+
+    id: str
+    type: str
+    kind: str  # SUMO's vehicle class
+    edges: tuple[str, ...]  # its route from the present edge on
+    lane: int  # index on the present edge
+    lane_position: float  # [m]
+    x: float  # [m] front-bumper centre
+    y: float  # [m]
+    heading: float  # [rad]
+    speed: float  # [m/s]
+    length: float  # [m]
+    width: float  # [m]
+
+
+class SumoVehicles:
+    """What giveway asks and wants of SUMO's vehicles.
+
+    Args:
+        sumo: the libsumo module.
+        call: calls a function of it and explains its failure.
+        lanes: the network's lanes.
+    """
+
+    def __init__(self, sumo: Any, call: Callable[..., Any], lanes: Lanes) -> None:
+        self._vehicle = sumo.vehicle
+        self._sumo = sumo
+        self._call = call
+        self._lanes = lanes
+        self._shapes: dict[str, tuple[str, float, float]] = {}
+        self.egos: set[str] = set()  # driven by giveway
+
+    # --- reading ------------------------------------------------------------------------------
+
+    def departed(self) -> frozenset[str]:
+        """Who has departed in SUMO's latest step."""
+        return frozenset(self._sumo.simulation.getDepartedIDList())
+
+    def present(self) -> tuple[str, ...]:
+        """Every vehicle on the road."""
+        return tuple(self._vehicle.getIDList())
+
+    def background(self) -> BackgroundVehicles:
+        """Every vehicle of the scenario except the egos, as of SUMO's clock."""
+        vehicle = self._vehicle
+        ids = tuple(sorted(name for name in vehicle.getIDList() if name not in self.egos))
+        if not ids:
+            return NO_VEHICLES
+        for name in ids:
+            if name not in self._shapes:
+                size = vehicle.getLength(name), vehicle.getWidth(name)
+                self._shapes[name] = (vehicle.getTypeID(name), *size)
+        rows = np.array(
+            [
+                (
+                    *vehicle.getPosition(name),
+                    angle_to_heading(vehicle.getAngle(name)),
+                    vehicle.getSpeed(name),
+                    *self._shapes[name][1:],
+                )
+                for name in ids
+            ],
+            dtype=np.float64,
+        ).reshape(-1, 6)
+        types = tuple(self._shapes[name][0] for name in ids)
+        return BackgroundVehicles(ids, types, *np.ascontiguousarray(rows.T))
+
+    def state(self, name: str) -> VehicleState:
+        """One vehicle as SUMO has it now."""
+        vehicle = self._vehicle
+        x, y = vehicle.getPosition(name)
+        return VehicleState(
+            id=name,
+            type=vehicle.getTypeID(name),
+            kind=vehicle.getVehicleClass(name),
+            edges=tuple(vehicle.getRoute(name))[max(0, vehicle.getRouteIndex(name)) :],
+            lane=int(vehicle.getLaneIndex(name)),
+            lane_position=float(vehicle.getLanePosition(name)),
+            x=float(x),
+            y=float(y),
+            heading=angle_to_heading(vehicle.getAngle(name)),
+            speed=float(vehicle.getSpeed(name)),
+            length=float(vehicle.getLength(name)),
+            width=float(vehicle.getWidth(name)),
+        )
+
+    def on_a_road(self, name: str) -> bool:
+        """Whether the vehicle is on a lane outside of junctions."""
+        road = self._vehicle.getRoadID(name)
+        return bool(road) and not road.startswith(":")
+
+    def path_ahead(self, name: str, distance: float) -> Array | None:
+        """(k, 2) [m] from the front bumper along the lanes to come; None: not on a lane."""
+        vehicle = self._vehicle
+        lane = vehicle.getLaneID(name)
+        if not lane:
+            return None
+        shape = self._lanes.shape(lane)
+        front = np.array(vehicle.getPosition(name))
+        steps = np.hypot(*np.diff(shape, axis=0).T)
+        share = vehicle.getLanePosition(name) / max(self._sumo.lane.getLength(lane), 1e-9)
+        along = np.concatenate([[0.0], np.cumsum(steps)])
+        points = [front, *shape[along > share * along[-1]]]
+        driven = (1.0 - share) * along[-1]
+        for link in vehicle.getNextLinks(name):
+            if driven > distance:
+                break
+            for onwards in (link[4], link[0]):
+                if onwards:
+                    following = self._lanes.shape(onwards)
+                    points.extend(following)
+                    driven += float(np.hypot(*np.diff(following, axis=0).T).sum())
+        return np.array(points)
+
+    def deceleration(self, name: str) -> float:
+        """How hard the vehicle's driver brakes [m/s^2]."""
+        return float(self._vehicle.getDecel(name))
+
+    # --- doing --------------------------------------------------------------------------------
+
+    def insert(
+        self, ego_id: str, edges: Sequence[str], *, lane: int, position: float, speed: float
+    ) -> None:
+        """Insert an ego; it appears with the next mirrored step.
+
+        The speed is the FMU's business: SUMO only hears as much of it as the lane permits.
+        """
+        if ego_id in self._vehicle.getIDList():
+            msg = (
+                f"ego id '{ego_id}': the scenario already has this vehicle; choose another id, or "
+                f"take it over with --ego {ego_id}"
+            )
+            raise ScenarioError(msg)
+        route = f"giveway_route_{ego_id}"
+        self._call(self._sumo.route.add, route, list(edges))
+        self._call(
+            self._vehicle.add,
+            ego_id,
+            route,
+            typeID=inserted_type(ego_id),
+            depart="now",
+            departPos=f"{position:.3f}",
+            departSpeed=f"{min(speed, self._sumo.lane.getMaxSpeed(f'{edges[0]}_{lane}')):.3f}",
+        )
+        self.egos.add(ego_id)
+
+    def adopt(self, state: VehicleState, shape: VehicleShape) -> None:
+        """Drive one of SUMO's own vehicles from now on, with the body ``shape``."""
+        name = state.id
+        self._call(self._vehicle.setType, name, ego_type(state.kind))
+        self._call(self._vehicle.setLength, name, shape.length)
+        self._call(self._vehicle.setWidth, name, shape.width)
+        self.egos.add(name)
+
+    def dismiss(self, name: str) -> None:
+        """Take an ego that has reached its goal off the road."""
+        self._call(self._vehicle.remove, name)
+        self.egos.discard(name)
+
+    def limit(self, name: str, speed: float) -> None:
+        """Let SUMO's driver go no faster than ``speed`` [m/s]."""
+        self._call(self._vehicle.setSpeed, name, speed)
+
+    def release(self, name: str) -> None:
+        """Let SUMO's driver go as it wants again."""
+        self._call(self._vehicle.setSpeed, name, -1.0)
+

@@ -1,0 +1,116 @@
+"""The zone in which the scenario's own walkers follow the VCI model."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from giveway.errors import ConfigError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_EXPECTED = (
+    "expected metres round each ego (like 50), 'everywhere', 'none', or a polygon of at least "
+    "three corners 'x,y x,y x,y' [m] in network coordinates"
+)
+
+
+class Zone:
+    """Where people are ours: round the egos, in a polygon, everywhere or nowhere.
+
+    Args:
+        text: as in the configuration.
+        margin: [m] outside of which who is ours is handed back.
+
+    Raises:
+        ConfigError: the text is none of these.
+    """
+
+    def __init__(self, text: str, margin: float) -> None:
+        self._text = text
+        self._margin = margin
+        self._radius: float | None = None
+        self._inner: shapely.Polygon | None = None
+        self._outer: shapely.Polygon | None = None
+        word = text.strip().lower()
+        self.everywhere = word == "everywhere"
+        self.nowhere = word in {"none", ""}
+        if self.everywhere or self.nowhere:
+            return
+        try:
+            numbers = [float(part) for part in word.replace(",", " ").split()]
+        except ValueError:
+            numbers = []
+        if len(numbers) == 1 and 0.0 < numbers[0] < math.inf:
+            self._radius = numbers[0]
+        elif len(numbers) >= 6 and len(numbers) % 2 == 0 and np.isfinite(numbers).all():
+            self._inner = _polygon(text, numbers)
+            self._outer = self._inner.buffer(margin)
+            shapely.prepare((self._inner, self._outer))
+        else:
+            msg = f"--zone '{text}': {_EXPECTED}"
+            raise ConfigError(msg)
+
+    @property
+    def follows_egos(self) -> bool:
+        """Whether the zone is round the egos, and so nowhere without one."""
+        return self._radius is not None
+
+    def require_overlap(self, boundary: tuple[float, float, float, float]) -> None:
+        """Make sure that the zone lies in the network.
+
+        Args:
+            boundary: x_min, y_min, x_max, y_max of the network [m].
+
+        Raises:
+            ConfigError: it lies outside.
+        """
+        if self._inner is None or self._inner.intersects(shapely.box(*boundary)):
+            return
+        x_min, y_min, x_max, y_max = boundary
+        msg = (
+            f"--zone '{self._text}': lies outside of the network, which reaches from "
+            f"{x_min:.0f},{y_min:.0f} to {x_max:.0f},{y_max:.0f} m; name a place inside"
+        )
+        raise ConfigError(msg)
+
+    def enters(self, points: Array, egos: Array) -> NDArray[np.bool_]:
+        """Which of ``points`` (n, 2) [m] lie in the zone.
+
+        Args:
+            points: (n, 2) [m].
+            egos: (e, 2) [m] centres of the egos.
+        """
+        return self._inside(points, egos, self._radius or 0.0, self._inner)
+
+    def keeps(self, points: Array, egos: Array) -> NDArray[np.bool_]:
+        """Which of ``points`` lie in the zone or not further than its margin outside."""
+        return self._inside(points, egos, (self._radius or 0.0) + self._margin, self._outer)
+
+    def _inside(
+        self, points: Array, egos: Array, radius: float, polygon: shapely.Polygon | None
+    ) -> NDArray[np.bool_]:
+        if self.everywhere or self.nowhere or not len(points):
+            return np.full(len(points), self.everywhere)
+        if polygon is not None:
+            return np.asarray(shapely.contains_xy(polygon, points[:, 0], points[:, 1]))
+        inside = np.zeros(len(points), dtype=np.bool_)
+        for x, y in egos:
+            d_x, d_y = points[:, 0] - x, points[:, 1] - y
+            inside |= d_x * d_x + d_y * d_y <= radius * radius
+        return inside
+
+
+def _polygon(text: str, numbers: list[float]) -> shapely.Polygon:
+    polygon = shapely.Polygon(np.reshape(numbers, (-1, 2)))
+    if not polygon.is_valid or polygon.area <= 0.0:
+        reason = shapely.is_valid_reason(polygon)
+        msg = f"--zone '{text}': not a polygon that encloses an area ({reason}); {_EXPECTED}"
+        raise ConfigError(msg)
+    return polygon
