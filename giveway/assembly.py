@@ -76,6 +76,18 @@ class Parts:
     yielding: Yielding | None  # None: SUMO's cars do not look for pedestrians
     remarks: tuple[str, ...]  # what the user should know
 
+    @property
+    def all_remarks(self) -> tuple[str, ...]:
+        """The remarks, with what has come up on the way."""
+        unconnected = 0 if self.exchange is None else self.exchange.unconnected
+        if not unconnected:
+            return self.remarks
+        more = (
+            f"walkers: {unconnected} times a route went on where the network has no walkway; the "
+            "straight line was taken"
+        )
+        return (*self.remarks, more)
+
     def arrived(self, crowd: Crowd) -> NDArray[np.bool_]:
         """(n,) who of ``crowd`` has reached the last way-point."""
         return arrived(crowd, ARRIVAL_RADIUS)

@@ -247,7 +247,7 @@ class SumoConfig(Section):
     fcd: bool = option(False, None, "write SUMO's floating car data", flag="--fcd")
     tripinfo: bool = option(False, None, "write SUMO's trip information", flag="--tripinfo")
     ssm: bool = option(False, None, "write SUMO's surrogate safety measures", flag="--ssm")
-    statistics: bool = option(False, None, "write SUMO's statistics", flag="--statistics")
+    summary: bool = option(False, None, "write SUMO's summary of each step")
     options: OptionList = option(
         (), None, "more options for SUMO, like '--emission-output e.xml'", flag="--sumo-options"
     )

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import platform
-import xml.etree.ElementTree as ET
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 from giveway import __version__
+from giveway.scenario_files import read_scenario
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from collections.abc import Sequence
 
     from giveway.config import RunConfig
     from sumo_scenarios import Scenario
@@ -37,18 +37,11 @@ def software_versions() -> dict[str, str]:
 
 def scenario_hashes(scenario: Scenario) -> dict[str, str]:
     """SHA-256 of the scenario's configuration, settings and every input file that it names."""
-    files = [scenario.config_file, *_inputs(scenario.config_file)]
+    files = [scenario.config_file]
+    files += [path for _, path in read_scenario(scenario.config_file).inputs]
     if scenario.settings_file is not None:
         files.append(scenario.settings_file)
     return {file.name: sha256(file.read_bytes()) for file in files if file.is_file()}
-
-
-def _inputs(config_file: Path) -> list[Path]:
-    root = ET.parse(config_file).getroot()
-    section = root.find("input")
-    values = [] if section is None else [element.get("value", "") for element in section]
-    names = [name.strip() for value in values for name in value.split(",") if name.strip()]
-    return [config_file.parent / name for name in names]
 
 
 def manifest(
@@ -56,20 +49,42 @@ def manifest(
     scenario: Scenario,
     *,
     config_text: str,
-    vehicle: dict[str, Any],
+    vehicles: dict[str, dict[str, Any]],
     pedestrians: dict[str, int],
+    traffic: dict[str, float],
+    sumo: dict[str, float],
+    time_step: float,
+    remarks: Sequence[str],
     ending: str,
     error: str | None,
 ) -> dict[str, Any]:
-    """The contents of ``manifest.json``; nothing in it depends on when the run was made."""
+    """The contents of ``manifest.json``; nothing in it depends on when the run was made.
+
+    Args:
+        config: the run's.
+        scenario: its scenario.
+        config_text: the configuration as it is written.
+        vehicles: each ego's FMU.
+        pedestrians: the ledger of who was moved.
+        traffic: what the yield layer did.
+        sumo: seed and step length in effect.
+        time_step: of the co-simulation [s].
+        remarks: for the user.
+        ending: why the run ended.
+        error: what ended it, if it failed.
+    """
     return {
         "ending": ending,
         "error": error,
+        "remarks": list(remarks),
         "reproduce": "giveway run --config config.toml --out ANOTHER_FOLDER",
         "seed": config.seed,
+        "time_step": time_step,
+        "sumo": sumo,
         "scenario": {"name": scenario.name, "sha256": scenario_hashes(scenario)},
-        "vehicle": vehicle,
+        "vehicles": vehicles,
         "pedestrians": pedestrians,
+        "traffic": traffic,
         "configuration_sha256": sha256(config_text.encode()),
         "software": software_versions(),
     }

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from giveway.api import RunResult
+    from giveway.run_result import EgoResult, RunResult
     from giveway.tracks import VehicleShape
     from pedestrian_model import VciParameters
 
@@ -26,44 +26,45 @@ _CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
 
 
 def save_run_pictures(result: RunResult, folder: Path) -> None:
-    """Write ``state.png`` and ``top_view.png``.
+    """Write ``state.png`` and ``top_view.png`` of the first ego; several have an id in the name.
 
     Raises:
         OSError: a file cannot be written.
     """
-    save_figure(state_picture(result), folder / "state.png")
-    save_figure(top_view_picture(result), folder / "top_view.png")
+    for number, ego in enumerate(result.egos):
+        mark = "" if number == 0 else f"_{number + 1}"
+        save_figure(state_picture(result, ego), folder / f"state{mark}.png")
+        save_figure(top_view_picture(result, ego), folder / f"top_view{mark}.png")
 
 
-def state_picture(result: RunResult) -> Figure:
+def state_picture(result: RunResult, ego: EgoResult) -> Figure:
     """Speed, force and gap over time, MPC and PID phases marked (the paper's state figure)."""
-    config = result.config
     return state_figure(
-        result.ego_track,
-        safe_distance=config.regulation.safe_distance,
-        buffer_distance=config.pid.buffer_distance,
-        title=_title(result),
+        ego.track,
+        safe_distance=ego.config.regulation.safe_distance,
+        buffer_distance=ego.config.pid.buffer_distance,
+        title=_title(result, ego),
     )
 
 
-def top_view_picture(result: RunResult) -> Figure:
+def top_view_picture(result: RunResult, ego: EgoResult) -> Figure:
     """Trajectories and snapshots from above (the paper's screenshots figure)."""
     return top_view_figure(
-        result.ego_track,
-        result.crowd_track,
-        result.shape,
-        result.body_radius,
+        ego.track,
+        ego.crowd,
+        ego.shape,
+        ego.body_radius,
         background=result.background_track,
         road=[lane_area(line, width) for line, width in result.lanes],
-        title=_title(result),
+        title=_title(result, ego),
     )
 
 
-def _title(result: RunResult) -> str:
-    config = result.config
+def _title(result: RunResult, ego: EgoResult) -> str:
+    who = "" if ego.id == "ego" else f"ego {ego.id}, "
     return (
-        f"{result.scenario.name}, {config.controller.upper()}, "
-        f"{config.crowd.pedestrians} pedestrians, seed {config.seed}"
+        f"{result.scenario.name}, {who}{ego.config.controller.upper()}, "
+        f"{len(result.crowd_track.ids)} pedestrians, seed {result.config.seed}"
     )
 
 

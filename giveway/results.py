@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import math
+import shutil
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,9 +18,10 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from giveway.api import RunResult
+    from giveway.run_result import RunResult
     from giveway.schema import Column
 
+SUMO_FOLDER = "sumo"
 TABLES = ("ego", "trajectories", "pedestrians", "summary", "timing")
 FILES = frozenset(
     {
@@ -31,6 +33,7 @@ FILES = frozenset(
         "sumo.log",
         "state.png",
         "top_view.png",
+        SUMO_FOLDER,
     }
 )
 _DECIMALS = 6  # micrometres, microseconds: finer than anything that is compared
@@ -102,14 +105,14 @@ def write_results(result: RunResult, folder: Path, *, parquet: bool = False) -> 
     frames = {name: _rounded(getattr(result, name)) for name in TABLES if name != "summary"}
     frames["summary"] = _rounded(result.summary_table)
     try:
-        for name in FILES:
+        for name in FILES - {SUMO_FOLDER}:
             (folder / name).unlink(missing_ok=True)  # results are never mixed
         (folder / "config.toml").write_text(result.config_text, encoding="utf-8")
         for name in TABLES:
             frames[name].to_csv(folder / f"{name}.csv", index=False, lineterminator="\n")
             if parquet:
                 _write_parquet(frames[name], folder / f"{name}.parquet")
-        _write_json(folder / "summary.json", result.summary | {"timing": result.timing_summary})
+        _write_json(folder / "summary.json", _summary(result))
         _write_json(folder / "manifest.json", result.manifest)
         _write_json(folder / "datapackage.json", data_package(result))
         if result.sumo_messages:
@@ -117,6 +120,34 @@ def write_results(result: RunResult, folder: Path, *, parquet: bool = False) -> 
     except OSError as error:
         msg = f"{error.filename or folder}: cannot be written ({error.strerror}); free the disk"
         raise ResultsError(msg) from error
+
+
+def _summary(result: RunResult) -> dict[str, Any]:
+    """The first ego's row, the other egos' rows, and the computing times."""
+    rows = [_plain(row) for row in result.summary_table.to_dict("records")]
+    more = {"egos": rows} if len(rows) > 1 else {}
+    return result.summary | more | {"timing": result.timing_summary}
+
+
+def _plain(row: dict[Any, Any]) -> dict[str, Any]:
+    """Python's own types, which JSON knows."""
+    return {str(k): v.item() if isinstance(v, np.generic) else v for k, v in row.items()}
+
+
+def sumo_folder(folder: Path) -> Path:
+    """Where SUMO's own outputs go; those of a former run are taken away.
+
+    Raises:
+        ResultsError: they cannot be.
+    """
+    try:
+        shutil.rmtree(folder / SUMO_FOLDER, ignore_errors=False)
+    except FileNotFoundError:
+        pass
+    except OSError as error:
+        msg = f"{error.filename or folder}: cannot be removed ({error.strerror}); name another --out"
+        raise ResultsError(msg) from error
+    return folder / SUMO_FOLDER
 
 
 def write_pictures(result: RunResult, folder: Path) -> None:
@@ -203,6 +234,8 @@ def _json_ready(value: Any) -> Any:
     """JSON has neither NaN nor infinity: they become null."""
     if isinstance(value, dict):
         return {key: _json_ready(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_json_ready(item) for item in value]
     if isinstance(value, float):
         return round(value, _DECIMALS) + 0.0 if math.isfinite(value) else None
     return value

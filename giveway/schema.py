@@ -40,6 +40,19 @@ EGO_COLUMNS = (
     Column("solver_iterations", "integer", None, "the QP solver's iterations"),
     Column("gap", "number", "m", "distance to the closest pedestrian in front now; empty: nobody"),
     Column("reference_speed", "number", "m/s", "the reference speed of the controller that acted"),
+    Column("vehicle_gap", "number", "m", "distance to the closest vehicle in front; empty: none"),
+    Column(
+        "stop_gap", "number", "m", "front bumper's distance to where a red light stops it; or empty"
+    ),
+)
+
+SUMMARY_HEAD = (
+    Column("scenario", "string", None, "the scenario's name"),
+    Column("ego", "string", None, "SUMO id of the ego"),
+    Column("controller", "string", None, "the controller that was asked for"),
+    Column("pedestrians", "integer", "persons", "pedestrians that giveway moved"),
+    Column("seed", "integer", None, "seed of the crowd that giveway adds"),
+    Column("ending", "string", None, "completed, time limit, scenario end, interrupted or failed"),
 )
 
 TRAJECTORY_COLUMNS = (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
+from xml.sax.saxutils import quoteattr
 
 from giveway.scenario_files import read_scenario
 
@@ -35,6 +36,11 @@ def own_types(ego: VehicleShape) -> str:
 """
 
 
+def inserted_type(ego_id: str) -> str:
+    """The type of an ego that is inserted."""
+    return f"giveway_inserted_{ego_id}"
+
+
 def ego_type(vehicle_class: str) -> str:
     """The type for an ego of ``vehicle_class`` that was taken over from the scenario.
 
@@ -52,7 +58,7 @@ def all_types(egos: Mapping[str, VehicleShape]) -> str:
     """
     never_stuck = 'maxSpeed="100" speedDev="0" timeToTeleport="-1"'
     inserted = [
-        f'    <vType id="{name}" vClass="passenger" length="{body.length}" width="{body.width}" '
+        f'    <vType id={quoteattr(name)} vClass="passenger" length="{body.length}" width="{body.width}" '
         f"{never_stuck}/>\n"
         for name, body in egos.items()
     ]

@@ -10,6 +10,8 @@ import pandas as pd
 from giveway.schema import EGO_COLUMNS, TIMING_COLUMNS, TRAJECTORY_COLUMNS
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings
@@ -26,7 +28,8 @@ def navigational(heading: Array) -> Array:
 
 def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
     """``ego.csv``: one row per control instant."""
-    gap = np.where(np.isfinite(track.gap), track.gap, np.nan)
+    gaps = (track.gap, track.vehicle_gap, track.stop_gap)
+    gap, vehicle_gap, stop_gap = (np.where(np.isfinite(each), each, np.nan) for each in gaps)
     values = (
         track.time,
         ego_id,
@@ -43,17 +46,26 @@ def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
         track.solver_iterations,
         gap,
         track.reference_speed,
+        vehicle_gap,
+        stop_gap,
     )
     names = [column.name for column in EGO_COLUMNS]
     return pd.DataFrame(dict(zip(names, values, strict=True)), index=range(len(track.time)))
 
 
 def trajectory_table(
-    ego: EgoTrack, ego_id: str, crowd: CrowdTrack, background: BackgroundTrack
+    time: Array,
+    egos: Sequence[tuple[str, EgoTrack]],
+    crowd: CrowdTrack,
+    background: BackgroundTrack,
 ) -> pd.DataFrame:
-    """``trajectories.csv``: at each instant the ego, SUMO's own vehicles, the pedestrians."""
+    """``trajectories.csv``: at each instant the egos, SUMO's own vehicles, the pedestrians."""
+    driven = [
+        _moving(ego.time, name, "ego", ego.front_x, ego.front_y, ego.heading, ego.speed)
+        for name, ego in egos
+    ]
     frames = [
-        _moving(ego.time, ego_id, "ego", ego.front_x, ego.front_y, ego.heading, ego.speed),
+        *driven,
         _moving(
             background.time,
             background.id,
@@ -63,7 +75,7 @@ def trajectory_table(
             background.heading,
             background.speed,
         ),
-        _walking(ego.time, crowd),
+        _walking(time, crowd),
     ]
     frames = [frame for frame in frames if len(frame)]
     names = [column.name for column in TRAJECTORY_COLUMNS]
