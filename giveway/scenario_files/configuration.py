@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import xml.etree.ElementTree as ET
@@ -224,6 +225,8 @@ def seconds(text: str) -> float:
         ValueError: it is none of these.
     """
     parts = [float(part) for part in text.split(":")]
+    if not all(map(math.isfinite, parts)):
+        raise ValueError(text)
     if len(parts) == 1:
         return parts[0]
     if len(parts) not in (3, 4):

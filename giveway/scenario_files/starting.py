@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from giveway.scenario_files.configuration import ScenarioFiles
 
+_VALIDATION: Final = ("xml-validation", "xml-validation.net", "xml-validation.routes")
 _SAVING_STATES: Final = ("save-state.times", "save-state.period")
 
 
@@ -85,7 +86,7 @@ def prepare_start(
     Args:
         scenario: the scenario's files.
         options: what is wanted.
-        scratch: an empty folder of the caller's, to be kept until SUMO is closed.
+        scratch: a folder of the caller's own, to be kept until SUMO is closed.
         types: an additional file's text, read before the scenario's own: the types of whatever
             is going to be added.
 
@@ -95,6 +96,7 @@ def prepare_start(
         ConfigError: ``options.extra`` holds what cannot be passed on.
     """
     scenario.require_inputs()
+    scratch.mkdir(parents=True, exist_ok=True)
     return _Preparation(scenario, options, scratch).start(types)
 
 
@@ -122,6 +124,7 @@ class _Preparation:
         self._own_outputs()
         self._wanted_outputs()
         self._say_where()
+        self._connections()
         self._options |= {"gui-settings-file": "", "verbose": "false"}
         self._options |= {"no-step-log": "true", "duration-log.disable": "true"}
         self._options |= extra
@@ -193,6 +196,19 @@ class _Preparation:
             )
         if "collision.check-junctions" not in own:
             self._options["collision.check-junctions"] = "true"
+
+    def _connections(self) -> None:
+        """Nobody outside is waited for or asked."""
+        own = self._scenario.options
+        for name in _VALIDATION:
+            if own.get(name) in ("auto", "always"):
+                self._options[name] = "local"  # the schemas that come with SUMO, not the web's
+        if own.get("remote-port", "0") != "0":
+            self._options["remote-port"] = "0"
+            self._remarks.append(
+                f"remote-port: not opened; the scenario's {own['remote-port']} would wait for a "
+                "TraCI client for ever"
+            )
 
     def _own_outputs(self) -> None:
         """Every output that the scenario's options name, and those that SUMO names itself."""
