@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from giveway.walkways.gates import NO_GATES, gate, turned
+from giveway.walkways.gates import NO_GATES, TRACKS, gate, turned
 from giveway.walkways.inside import Interior
 from giveway.walkways.polyline import Polyline, usable_half_width
 from giveway.walkways.reading import Signal
@@ -92,7 +92,7 @@ class WalkGraph:
         self._portals_in: dict[str, list[int]] = {}
         self._interiors: dict[str, Interior] = {}
         self._trees: dict[End, Tree] = {}
-        self._inside: dict[tuple[int, int], Array] = {}
+        self._inside: dict[tuple[int, int, int], Array] = {}
         self._across: dict[tuple[int, int], Array] = {}
 
     def _add(self, link: Link) -> None:
@@ -183,9 +183,8 @@ class WalkGraph:
         row = self.lane_end(end)
         if end.edge in self._crossing_lines:
             # One waits on the kerb, and leaves the roadway before one turns.
-            depth = self.interior(area).depth(row[0, :2], row[0, 4:6], _KERB)
-            row[0, :2] += depth * row[0, 4:6]
-        return self.interior(area).fitted(row)
+            row = self.interior(area).gate_within(row, _KERB)
+        return row
 
     # --- ways ---------------------------------------------------------------------------------
 
@@ -216,14 +215,15 @@ class WalkGraph:
         self._trees[target] = tree
         return tree
 
-    def inside(self, start: int, end: int) -> Array:
-        """The gates (k, 7) between two portals of a walkingarea."""
-        found = self._inside.get((start, end))
+    def inside(self, start: int, end: int, track: int = 0) -> Array:
+        """The gates (k, 7) between two portals of a walkingarea, for people on one track."""
+        found = self._inside.get((start, end, track))
         if found is None:
             first, last = self._portals[start], self._portals[end]
-            found = self.interior(first.area).between(first.gate, turned(last.gate))
-            self._inside[start, end] = found
-            self._inside[end, start] = turned(found)
+            side = track / TRACKS
+            found = self.interior(first.area).between(first.gate, turned(last.gate), side)
+            self._inside[start, end, track] = found
+            self._inside[end, start, -track] = turned(found)
         return found
 
     def across(self, start: int, end: int) -> Array:
@@ -243,15 +243,14 @@ class WalkGraph:
         gates = self._crossing_lines[start.edge].gates(half_width)[1:-1]
         return turned(gates) if start.last else gates
 
-    def follow(self, start: int, tree: Tree) -> Array:
+    def follow(self, start: int, tree: Tree, track: int) -> Array:
         """The gates (k, 7) from a portal, itself left out, to the target's."""
         pieces = [NO_GATES]
         here = start
         while here in tree.leg:
-            leg = tree.leg[here]
-            gates_between = self.across if leg.crossing else self.inside
-            pieces.append(gates_between(here, leg.portal))
-            here = leg.portal
+            there, crossing = tree.leg[here]
+            pieces.append(self.across(here, there) if crossing else self.inside(here, there, track))
+            here = there
         return np.vstack([*pieces, turned(self._portals[here].gate)])
 
 
