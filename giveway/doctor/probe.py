@@ -14,6 +14,7 @@ from time import perf_counter
 from typing import Any
 
 from giveway.scenario_files import StartOptions, prepare_start, read_scenario
+from giveway.sumo_command import ROAD_CLASSES
 
 _LOOK = 3.0  # [s] of wall clock: long enough to see somebody depart, short enough to wait for
 _ENOUGH = 3  # vehicles seen
@@ -39,7 +40,9 @@ def look(config_file: Path) -> dict[str, Any]:
             sumo.simulationStep()
             persons = max(persons, len(sumo.person.getIDList()))
             for name in sumo.simulation.getDepartedIDList():
-                vehicles[name] = [sumo.vehicle.getVehicleClass(name), *sumo.vehicle.getRoute(name)]
+                vehicle_class = sumo.vehicle.getVehicleClass(name)
+                if vehicle_class in ROAD_CLASSES:
+                    vehicles[name] = [vehicle_class, *sumo.vehicle.getRoute(name)]
         answer = {
             "loaded_in": loaded,
             "time": sumo.simulation.getTime(),
@@ -54,5 +57,14 @@ def look(config_file: Path) -> dict[str, Any]:
     return answer
 
 
+def main(config_file: Path) -> None:
+    """Print what SUMO made of the scenario, or why it refused."""
+    try:
+        answer = look(config_file)
+    except Exception as error:  # libsumo's, or ours; the rest of the reason is on stderr
+        answer = {"refused": " ".join(str(error).split())}
+    sys.stdout.write("\n" + json.dumps(answer) + "\n")
+
+
 if __name__ == "__main__":
-    sys.stdout.write("\n" + json.dumps(look(Path(sys.argv[1]))) + "\n")
+    main(Path(sys.argv[1]))

@@ -53,17 +53,23 @@ def judged(config_file: Path, result: subprocess.CompletedProcess[str]) -> list[
         remedy = f"look at it alone: sumo -c {config_file}; report it to the authors of SUMO"
         return [error("SUMO", f"SUMO crashed ({name})", remedy)]
     if result.returncode != 0:
-        return [error("SUMO", f"SUMO refuses the scenario: {_reason(result.stderr)}", "correct it")]
+        last = (result.stderr.strip().splitlines() or [f"exit code {result.returncode}"])[-1]
+        return [
+            error("SUMO", f"the trial failed: {last}", f"look at it alone: sumo -c {config_file}")
+        ]
     seen: dict[str, Any] = json.loads(result.stdout.strip().splitlines()[-1])
+    if "refused" in seen:
+        text = f"SUMO refuses the scenario: {_reasons(result.stderr, seen['refused'])}"
+        return [error("SUMO", text, f"correct it; sumo -c {config_file} says the same")]
     findings = [*_loaded(seen), *_warnings(result.stderr, seen["copies"]), *_outputs(seen)]
     return [*findings, *_remarks(seen), *_egos(seen)]
 
 
-def _reason(stderr: str) -> str:
+def _reasons(stderr: str, refused: str) -> str:
+    """All that SUMO said: on stderr, and in the exception, which often says only that it failed."""
     lines = [line.strip() for line in stderr.splitlines()]
-    said = [line.removeprefix("Error:").strip() for line in lines if line.startswith("Error")]
-    last = lines[-1].partition(": ")[2] or lines[-1] if lines else "without a word"
-    return "; ".join(dict.fromkeys(said)) or last
+    said = [line.removeprefix("Error:").strip() for line in lines if line.startswith("Error:")]
+    return "; ".join(dict.fromkeys([*said, *([] if refused == "Process Error" else [refused])]))
 
 
 def _loaded(seen: dict[str, Any]) -> list[Finding]:
@@ -103,7 +109,7 @@ def _egos(seen: dict[str, Any]) -> list[Finding]:
     """Vehicles that can be taken over, and a route for one of our own."""
     vehicles: dict[str, list[str]] = seen["vehicles"]
     if not vehicles:
-        text = f"no vehicle departs before {seen['time']:g} s"
+        text = f"no road vehicle departs before {seen['time']:g} s"
         return [warning("ego", text, "insert one with --ego-route EDGE,EDGE")]
     named = ", ".join(f"{name} ({facts[0]})" for name, facts in vehicles.items())
     first, (_, *edges) = next(iter(vehicles.items()))

@@ -191,4 +191,7 @@ def test_there_is_a_type_for_every_class_on_the_road(held: None) -> None:
     } <= known
     for name in ROAD_CLASSES:
         assert libsumo.vehicletype.getVehicleClass(ego_type(name)) == name
-    assert ego_type("ship") == ego_type("passenger")
+    with pytest.raises(
+        ScenarioError, match="vehicle class 'rail': an ego drives where people walk"
+    ):
+        ego_type("rail")
