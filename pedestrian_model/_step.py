@@ -12,7 +12,6 @@ from pedestrian_model._mathematics import cosine_sine
 from pedestrian_model._ring import add_all_pairs
 from pedestrian_model._routes import Routes, set_targets
 from pedestrian_model._rows import (
-    BLOCK,
     FX,
     FY,
     LARGEST_RING,
@@ -31,7 +30,7 @@ from pedestrian_model._rows import (
     VX,
     VY,
 )
-from pedestrian_model._vehicles import HEADING, SPEED, X, Y, add_vehicle
+from pedestrian_model._vehicles import HEADING, SPEED, X, Y, add_near_vehicles, add_vehicles
 from pedestrian_model._walls import add_walls
 
 if TYPE_CHECKING:
@@ -69,12 +68,11 @@ def gather_forces(
     """Fill the rows and their pair and vehicle forces from the state."""
     n = position.shape[0]
     if n >= cell_list_from or n > LARGEST_RING:
-        add_near_pairs(rows, index, buffer, position, velocity, constants)
+        grid = add_near_pairs(rows, index, buffer, position, velocity, constants)
+        add_near_vehicles(rows, index[2], grid, n, vehicles, travelled, constants)
     else:
         add_all_pairs(rows, index, buffer, back, position, velocity, constants)
-    padded = (n + BLOCK - 1) // BLOCK * BLOCK
-    for v in range(vehicles.shape[0]):
-        add_vehicle(rows, padded, vehicles[v], travelled, constants[0])
+        add_vehicles(rows, n, vehicles, travelled, constants[0])
 
 
 @inlined
