@@ -126,7 +126,7 @@ class Ways:
     def _new_hop(self, start: End, end: End) -> Hop:
         graph = self._graph
         tree = graph.towards(end)
-        starts = [(tree.distance[i], i) for i in graph.portals_of(start) if i in tree.distance]
+        starts = [(tree.coming[i].distance, i) for i in graph.portals_of(start) if i in tree.coming]
         if starts:
             distance, i = min(starts)
             return Hop(i, distance, connected=True)

@@ -70,9 +70,9 @@ class Starts:
         """From the middle of a walkingarea: to the portal with the shortest way on."""
         graph = self._graph
         exits = [
-            (tree.distance[i] + math.dist(position, graph.portal(i).gate[0, :2]), i)
+            (tree.leaving[i].distance + math.dist(position, graph.portal(i).gate[0, :2]), i)
             for i in graph.portals_in(area)
-            if i in tree.distance and (i not in tree.leg or tree.leg[i].crossing)
+            if i in tree.leaving
         ]
         if not exits:
             return None
@@ -82,8 +82,7 @@ class Starts:
 
         def gates(side: float) -> Array:
             between = graph.interior(area).between(here, way_out, side)
-            onwards = graph.follow(i, tree, g.track_of(side)) if i in tree.leg else way_out
-            return np.concatenate([between, onwards])
+            return np.concatenate([between, graph.leave(i, tree, g.track_of(side))])
 
         return Start(length, True, g.side_at(way_out, position), gates)
 
@@ -92,17 +91,15 @@ class Starts:
         graph = self._graph
         line = graph.line(crossing)
         station, left = line.project(*position)
-        exits = []
-        for last in (False, True):
-            ahead = line.length - station if last else station
-            for i in graph.portals_of(End(crossing, last)):
-                if i in tree.distance:
-                    # The shortest way from this end may lead back over the crossing.
-                    back = i in tree.leg and tree.leg[i].crossing
-                    exits.append((back, tree.distance[i] + ahead, i, last))
+        exits = [
+            (tree.coming[i].distance + (line.length - station if last else station), i, last)
+            for last in (False, True)
+            for i in graph.portals_of(End(crossing, last))
+            if i in tree.coming
+        ]
         if not exits:
             return None
-        _, length, i, last = min(exits)
+        length, i, last = min(exits)
         half_width = usable_half_width(graph.lane(crossing).width)
         bends, stations = line.gates(half_width)[1:-1], np.array(line.stations[1:-1])
         ahead_of_one = bends[stations > station] if last else g.turned(bends[stations < station])
