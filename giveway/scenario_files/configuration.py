@@ -104,6 +104,12 @@ class ScenarioFiles:
             )
             raise ScenarioError(msg)
         for option, path in self.inputs:
+            if "," in str(path):
+                msg = (
+                    f"{self.config_file}: {option} names {path}; SUMO takes the ',' for the end of "
+                    "a file's name; expected a path without one; rename the folder"
+                )
+                raise ScenarioError(msg)
             if path.is_dir():
                 msg = f"{self.config_file}: {option} names the folder {path}; expected a file"
                 raise ScenarioError(msg)

@@ -58,6 +58,7 @@ class Start:
         remarks: what differs from the scenario, one line each, for the user.
         outputs: each output file as the scenario has it, to the file written instead.
         copies: each rewritten copy of a scenario file, to its original.
+        read: the scenario's network, routes and additional files, with all that they include.
         seed: the seed in effect.
     """
 
@@ -65,6 +66,7 @@ class Start:
     remarks: tuple[str, ...]
     outputs: Mapping[Path, Path]
     copies: Mapping[Path, Path]
+    read: tuple[Path, ...]
     seed: int
 
     def with_original_names(self, message: str) -> str:
@@ -136,6 +138,7 @@ class _Preparation:
             tuple(self._remarks),
             dict(self._outputs.placed),
             self._copies.made,
+            self._copies.read,
             int(self._options.get("seed", self._scenario.seed or SUMO_SEED)),
         )
 
@@ -198,11 +201,17 @@ class _Preparation:
             self._options["collision.check-junctions"] = "true"
 
     def _connections(self) -> None:
-        """Nobody outside is waited for or asked."""
+        """Nobody outside is waited for or asked; who listens to an output is the user's affair."""
         own = self._scenario.options
         for name in _VALIDATION:
             if own.get(name) in ("auto", "always"):
                 self._options[name] = "local"  # the schemas that come with SUMO, not the web's
+        for option, names in self._scenario.outputs.items():
+            self._remarks += [
+                f"{option}: {name} is a network address, left as it is; somebody must listen there"
+                for name in names
+                if not is_file(name) and ":" in name
+            ]
         if own.get("remote-port", "0") != "0":
             self._options["remote-port"] = "0"
             self._remarks.append(

@@ -174,6 +174,13 @@ def test_a_missing_file_is_named_with_its_option(option: str, small: Callable[..
         read_scenario(file).require_inputs()
 
 
+def test_a_comma_in_a_folders_name_is_the_end_of_a_name_to_sumo(
+    small: Callable[..., Path],
+) -> None:
+    with pytest.raises(ScenarioError, match=r"one, two/net\.net\.xml\.gz; SUMO takes the ','"):
+        read_scenario(small(folder="one, two")).require_inputs()
+
+
 def test_a_missing_network_and_a_folder_for_a_file(small: Callable[..., Path]) -> None:
     file = small('<additional-files value="."/>')
     with pytest.raises(ScenarioError, match="additional-files names the folder"):

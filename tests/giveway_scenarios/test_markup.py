@@ -33,7 +33,8 @@ def rewritten(text: bytes, new: str = "new") -> tuple[bytes, list[tuple[str, str
         return {"file": new} if name == "a" else {}
 
     target = io.BytesIO()
-    rewrite(io.BytesIO(text), target, visit)
+    names = frozenset({"root", "a", "b", "param"})
+    rewrite(io.BytesIO(text), target, visit, names)
     return target.getvalue(), seen
 
 
@@ -58,5 +59,5 @@ def test_what_is_not_well_formed_stays_for_sumo_to_refuse(broken: bytes) -> None
 @given(st.binary(max_size=300))
 def test_any_bytes_pass_through(text: bytes) -> None:
     target = io.BytesIO()
-    rewrite(io.BytesIO(text), target, lambda name, attributes, parent: {})
+    rewrite(io.BytesIO(text), target, lambda name, attributes, parent: {}, frozenset({"a"}))
     assert target.getvalue() == text

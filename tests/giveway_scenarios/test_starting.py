@@ -90,6 +90,12 @@ def test_nobody_is_waited_for_and_nothing_is_fetched(
     assert any("remote-port: not opened" in remark for remark in seen["remarks"])
 
 
+def test_an_output_into_the_network_is_said(started: Callable[..., Start]) -> None:
+    start = started('<fcd-output value="localhost:9999"/>')
+    assert "--fcd-output" not in options_of(start)
+    assert any("fcd-output: localhost:9999 is a network address" in line for line in start.remarks)
+
+
 def test_a_missing_file_of_the_window_is_no_reason_to_stop(
     small: Callable[..., Path], run_started: Callable[..., dict[str, Any]]
 ) -> None:
