@@ -1,154 +1,140 @@
-"""Places in the network where SUMO's walkers stand, are parked, and are put back.
+"""How SUMO is made to let go of a walking person, and to walk it on again.
 
-What SUMO 1.28 does with ``person.moveTo`` was found by experiment:
+``person.moveTo`` ends a ``moveToXY``: the person walks on in SUMO from the lane position given,
+with its id, type, parameters and remaining stages. It takes effect at once. What SUMO 1.28 gets
+wrong, found by experiment and in its sources:
 
-* it ends a ``moveToXY``: the person walks on in SUMO from there, with its id, type, parameters,
-  walk (with the walk's own speed) and remaining stages; it takes effect at once;
-* a normal lane must lie on the person's route and ``pos`` must be finite; a position far outside
-  of the lane is accepted and is where a held person hides from SUMO's cars and pedestrians;
-* a person that was inside a junction keeps that inner edge in its books, and would arrive at once
-  on its last edge: it gets a fresh walk first.
+* a person moved as a ghost stays in the books of the lane where it was: SUMO's pedestrians walk
+  round that spot and cars wait for ever at a crossing that it has long left. Far outside of the
+  lane it is in nobody's way;
+* a person taken over inside a junction keeps that inner edge in its books, from which moveTo
+  derives a wrong walking direction: it would leave the network, and the simulation end with
+  "Disconnected walk". A fresh walk has clean books;
+* on the last edge the direction is the one from the former position to the new one, so that a
+  person put before its destination must come from the right side: else it arrives at once;
+* a fresh walk is as fast as the person likes, whatever speed the scenario gave to the former one.
 """
 
 from __future__ import annotations
 
-import itertools
-import math
-import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from giveway.footpaths import Foot
 
-_IN_JUNCTION = re.compile(r"^:(.*)_[wc]?\d+$")  # the edge of a crossing, walkingarea or turn
-_HALF_BODY = 0.25  # [m] a person keeps this far from its lane's edge
-_LANE_END = 0.05  # [m] and this far from its ends
-
-
-@dataclass(frozen=True, slots=True)
-class Foot:
-    """The point of a lane that is nearest to somewhere."""
-
-    lane: str
-    position: float  # [m] along the lane, in SUMO's metres
-    lateral: float  # [m] how far to the left of the centre line, as far as the lane is wide
-    distance: float  # [m] from the lane's centre line
+_WALKING = 2  # SUMO's stage type
+_NOWHERE = -1000.0  # [m] on its lane: where a held person is in SUMO's books
+_RUN_UP = 0.5  # [m] before the place where a person is put on its last edge
 
 
 @dataclass(frozen=True, slots=True)
-class _Lane:
-    """What is remembered of a lane."""
+class Walk:
+    """What is remembered of a held person's walk."""
 
-    name: str
-    shape: Sequence[tuple[float, float]]
-    length: float  # [m] SUMO's: nominal
-    metres: float  # [m] of the polyline
-    half_width: float  # [m] that a body's centre can use
+    edges: tuple[str, ...]  # remaining, the current one first
+    arrival_position: float  # [m] on the last edge
+    stages_left: int  # after this walk
+    type: str
+    own_speed: float | None  # [m/s] that the scenario gives to this walk
+    was_inside: bool  # taken over inside a junction
 
 
-class FootPaths:
-    """The lanes that people walk on, edge by edge.
+class Handover:
+    """Moves persons in SUMO's books.
+
+    All methods may raise one of ``refusals``.
 
     Args:
         sumo: the libsumo module.
+
+    Attributes:
+        refusals: the exceptions that SUMO's refusals become.
     """
 
+    refusals: tuple[type[Exception], ...]
+
     def __init__(self, sumo: Any) -> None:
-        self._sumo = sumo
-        self._lanes: dict[str, _Lane | None] = {}
-        self._ends: dict[str, tuple[str, str]] = {}
+        self._simulation = sumo.simulation
+        self._person = sumo.person
+        self._paced: dict[str, tuple[float, int]] = {}  # the usual speed factor, until when
+        self.refusals = (sumo.TraCIException, sumo.FatalTraCIError)  # neither is the other's base
 
-    def lane(self, edge: str) -> str | None:
-        """The lane on which SUMO lets people walk along ``edge``; None if it has none."""
-        lane = self._lane(edge)
-        return None if lane is None else lane.name
+    def park(self, name: str, lane: str) -> None:
+        """Put a person out of everybody's way, in the books of a lane of its walk."""
+        self._person.moveTo(name, lane, _NOWHERE)
 
-    def foot(self, edge: str, x: float, y: float) -> Foot | None:
-        """The nearest point of the edge's footpath; None if it has none or does not exist."""
-        lane = self._lane(edge)
-        if lane is None:
-            return None
-        best, passed = (math.inf, 0.0, 0.0), 0.0
-        for (x0, y0), (x1, y1) in itertools.pairwise(lane.shape):
-            dx, dy = x1 - x0, y1 - y0
-            length = math.hypot(dx, dy)
-            if length > 0.0:
-                share = min(max(((x - x0) * dx + (y - y0) * dy) / length**2, 0.0), 1.0)
-                distance = math.hypot(x - x0 - share * dx, y - y0 - share * dy)
-                side = (dx * (y - y0) - dy * (x - x0)) / length
-                best = min(best, (distance, passed + share * length, side))
-            passed += length
-        distance, along, side = best
-        return Foot(
-            lane.name,
-            _inside(lane, along * lane.length / max(lane.metres, 1e-9)),
-            min(max(side, -lane.half_width), lane.half_width),
-            distance,
+    def walk_on(self, name: str, walk: Walk, step: int, foot: Foot) -> None:
+        """Let a person walk on from ``foot``, which lies on edge ``step`` of its walk."""
+        edges = walk.edges[step:]
+        if len(edges) == 1:
+            self._approach(name, walk, foot)
+            return
+        rerouted = self._person.getStage(name).edges[-len(walk.edges) :] != walk.edges
+        if rerouted or walk.was_inside or edges[0] in edges[1:] + walk.edges[:step]:
+            self._restart(name, walk, edges)
+        self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
+
+    def walk_anew(self, name: str, walk: Walk, edge: str, foot: Foot) -> bool:
+        """Let a person walk to its walk's end from ``foot`` on any ``edge``; False if no way leads.
+
+        The way is SUMO's fastest one.
+        """
+        found = self._simulation.findIntermodalRoute(
+            edge,
+            walk.edges[-1],
+            departPos=foot.position,
+            arrivalPos=walk.arrival_position,
+            pType=walk.type,
         )
-
-    def at(self, edge: str, position: float, lateral: float = 0.0) -> Foot | None:
-        """The point at ``position`` [m] of the edge's footpath, moved onto it if outside."""
-        lane = self._lane(edge)
-        if lane is None:
-            return None
-        lateral = min(max(lateral, -lane.half_width), lane.half_width)
-        return Foot(lane.name, _inside(lane, position), lateral, abs(lateral))
-
-    def index(self, person: str, edges: Sequence[str], lane: str, arrival: float) -> int:
-        """Which of its walk's ``edges`` a person on ``lane`` is on, or was on before a junction."""
-        edge = lane.rpartition("_")[0]
-        inside = _IN_JUNCTION.match(edge)
-        if inside is None:
-            found = [k for k, name in enumerate(edges) if name == edge]
+        if len(found) != 1 or found[0].type != _WALKING or not found[0].edges:
+            return False
+        if len(found[0].edges) == 1:
+            self._approach(name, walk, foot)
         else:
-            junction = inside.group(1)
-            pairs = enumerate(itertools.pairwise(edges))
-            found = [k for k, pair in pairs if all(junction in self._joined(e) for e in pair)]
-        if len(found) == 1:
-            return found[0]
-        return self._by_distance(person, edges, arrival, found or range(len(edges)))
+            self._restart(name, walk, tuple(found[0].edges))
+            self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
+        return True
 
-    def _by_distance(
-        self, person: str, edges: Sequence[str], arrival: float, candidates: Sequence[int]
-    ) -> int:
-        """On a walk that comes by twice: the edge from which it is as far to the end as it is."""
-        left = self._sumo.person.getWalkingDistance(person, edges[-1], arrival)
-        lengths = [self._sumo.lane.getLength(f"{edge}_0") for edge in edges]
-        return min(candidates, key=lambda k: abs(sum(lengths[k + 1 : -1]) + arrival - left))
+    def finish(self, name: str, lane: str, walk: Walk) -> None:
+        """Put a person on the end of its walk, where SUMO's next step ends it."""
+        self._person.moveTo(name, lane, walk.arrival_position)
 
-    def _joined(self, edge: str) -> tuple[str, str]:
-        """The junctions at both ends of an edge."""
-        if edge not in self._ends:
-            edges = self._sumo.edge
-            self._ends[edge] = edges.getFromJunction(edge), edges.getToJunction(edge)
-        return self._ends[edge]
+    def _approach(self, name: str, walk: Walk, foot: Foot) -> None:
+        """Put a person on the last edge of its walk, facing the end."""
+        last = walk.edges[-1:]
+        ahead = walk.arrival_position >= foot.position
+        behind = foot.position - _RUN_UP if ahead else foot.position + _RUN_UP
+        if walk.was_inside or len(walk.edges) > 1:
+            self._restart(name, walk, last)
+        self._person.moveTo(name, foot.lane, max(behind, 0.0))
+        self._restart(name, walk, last)  # departs there, since it is on this edge already
+        self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
 
-    def _lane(self, edge: str) -> _Lane | None:
-        if edge not in self._lanes:
-            self._lanes[edge] = self._find(edge)
-        return self._lanes[edge]
+    def _restart(self, name: str, walk: Walk, edges: tuple[str, ...]) -> None:
+        """Replace the person's walk by a fresh one along ``edges`` to the same end."""
+        person = self._person
+        stage = person.getStage(name)
+        stage.edges = edges
+        person.replaceStage(name, 0, stage)
+        if walk.own_speed is not None:
+            self._set_pace(name, walk.own_speed, walk.stages_left)
 
-    def _find(self, edge: str) -> _Lane | None:
-        """SUMO's choice: a lane for pedestrians alone, else the first that admits them."""
-        sumo = self._sumo
-        try:
-            names = [f"{edge}_{i}" for i in range(sumo.edge.getLaneNumber(edge))]
-        except sumo.TraCIException:
-            return None
-        admitting = [name for name in names if "pedestrian" not in sumo.lane.getDisallowed(name)]
-        allowed = {name: sumo.lane.getAllowed(name) for name in admitting}
-        admitting = [n for n in admitting if not allowed[n] or "pedestrian" in allowed[n]]
-        if not admitting:
-            return None
-        name = next((n for n in admitting if tuple(allowed[n]) == ("pedestrian",)), admitting[0])
-        shape = tuple(sumo.lane.getShape(name))
-        metres = math.fsum(math.dist(a, b) for a, b in itertools.pairwise(shape))
-        half_width = max(sumo.lane.getWidth(name) / 2 - _HALF_BODY, 0.0)
-        return _Lane(name, shape, sumo.lane.getLength(name), metres, half_width)
+    def _set_pace(self, name: str, speed: float, stages_left: int) -> None:
+        """Have a person like to walk at ``speed`` [m/s] until ``stages_left`` stages are left."""
+        person = self._person
+        factor = person.getSpeedFactor(name)
+        own_factor, _ = self._paced.get(name, (factor, 0))
+        person.setSpeedFactor(name, factor * speed / person.getMaxSpeed(name))
+        self._paced[name] = own_factor, stages_left
 
-
-def _inside(lane: _Lane, position: float) -> float:
-    """``position`` [m], but not on the very ends of the lane."""
-    margin = min(_LANE_END, lane.length / 2)
-    return min(max(position, margin), lane.length - margin)
+    def end_paces(self) -> None:
+        """Whoever has ended the walk that had a speed of its own likes its usual speed again."""
+        for name, (factor, stages_left) in list(self._paced.items()):
+            try:
+                if self._person.getRemainingStages(name) > stages_left:
+                    continue
+                self._person.setSpeedFactor(name, factor)
+            except self.refusals:
+                pass  # it has arrived
+            del self._paced[name]

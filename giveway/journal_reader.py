@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_NO_BYTES = np.empty(0, np.uint8)
-
 
 @dataclass(frozen=True)
 class JournalContents:
@@ -108,9 +106,7 @@ class _Reader:
 
     def contents(self) -> tuple[dict[str, Array], dict[str, tuple[str, ...]], int]:
         tables = {
-            name: np.concatenate([_NO_BYTES, *(np.frombuffer(block, np.uint8) for block in blocks)])
-            .view(np.float64)
-            .reshape(-1, columns)
+            name: np.frombuffer(bytearray().join(blocks), np.float64).reshape(-1, columns)
             for (name, columns), blocks in zip(self._columns, self._blocks, strict=True)
         }
         return tables, {name: tuple(names) for name, names in self._names}, self._commits

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import quoteattr
 
+from giveway.errors import ScenarioError
 from giveway.scenario_files import read_scenario
 
 if TYPE_CHECKING:
@@ -42,12 +43,20 @@ def inserted_type(ego_id: str) -> str:
 
 
 def ego_type(vehicle_class: str) -> str:
-    """The type for an ego of ``vehicle_class`` that was taken over from the scenario.
+    """The type for an ego of ``vehicle_class`` that is taken over from the scenario.
 
-    Its length and width are to be set for the vehicle itself, to those it had.
+    The vehicle's own length and width are to be set again afterwards, for it alone.
+
+    Raises:
+        ScenarioError: a vehicle of this class does not drive on roads.
     """
-    known = vehicle_class if vehicle_class in ROAD_CLASSES else "passenger"
-    return f"{EGO_TYPE}_{known}"
+    if vehicle_class not in ROAD_CLASSES:
+        msg = (
+            f"vehicle class '{vehicle_class}': an ego drives where people walk; expected one of "
+            f"{', '.join(ROAD_CLASSES)}; name another vehicle with --ego"
+        )
+        raise ScenarioError(msg)
+    return f"{EGO_TYPE}_{vehicle_class}"
 
 
 def all_types(egos: Mapping[str, VehicleShape]) -> str:

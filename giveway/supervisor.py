@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import math
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from types import FrameType, TracebackType
 
 HANG_LIMIT = 120.0  # [s] of wall clock without a sign of life from the loop
+_PREFIX = "giveway-journal-"
+_KEPT = 86400.0  # [s] that the journal of a killed supervisor stays for whoever wants its rows
 _PATIENCE = 10.0  # [s] a child gets to write its rows before a second signal kills it
 _TEARDOWN_LIMIT = 10.0  # [s] from "done" to the process's end; native destructors hang, too
 _DYING_WORDS = 2.0  # [s] for a hanging child to write its traceback
@@ -84,11 +87,22 @@ def journal_folder() -> Iterator[Path]:
     memory that the run itself needs; ``TMPDIR`` before both.
     """
     large = Path("/var/tmp")
-    chosen = None if os.environ.get("TMPDIR") or not os.access(large, os.W_OK) else large
+    named = os.environ.get("TMPDIR") or not os.access(large, os.W_OK)
+    place = Path(tempfile.gettempdir()) if named else large
+    _sweep(place)
     with tempfile.TemporaryDirectory(
-        prefix="giveway-journal-", dir=chosen, ignore_cleanup_errors=True
+        prefix=_PREFIX, dir=place, ignore_cleanup_errors=True
     ) as folder:
         yield Path(folder)
+
+
+def _sweep(place: Path) -> None:
+    """Remove the journals of supervisors that were killed; a living one is written all the time."""
+    with contextlib.suppress(OSError):
+        for folder in place.glob(f"{_PREFIX}*"):
+            written = max((file.stat().st_mtime for file in folder.iterdir()), default=math.inf)
+            if time.time() - written > _KEPT:
+                shutil.rmtree(folder, ignore_errors=True)
 
 
 def own_command() -> list[str]:

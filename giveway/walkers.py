@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.handover import Foot, FootPaths
+from giveway.footpaths import Foot, FootPaths
+from giveway.handover import Handover, Walk
 from giveway.traffic import angle_to_heading
 from giveway.walk_speeds import WalkSpeeds
 
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _WALKING = 2  # SUMO's stage type
-_NOWHERE = -1000.0  # [m] on its lane: where a held person is in SUMO's books
 _SLOWEST = 0.1  # [m/s] nobody wants to walk more slowly
 _DETOUR = 5.0  # [m] so much farther may the walk's own edge be than the nearest one
 
@@ -57,19 +57,6 @@ class Walker:
     stages_left: int  # after this walk
 
 
-@dataclass(frozen=True, slots=True)
-class _Walk:
-    """What is remembered of a held person's walk."""
-
-    edges: tuple[str, ...]  # remaining, the current one first
-    arrival_position: float  # [m]
-    stages_left: int
-    type: str
-    has_own_speed: bool  # the scenario gives this walk a speed, which a fresh walk would not have
-    was_inside: bool  # taken over inside a junction
-    passed: int  # edges of the walk before ``edges``
-
-
 class ScenarioWalkers:
     """Who of the scenario's persons is SUMO's at present, and who is ours.
 
@@ -93,11 +80,12 @@ class ScenarioWalkers:
         self.counts = Counter(taken=0, handed_back=0, arrived=0, continued=0, lost=0)
         self._free: dict[str, None] = {}  # departed and SUMO's, in order of departure
         self._seen_until = -math.inf  # [s] SUMO's clock when `_free` was brought up to date
-        self._walks: dict[str, _Walk] = {}
+        self._walks: dict[str, Walk] = {}
         self._leaving: dict[str, int] = {}  # at their walk's end: stages left then
         self._paths = FootPaths(sumo)
         self._speeds = WalkSpeeds.of_running(sumo)
         direct = getattr(sumo.libsumo, "_libsumo", None)  # without the wrapper's own call
+        self._handover = Handover(sumo)
         self._position = getattr(direct, "person_getPosition", sumo.person.getPosition)
 
     # --- who is where -------------------------------------------------------------------------
@@ -110,7 +98,7 @@ class ScenarioWalkers:
         self._update()
         try:
             return self._read()
-        except self._sumo.TraCIException:  # somebody vanished without having arrived
+        except self._handover.refusals:  # somebody vanished without having arrived
             self._look_at_everybody()
             return self._read()
 
@@ -138,6 +126,7 @@ class ScenarioWalkers:
         self._seen_until = now
         if self._leaving:
             self._see_off()
+        self._handover.end_paces()
 
     def _look_at_everybody(self) -> None:
         present = dict.fromkeys(self._sumo.person.getIDList())
@@ -209,15 +198,14 @@ class ScenarioWalkers:
         )
         inside = lane.startswith(":")
         hideout = self._paths.lane(walker.edges[0]) if inside else lane
-        person.moveTo(name, hideout or lane, _NOWHERE)
-        self._walks[name] = _Walk(
+        self._handover.park(name, hideout or lane)
+        self._walks[name] = Walk(
             edges=walker.edges,
             arrival_position=arrival,
             stages_left=walker.stages_left,
             type=walker.type,
-            has_own_speed=own_speed is not None,
+            own_speed=own_speed,
             was_inside=inside,
-            passed=current,
         )
         self.held.add(name)
         del self._free[name]
@@ -247,53 +235,22 @@ class ScenarioWalkers:
         foot = self._paths.at(edge, position, nearest.lateral if nearest else 0.0)
         if foot is None or nearest is None:
             return False
+        step, own = self._on_walk(walk, x, y)
         try:
-            step, own = self._on_walk(walk, x, y)
-            if own is None or own.distance > nearest.distance + _DETOUR:
-                if not self._new_route(name, walk, edge, foot.position):
-                    return False
-            else:
-                foot = own
-                self._refresh(name, walk, step)
-            self._sumo.person.moveTo(name, foot.lane, foot.position, foot.lateral)
-        except self._sumo.TraCIException:
+            if own is not None and own.distance <= nearest.distance + _DETOUR:
+                self._handover.walk_on(name, walk, step, own)
+            elif not self._handover.walk_anew(name, walk, edge, foot):
+                return False
+        except self._handover.refusals:
             return False
         self._release(name, "handed_back")
         self._free[name] = None
         return True
 
-    def _on_walk(self, walk: _Walk, x: float, y: float) -> tuple[int, Foot | None]:
+    def _on_walk(self, walk: Walk, x: float, y: float) -> tuple[int, Foot | None]:
         """The place on the rest of the walk that is nearest, and its edge's index."""
         feet = [(k, self._paths.foot(edge, x, y)) for k, edge in enumerate(walk.edges)]
         return min(feet, key=lambda candidate: candidate[1].distance if candidate[1] else math.inf)
-
-    def _refresh(self, name: str, walk: _Walk, step: int) -> None:
-        """Where SUMO would misread its books, start the walk anew on its edge ``step``.
-
-        A fresh walk has no speed of its own, so one that has it is kept wherever it works.
-        """
-        last = step == len(walk.edges) - 1
-        twice = walk.edges.count(walk.edges[step]) > 1
-        if twice or (walk.was_inside and (last or not walk.has_own_speed)):
-            stage = self._sumo.person.getStage(name)
-            stage.edges = walk.edges[step:]
-            self._sumo.person.replaceStage(name, 0, stage)
-
-    def _new_route(self, name: str, walk: _Walk, edge: str, position: float) -> bool:
-        """Replace the walk by one from ``position`` [m] on ``edge`` to the same place."""
-        stage = self._sumo.person.getStage(name)
-        found = self._sumo.simulation.findIntermodalRoute(
-            edge,
-            walk.edges[-1],
-            departPos=position,
-            arrivalPos=walk.arrival_position,
-            pType=walk.type,
-        )
-        if len(found) != 1 or found[0].type != _WALKING or not found[0].edges:
-            return False
-        stage.edges = found[0].edges
-        self._sumo.person.replaceStage(name, 0, stage)
-        return True
 
     def arrive(self, name: str) -> Arrival:
         """Let a held person end its walk in SUMO's next step.
@@ -303,8 +260,8 @@ class ScenarioWalkers:
         """
         walk = self._walks[name]
         end = self._paths.lane(walk.edges[-1])
-        with contextlib.suppress(self._sumo.TraCIException):  # else it is cut short after the step
-            self._sumo.person.moveTo(name, end or "", walk.arrival_position)
+        with contextlib.suppress(*self._handover.refusals):  # else it is cut short after the step
+            self._handover.finish(name, end or "", walk)
         self._leaving[name] = walk.stages_left
         arrival = Arrival.CONTINUED if walk.stages_left else Arrival.ARRIVED
         self._release(name, arrival.value)

@@ -301,10 +301,13 @@ def add_near_pairs(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     constants: NDArray[Any],
-) -> None:
+) -> Grid:
     """Fill the rows sorted by cell and add the forces of the pairs within reach.
 
     A function of its own in machine code: inlined into the step, its loops lose their registers.
+
+    Returns:
+        The grid; ``index[2]`` holds the first row of each of its cells.
     """
     c = pair_constants(constants[0])
     grid = _lay_grid(position, constants[0].r_max, index.shape[1] - 2)
@@ -322,3 +325,4 @@ def add_near_pairs(
             if _meet_candidates(rows, begin, end, segments, count, buffer, c) > 0:
                 for i in range(begin, end):
                     add_coincident(rows, order, i, position.shape[0], c)
+    return grid

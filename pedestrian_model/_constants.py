@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from pedestrian_model._mathematics import (
     angle_decay_coefficients,
     exponential,
 )
+from pedestrian_model._vehicles import LEAST_FORCE
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,7 +31,7 @@ _NAMES = (
     "m", "R", "two_R", "r_max", "d_rep", "s_rep_2", "a_rep", "b_rep", "k_col", "d_nav", "s_nav_2",
     "decay_0", "decay_1", "decay_2", "decay_3", "cos_pi_8", "sin_pi_8",
     # vehicle influence
-    "le", "dx0", "alpha_x", "A", "b", "a_v", "b_v", "cap", "u_static",
+    "le", "dx0", "alpha_x", "A", "b", "a_v", "b_v", "cap", "u_static", "reach",
     # walls
     "A_w", "b_w",
     # destination, limits
@@ -80,6 +82,8 @@ def pack(parameters: VciParameters) -> NDArray[Any]:
         "b_v": (1.0 - p.vehicle_anisotropy) / 2.0,
         "cap": p.vehicle_exponent_cap,
         "u_static": p.static_speed,
+        "reach": p.body_radius
+        + math.log(max(p.vehicle_strength / LEAST_FORCE, 1.0)) / p.vehicle_decay,
         "A_w": p.wall_strength,
         "b_w": p.wall_decay,
         "k_des": p.destination_gain,

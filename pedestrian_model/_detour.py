@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from pedestrian_model._jit import inlined, kernel
 from pedestrian_model._mathematics import cosine_sine
-from pedestrian_model._rows import PX, PY, TX, TY
+from pedestrian_model._rows import NVX, NX, NY, PX, PY, TX, TY
 from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 
 if TYPE_CHECKING:
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _TOUCH = 1e-9  # [m] a path along the obstacle's edge does not cross it
+_TOGETHER = 32  # rows
+_ENTRY, _CORNER_X, _CORNER_Y = NVX, NX, NY  # rows that are free until the step is integrated
 _CLEAR = 2.0  # an entry parameter beyond the segment's end: no crossing
 
 
@@ -104,37 +106,62 @@ def _way_round(
 
 
 @inlined
+def _look_ahead(
+    rows: NDArray[np.float64], start: int, stop: int, vehicle: NDArray[np.float64], c: Any
+) -> None:
+    """For the rows start ... stop - 1, see if a standing vehicle is the first in the way so far."""
+    reach = vehicle[FRONT] + vehicle[REAR] + vehicle[WIDTH] + 2.0 * c.detour
+    v_x, v_y = vehicle[X], vehicle[Y]
+    cos, sin = cosine_sine(vehicle[HEADING])
+    low, high, h = -vehicle[REAR], vehicle[FRONT], vehicle[WIDTH] / 2.0
+    for k in range(start, stop):
+        x, y, x_p, y_p = rows[PX, k], rows[PY, k], rows[TX, k], rows[TY, k]
+        if min(x, x_p) > v_x + reach or max(x, x_p) < v_x - reach:
+            continue
+        if min(y, y_p) > v_y + reach or max(y, y_p) < v_y - reach:
+            continue
+        at_x, at_y = cos * (x - v_x) + sin * (y - v_y), cos * (y - v_y) - sin * (x - v_x)
+        to_x = cos * (x_p - v_x) + sin * (y_p - v_y)
+        to_y = cos * (y_p - v_y) - sin * (x_p - v_x)
+        room = min(_outside(at_x, at_y, low, high, h), _outside(to_x, to_y, low, high, h))
+        if room <= 0.0:
+            continue  # inside the car, or bound for its inside: no way round
+        g = min(room, c.detour) - _TOUCH
+        entry = _entry(at_x, at_y, to_x - at_x, to_y - at_y, low - g, high + g, h + g)
+        if entry < rows[_ENTRY, k]:
+            q_x, q_y = _way_round(at_x, at_y, to_x, to_y, low, high, h, c.detour, c.r_waypoint)
+            rows[_ENTRY, k] = entry
+            rows[_CORNER_X, k] = v_x + cos * q_x - sin * q_y
+            rows[_CORNER_Y, k] = v_y + sin * q_x + cos * q_y
+
+
+@inlined
 def detour(rows: NDArray[np.float64], n: int, vehicles: NDArray[np.float64], c: Any) -> None:
-    """Replace the targets behind a standing vehicle by corners of its grown rectangle."""
+    """Replace the targets behind a standing vehicle by corners of its grown rectangle.
+
+    Some rows at a time, neighbours if they are sorted by cell, so that most vehicles are out of
+    the way of all of them.
+    """
     standing = False
     for v in range(vehicles.shape[0]):
         standing |= abs(vehicles[v, SPEED]) < c.u_static
     if not standing:
         return
-    for k in range(n):
-        x, y, x_p, y_p = rows[PX, k], rows[PY, k], rows[TX, k], rows[TY, k]
-        first = _CLEAR
-        for v in range(vehicles.shape[0]):  # the first vehicle met on the way counts
+    for start in range(0, n, _TOGETHER):
+        stop = min(start + _TOGETHER, n)
+        x_0, x_1, y_0, y_1 = math.inf, -math.inf, math.inf, -math.inf
+        for k in range(start, stop):
+            x_0, x_1 = min(x_0, rows[PX, k], rows[TX, k]), max(x_1, rows[PX, k], rows[TX, k])
+            y_0, y_1 = min(y_0, rows[PY, k], rows[TY, k]), max(y_1, rows[PY, k], rows[TY, k])
+            rows[_ENTRY, k] = _CLEAR
+        for v in range(vehicles.shape[0]):
             if abs(vehicles[v, SPEED]) >= c.u_static:
                 continue
             reach = vehicles[v, FRONT] + vehicles[v, REAR] + vehicles[v, WIDTH] + 2.0 * c.detour
             v_x, v_y = vehicles[v, X], vehicles[v, Y]
-            if min(x, x_p) > v_x + reach or max(x, x_p) < v_x - reach:
+            if x_0 > v_x + reach or x_1 < v_x - reach or y_0 > v_y + reach or y_1 < v_y - reach:
                 continue
-            if min(y, y_p) > v_y + reach or max(y, y_p) < v_y - reach:
-                continue
-            cos, sin = cosine_sine(vehicles[v, HEADING])
-            at_x, at_y = cos * (x - v_x) + sin * (y - v_y), cos * (y - v_y) - sin * (x - v_x)
-            to_x = cos * (x_p - v_x) + sin * (y_p - v_y)
-            to_y = cos * (y_p - v_y) - sin * (x_p - v_x)
-            low, high, h = -vehicles[v, REAR], vehicles[v, FRONT], vehicles[v, WIDTH] / 2.0
-            room = min(_outside(at_x, at_y, low, high, h), _outside(to_x, to_y, low, high, h))
-            if room <= 0.0:
-                continue  # inside the car, or bound for its inside: no way round
-            g = min(room, c.detour) - _TOUCH
-            entry = _entry(at_x, at_y, to_x - at_x, to_y - at_y, low - g, high + g, h + g)
-            if entry < first:
-                first = entry
-                q_x, q_y = _way_round(at_x, at_y, to_x, to_y, low, high, h, c.detour, c.r_waypoint)
-                rows[TX, k] = v_x + cos * q_x - sin * q_y
-                rows[TY, k] = v_y + sin * q_x + cos * q_y
+            _look_ahead(rows, start, stop, vehicles[v], c)
+        for k in range(start, stop):
+            if rows[_ENTRY, k] < _CLEAR:
+                rows[TX, k], rows[TY, k] = rows[_CORNER_X, k], rows[_CORNER_Y, k]

@@ -12,13 +12,10 @@ from pedestrian_model._routes import Routes, set_targets
 from pedestrian_model._rows import FX, FY, PX, PY, SOFT, TX, TY, VFX, VFY, VX, VY, S
 from pedestrian_model._step import FINE, first_insane, gather_forces
 from pedestrian_model._vehicles import add_vehicle
-from pedestrian_model._walls import Ground, add_walls
+from pedestrian_model._walls import add_walls
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from pedestrian_model._routes import RouteArrays
-    from pedestrian_model._walls import GroundArrays
 
 
 @kernel
@@ -53,10 +50,15 @@ def forces_apart(
 def targets(
     position: NDArray[np.float64],
     desired_speed: NDArray[np.float64],
-    routes: RouteArrays,
+    waypoints: NDArray[np.float64],
+    passage: NDArray[np.float64],
+    signal: NDArray[np.int64],
+    waypoint_start: NDArray[np.int64],
     waypoint_index: NDArray[np.int64],
     vehicles: NDArray[np.float64],
-    ground: GroundArrays,
+    closed: NDArray[np.bool_],
+    walls: NDArray[np.float64],
+    wall_cells: NDArray[np.int64],
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
     constants: NDArray[Any],
@@ -72,9 +74,9 @@ def targets(
         index[0, i] = i
         rows[PX, i], rows[PY, i] = position[i, 0], position[i, 1]
         rows[FX, i], rows[FY, i] = 0.0, 0.0
-    where = Ground(*ground)
-    add_walls(rows, n, FX, FY, where, c)
-    set_targets(rows, index[0], desired_speed, Routes(*routes), waypoint_index, where.closed, c)
+    add_walls(rows, n, FX, FY, walls, wall_cells, c)
+    routes = Routes(waypoints, passage, signal, waypoint_start)
+    set_targets(rows, index[0], desired_speed, routes, waypoint_index, closed, c)
     detour(rows, n, vehicles, c)
     for i in range(n):
         out[i, 0], out[i, 1], out[i, 2] = rows[TX, i], rows[TY, i], rows[SOFT, i]
@@ -97,6 +99,6 @@ def influence(
         rows[VX, i], rows[VY, i] = velocities[min(i, n - 1), 0], velocities[min(i, n - 1), 1]
         rows[VFX, i], rows[VFY, i], rows[S, i] = 0.0, 0.0, np.inf
     for v in range(vehicles.shape[0]):
-        add_vehicle(rows, n, vehicles[v], 0.0, constants[0])
+        add_vehicle(rows, 0, n, vehicles[v], 0.0, constants[0])
     for i in range(n):
         out[i, 0], out[i, 1], out[i, 2] = rows[VFX, i], rows[VFY, i], rows[S, i]

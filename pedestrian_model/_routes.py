@@ -16,11 +16,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    #: ``Routes`` as the kernels take it from outside: numba recognises a plain tuple faster.
-    RouteArrays = tuple[
-        NDArray[np.float64], NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]
-    ]
-
 # [m^2] instead of s_des^2 towards a way-point at which nobody stops: 1 um, against 0/0 only
 _NO_SLOWING = 1e-12
 
@@ -34,30 +29,34 @@ class Routes(NamedTuple):
     start: NDArray[np.int64]  # (n + 1,) offsets
 
 
-@inlined
-def _aim(x: float, y: float, at: int, routes: Routes, R: float) -> tuple[float, float]:
-    """The nearest point to (x, y) of the line of way-point ``at``, R inside its ends if it can."""
-    x_p, y_p = routes.waypoints[at, 0], routes.waypoints[at, 1]
-    half = routes.passage[at, 2]
-    if half > 0.0:
-        room = max(half - R, 0.0)
-        d_x, d_y = routes.passage[at, 0], routes.passage[at, 1]
-        lateral = min(max(d_x * (y - y_p) - d_y * (x - x_p), -room), room)
-        x_p, y_p = x_p - lateral * d_y, y_p + lateral * d_x
-    return x_p, y_p
+class _Line(NamedTuple):
+    """A way-point and its passage: scalars, because passing arrays about costs a count of each."""
+
+    x: float  # [m]
+    y: float
+    d_x: float  # unit direction
+    d_y: float
+    half: float  # [m] half-width, 0: a point only
 
 
 @inlined
-def _is_passed(x: float, y: float, at: int, routes: Routes, radius: float) -> bool:
+def _aim(x: float, y: float, p: _Line, R: float) -> tuple[float, float]:
+    """The nearest point to (x, y) of a line, R inside its ends if it can be."""
+    if p.half <= 0.0:
+        return p.x, p.y
+    room = max(p.half - R, 0.0)
+    lateral = min(max(p.d_x * (y - p.y) - p.d_y * (x - p.x), -room), room)
+    return p.x - lateral * p.d_y, p.y + lateral * p.d_x
+
+
+@inlined
+def _is_passed(x: float, y: float, p: _Line, radius: float) -> bool:
     """Whether (x, y) is within ``radius`` of the way-point, or beyond its line where that is."""
-    dx, dy = routes.waypoints[at, 0] - x, routes.waypoints[at, 1] - y
+    dx, dy = x - p.x, y - p.y
     if dx * dx + dy * dy <= radius * radius:
         return True
-    half = routes.passage[at, 2]
-    if half <= 0.0:
-        return False
-    d_x, d_y = routes.passage[at, 0], routes.passage[at, 1]
-    return bool(d_x * dx + d_y * dy <= 0.0 and abs(d_x * dy - d_y * dx) <= half)
+    along, across = p.d_x * dx + p.d_y * dy, p.d_x * dy - p.d_y * dx
+    return p.half > 0.0 and along >= 0.0 and abs(across) <= p.half
 
 
 @inlined
@@ -76,22 +75,23 @@ def set_targets(
     whose signal is closed. Towards all others people walk at their desired speed (ours: with the
     fading everywhere, a route of many way-points is walked at two thirds of it).
     """
+    w, q, signal, start = routes
+    radius, R = c.r_waypoint, c.R
     for k in range(desired_speed.shape[0]):
         i = order[k]
         x, y = rows[PX, k], rows[PY, k]
-        last = routes.start[i + 1] - 1
-        at = routes.start[i] + waypoint_index[i]
+        last = start[i + 1] - 1
+        at = start[i] + waypoint_index[i]
+        p = _Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
         soft = c.s_des_2
-        while at < last:
-            signal = routes.signal[at]
-            if signal >= 0 and closed[signal]:
-                break
-            if not _is_passed(x, y, at, routes, c.r_waypoint):
+        while at < last and not (signal[at] >= 0 and closed[signal[at]]):
+            if not _is_passed(x, y, p, radius):
                 soft = _NO_SLOWING
                 break
             waypoint_index[i] += 1
             at += 1
-        rows[TX, k], rows[TY, k] = _aim(x, y, at, routes, c.R)
+            p = _Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+        rows[TX, k], rows[TY, k] = _aim(x, y, p, R)
         rows[V0, k] = desired_speed[i]
         rows[SOFT, k] = soft
 
@@ -99,25 +99,31 @@ def set_targets(
 @kernel
 def fill_arrived(
     position: NDArray[np.float64],
-    arrays: RouteArrays,
+    waypoints: NDArray[np.float64],
+    passage: NDArray[np.float64],
+    start: NDArray[np.int64],
     waypoint_index: NDArray[np.int64],
     radius: float,
     mask: NDArray[np.bool_],
 ) -> None:
     """Who is on the way to the last way-point and within ``radius`` of it, or of its line."""
-    routes = Routes(*arrays)
+    w, q = waypoints, passage
     for i in range(len(mask)):
-        last = routes.start[i + 1] - 1
+        last = start[i + 1] - 1
         x, y = position[i, 0], position[i, 1]
-        to_x, to_y = _aim(x, y, last, routes, 0.0)
+        p = _Line(w[last, 0], w[last, 1], q[last, 0], q[last, 1], q[last, 2])
+        to_x, to_y = _aim(x, y, p, 0.0)
         dx, dy = to_x - x, to_y - y
-        on_the_way = routes.start[i] + waypoint_index[i] == last
+        on_the_way = start[i] + waypoint_index[i] == last
         mask[i] = on_the_way and dx * dx + dy * dy <= radius * radius
 
 
 @kernel
 def select_routes(
-    arrays: RouteArrays,
+    old_waypoints: NDArray[np.float64],
+    old_passage: NDArray[np.float64],
+    old_signal: NDArray[np.int64],
+    old_start: NDArray[np.int64],
     mask: NDArray[np.bool_],
     start: NDArray[np.int64],
     waypoints: NDArray[np.float64],
@@ -125,7 +131,7 @@ def select_routes(
     signal: NDArray[np.int64],
 ) -> None:
     """Copy the routes of those in ``mask`` to the last three, one after the other as ``start``."""
-    routes = Routes(*arrays)
+    routes = Routes(old_waypoints, old_passage, old_signal, old_start)
     kept = 0
     for i in range(len(mask)):
         if not mask[i]:

@@ -27,8 +27,9 @@ BLOCK = 8
  FX, FY,                  # force from the other pedestrians
  VFX, VFY, S,             # force from the vehicles, signed distance to their contours
  TX, TY, V0, SOFT,        # target, desired speed, [m^2] s_des^2 of the target
+ WS, WX, WY,              # signed distance to the nearest wall, its normal
  NX, NY, NVX, NVY,        # next state
- ROWS) = range(20)
+ ROWS) = range(23)
 # fmt: on
 
 #: Distance of the buffer's rows, not a multiple of 4096 bytes (cache sets).

@@ -12,7 +12,6 @@ from pedestrian_model._mathematics import cosine_sine
 from pedestrian_model._ring import add_all_pairs
 from pedestrian_model._routes import Routes, set_targets
 from pedestrian_model._rows import (
-    BLOCK,
     FX,
     FY,
     LARGEST_RING,
@@ -31,15 +30,12 @@ from pedestrian_model._rows import (
     VX,
     VY,
 )
-from pedestrian_model._vehicles import HEADING, SPEED, X, Y, add_vehicle
-from pedestrian_model._walls import Ground, add_walls
+from pedestrian_model._vehicles import HEADING, SPEED, X, Y, add_near_vehicles, add_vehicles
+from pedestrian_model._walls import add_walls
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-    from pedestrian_model._routes import RouteArrays
-    from pedestrian_model._walls import GroundArrays
 
 #: The result of a step that went well; otherwise the index of the offending pedestrian.
 FINE = -1
@@ -72,12 +68,11 @@ def gather_forces(
     """Fill the rows and their pair and vehicle forces from the state."""
     n = position.shape[0]
     if n >= cell_list_from or n > LARGEST_RING:
-        add_near_pairs(rows, index, buffer, position, velocity, constants)
+        grid = add_near_pairs(rows, index, buffer, position, velocity, constants)
+        add_near_vehicles(rows, index[2], grid, n, vehicles, travelled, constants)
     else:
         add_all_pairs(rows, index, buffer, back, position, velocity, constants)
-    padded = (n + BLOCK - 1) // BLOCK * BLOCK
-    for v in range(vehicles.shape[0]):
-        add_vehicle(rows, padded, vehicles[v], travelled, constants[0])
+        add_vehicles(rows, n, vehicles, travelled, constants[0])
 
 
 @inlined
@@ -120,10 +115,15 @@ def advance(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     desired_speed: NDArray[np.float64],
-    routes: RouteArrays,
+    waypoints: NDArray[np.float64],
+    passage: NDArray[np.float64],
+    signal: NDArray[np.int64],
+    waypoint_start: NDArray[np.int64],
     waypoint_index: NDArray[np.int64],
     vehicles: NDArray[np.float64],
-    ground: GroundArrays,
+    closed: NDArray[np.bool_],
+    walls: NDArray[np.float64],
+    wall_cells: NDArray[np.int64],
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
     buffer: NDArray[np.float64],
@@ -139,7 +139,7 @@ def advance(
     insane = first_insane(position, velocity)
     if n == 0 or insane != FINE:
         return insane
-    ways, where = Routes(*routes), Ground(*ground)
+    routes = Routes(waypoints, passage, signal, waypoint_start)
     for step in range(substeps):
         gather_forces(
             position,
@@ -154,8 +154,8 @@ def advance(
             cell_list_from,
         )
         order = index[0]
-        add_walls(rows, n, FX, FY, where, c)
-        set_targets(rows, order, desired_speed, ways, waypoint_index, where.closed, c)
+        add_walls(rows, n, FX, FY, walls, wall_cells, c)
+        set_targets(rows, order, desired_speed, routes, waypoint_index, closed, c)
         detour(rows, n, vehicles, c)
         _integrate(rows, n, dt, c)
         for k in range(n):
@@ -170,10 +170,15 @@ def predict(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     desired_speed: NDArray[np.float64],
-    routes: RouteArrays,
+    waypoints: NDArray[np.float64],
+    passage: NDArray[np.float64],
+    signal: NDArray[np.int64],
+    waypoint_start: NDArray[np.int64],
     waypoint_index: NDArray[np.int64],
     vehicles: NDArray[np.float64],
-    ground: GroundArrays,
+    closed: NDArray[np.bool_],
+    walls: NDArray[np.float64],
+    wall_cells: NDArray[np.int64],
     state: NDArray[np.float64],
     reached: NDArray[np.int64],
     rows: NDArray[np.float64],
@@ -201,10 +206,15 @@ def predict(
             x,
             v,
             desired_speed,
-            routes,
+            waypoints,
+            passage,
+            signal,
+            waypoint_start,
             reached,
             vehicles[k],
-            ground,
+            closed,
+            walls,
+            wall_cells,
             rows,
             index,
             buffer,

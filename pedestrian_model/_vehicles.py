@@ -11,17 +11,24 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pedestrian_model._jit import fma, inlined
+from pedestrian_model._jit import fma, inlined, kernel
 from pedestrian_model._mathematics import cosine_sine, exponential
-from pedestrian_model._rows import PX, PY, VFX, VFY, VX, VY, S
+from pedestrian_model._rows import BLOCK, PX, PY, VFX, VFY, VX, VY, S
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from pedestrian_model._cells import Grid
+
+#: A vehicle's force is left out where it is less than this, if there are many vehicles.
+LEAST_FORCE = 1e-9  # [N]
+_MANY = 5  # vehicles: to look for whom fewer can reach costs more than it saves
+
 #: Columns of the array of vehicles.
 X, Y, HEADING, SPEED, FRONT, REAR, WIDTH = range(7)
 
+_ABSURD = 1e15  # cells: no vehicle is so large
 _LEAST_EXPONENT = -700.0  # exp underflows below; nothing is felt long before
 
 
@@ -80,13 +87,19 @@ def _influence(X: float, lateral: float, q: Contour) -> tuple[float, float, floa
 
 @inlined
 def add_vehicle(
-    rows: NDArray[np.float64], n: int, vehicle: NDArray[np.float64], travelled: float, c: Any
+    rows: NDArray[np.float64],
+    start: int,
+    stop: int,
+    vehicle: NDArray[np.float64],
+    travelled: float,
+    c: Any,
 ) -> None:
-    """Add one vehicle's force f_v to the first n rows and lower their signed distance.
+    """Add one vehicle's force f_v to the rows start ... stop - 1, lower their signed distance.
 
     Args:
         rows: the workspace.
-        n: how many rows, dummies included.
+        start: first row.
+        stop: last row plus one, dummies included.
         vehicle: (7,) its columns.
         travelled: [s] for which the vehicle has driven straight on since.
         c: the constants.
@@ -100,7 +113,7 @@ def add_vehicle(
     R, A, b, a_v, b_v, cap = c.R, c.A, c.b, c.a_v, c.b_v, c.cap
     x, y, vx, vy = rows[PX], rows[PY], rows[VX], rows[VY]
     f_x, f_y, s_min = rows[VFX], rows[VFY], rows[S]
-    for k in range(n):
+    for k in range(start, stop):
         dx, dy = x[k] - x_v, y[k] - y_v
         across = fma(cos, dy, -(sin * dx))
         s, e_x, e_y = _influence(fma(nose_x, dx, nose_y * dy), abs(across), contour)
@@ -117,3 +130,57 @@ def add_vehicle(
         f_x[k] += f * fma(e_x, nose_x, -(e_y * sin))
         f_y[k] += f * fma(e_x, nose_y, e_y * cos)
         s_min[k] = min(s_min[k], s)
+
+
+@inlined
+def add_vehicles(
+    rows: NDArray[np.float64], n: int, vehicles: NDArray[np.float64], travelled: float, c: Any
+) -> None:
+    """Add the forces of all vehicles to the first n rows, padded to whole blocks."""
+    padded = (n + BLOCK - 1) // BLOCK * BLOCK
+    for v in range(vehicles.shape[0]):
+        add_vehicle(rows, 0, padded, vehicles[v], travelled, c)
+
+
+@kernel
+def add_near_vehicles(
+    rows: NDArray[np.float64],
+    first: NDArray[np.int64],
+    grid: Grid,
+    n: int,
+    vehicles: NDArray[np.float64],
+    travelled: float,
+    constants: NDArray[Any],
+) -> None:
+    """As ``add_vehicles`` for rows sorted by the cells of ``grid``: only where a vehicle reaches.
+
+    Whom it does not reach is left out strip by strip, by a box round its contour; with few
+    vehicles nobody is, so that a crowd's size does not show in the last bits of their force.
+    """
+    c = constants[0]
+    if vehicles.shape[0] < _MANY:
+        add_vehicles(rows, n, vehicles, travelled, c)
+        return
+    for v in range(vehicles.shape[0]):
+        cos, sin = cosine_sine(vehicles[v, HEADING])
+        u = vehicles[v, SPEED]
+        contour = _contour(vehicles[v], c)
+        middle, half = (contour.tip + contour.X_r) / 2.0, (contour.tip - contour.X_r) / 2.0
+        middle = -middle if u < 0.0 else middle
+        x = vehicles[v, X] + (travelled * u + middle) * cos - grid.x_0
+        y = vehicles[v, Y] + (travelled * u + middle) * sin - grid.y_0
+        half_x = abs(cos) * half + abs(sin) * contour.h + c.reach
+        half_y = abs(sin) * half + abs(cos) * contour.h + c.reach
+        left, right = (x - half_x) * grid.per_x, (x + half_x) * grid.per_x
+        low, high = (y - half_y) * grid.per_y, (y + half_y) * grid.per_y
+        if right < 0.0 or left >= grid.columns or high < 0.0 or low >= grid.strips:
+            continue
+        if not right - left + high - low < _ABSURD:  # a vehicle that is not finite spoils all
+            add_vehicle(rows, 0, n, vehicles[v], travelled, c)
+            continue
+        begin, end = max(int(left), 0), min(int(right), grid.columns - 1)
+        for strip in range(max(int(low), 0), min(int(high), grid.strips - 1) + 1):
+            base = strip * grid.columns
+            start, stop = first[base + begin], first[base + end + 1]
+            if start < stop:
+                add_vehicle(rows, start, stop, vehicles[v], travelled, c)

@@ -14,211 +14,242 @@ import numpy as np
 
 from pedestrian_model._jit import inlined, kernel
 from pedestrian_model._mathematics import exponential
-from pedestrian_model._rows import PX, PY
+from pedestrian_model._rows import PX, PY, WS, WX, WY
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    #: ``Ground`` as the kernels take it from outside: numba recognises a plain tuple faster.
-    GroundArrays = tuple[
-        NDArray[np.bool_],
-        NDArray[np.float64],
-        NDArray[np.int64],
-        NDArray[np.int64],
-        float,
-        float,
-        float,
-        int,
-        int,
-    ]
 
 REACH = 2.0  # [m] no wall is felt further away: exp(-b_w s) is nothing long before
 DEPTH = 1.0  # [m] who is further behind a wall than this is let go (ours)
 JOINED = 0.01  # [m] ends of walls closer than this are one corner
 
-#: Columns of the lines: start, unit vector along, length, sum of the normals at either end.
-X_0, Y_0, T_X, T_Y, LENGTH, N0_X, N0_Y, N1_X, N1_Y, LINE_COLUMNS = range(10)
+#: Columns of the walls: start, unit vector along, length, sum of the normals at either end.
+#: Row 0 is the grid (see ``Grid``), the walls follow.
+X_0, Y_0, T_X, T_Y, LENGTH, N0_X, N0_Y, N1_X, N1_Y, COLUMNS = range(10)
 
 _AT = 1e-9  # [m] closer to a wall's end there is no direction from it; also equal distances
 _LEAST_EXPONENT = -700.0  # exp underflows below
 
 
-class Ground(NamedTuple):
-    """The surroundings as the kernels see them: signals, walls, and the grid of the walls."""
+class Grid(NamedTuple):
+    """Where the cells of the walls lie: row 0 of the walls.
 
-    closed: NDArray[np.bool_]  # which signals are closed
-    lines: NDArray[np.float64]  # (k, LINE_COLUMNS) the walls
-    first: NDArray[np.int64]  # (cells + 1,) offsets into ``member``
-    member: NDArray[np.int64]  # the walls of each cell
-    x_0: float  # [m] the lower left corner of the grid
+    The cells themselves are one array of int64: for each cell and for their end, where in this
+    array its members begin; then the members, rows of the walls.
+    """
+
+    x_0: float  # [m] the lower left corner
     y_0: float
     per_metre: float  # [1/m] cells
-    columns: int
-    strips: int
+    columns: float
+    strips: float
 
 
 @inlined
-def _to_line(
-    x: float, y: float, lines: NDArray[np.float64], j: int
-) -> tuple[float, float, float, bool]:
-    """From the nearest point of wall j to (x, y): vector, its square, and if it is walkable there.
+def _grid(walls: NDArray[np.float64]) -> Grid:
+    return Grid(walls[0, 0], walls[0, 1], walls[0, 2], walls[0, 3], walls[0, 4])
+
+
+@inlined
+def _cell(x: float, y: float, g: Grid) -> int:
+    """The cell of a place, or -1 outside the grid."""
+    column, strip = np.floor((x - g.x_0) * g.per_metre), np.floor((y - g.y_0) * g.per_metre)
+    if 0.0 <= column < g.columns and 0.0 <= strip < g.strips:
+        return int(strip) * int(g.columns) + int(column)
+    return -1
+
+
+class _Wall(NamedTuple):
+    """One of the lines: scalars, because passing arrays about costs a count of each."""
+
+    x: float  # [m] its start
+    y: float
+    t_x: float  # the unit vector along it
+    t_y: float
+    length: float  # [m]
+    N0_x: float  # the sum of the normals at its start
+    N0_y: float
+    N1_x: float  # and at its end
+    N1_y: float
+
+
+@inlined
+def _wall(line: NDArray[np.float64]) -> _Wall:
+    # fmt: off
+    return _Wall(
+        line[0], line[1], line[2], line[3], line[4], line[5], line[6], line[7], line[8]
+    )
+    # fmt: on
+
+
+@inlined
+def _to_wall(x: float, y: float, w: _Wall) -> tuple[float, float, float, bool]:
+    """From the nearest point of a wall to (x, y): vector, its square, and if it is walkable there.
 
     Within the wall's length, the vector is along its normal.
     """
-    from_x, from_y = x - lines[j, X_0], y - lines[j, Y_0]
-    t_x, t_y, length = lines[j, T_X], lines[j, T_Y], lines[j, LENGTH]
-    along = t_x * from_x + t_y * from_y
-    if 0.0 < along < length:
-        across = t_x * from_y - t_y * from_x
-        return -across * t_y, across * t_x, across * across, across >= 0.0
-    n_x, n_y = lines[j, N0_X], lines[j, N0_Y]
+    dx, dy = x - w.x, y - w.y
+    along = w.t_x * dx + w.t_y * dy
+    if 0.0 < along < w.length:
+        across = w.t_x * dy - w.t_y * dx
+        return -across * w.t_y, across * w.t_x, across * across, across >= 0.0
+    N_x, N_y = w.N0_x, w.N0_y
     if along > 0.0:
-        from_x, from_y = from_x - length * t_x, from_y - length * t_y
-        n_x, n_y = lines[j, N1_X], lines[j, N1_Y]
-    inside = n_x * from_x + n_y * from_y >= -_AT
-    return from_x, from_y, from_x * from_x + from_y * from_y, inside
+        dx, dy = dx - w.length * w.t_x, dy - w.length * w.t_y
+        N_x, N_y = w.N1_x, w.N1_y
+    return dx, dy, dx * dx + dy * dy, N_x * dx + N_y * dy >= -_AT
 
 
 @inlined
-def nearest_wall(x: float, y: float, ground: Ground) -> tuple[float, float, float]:
-    """Signed distance (negative behind the wall, inf if out of reach), unit vector to walkable."""
-    column = int(np.floor((x - ground.x_0) * ground.per_metre))
-    strip = int(np.floor((y - ground.y_0) * ground.per_metre))
-    if not (0 <= column < ground.columns and 0 <= strip < ground.strips):
-        return np.inf, 0.0, 0.0
-    cell = strip * ground.columns + column
-    best, nearest, best_x, best_y, inside = np.inf, -1, 0.0, 0.0, True
-    for k in range(ground.first[cell], ground.first[cell + 1]):
-        j = ground.member[k]
-        to_x, to_y, square, walkable = _to_line(x, y, ground.lines, j)
-        # of two walls back to back, the one whose walkable side this is counts
-        tie = abs(square - best) <= _AT * square
-        if (square < best and not tie) or (tie and walkable and not inside):
-            best, nearest, best_x, best_y, inside = square, j, to_x, to_y, walkable
-    if nearest < 0:
-        return np.inf, 0.0, 0.0
-    distance = math.sqrt(best)
-    if distance <= _AT:
-        return 0.0, -ground.lines[nearest, T_Y], ground.lines[nearest, T_X]
-    if inside:
-        return distance, best_x / distance, best_y / distance
-    return -distance, -best_x / distance, -best_y / distance
+def find_walls(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    n: int,
+    walls: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    s: NDArray[np.float64],
+    n_x: NDArray[np.float64],
+    n_y: NDArray[np.float64],
+) -> None:
+    """Fill the signed distance of each place from the nearest wall and the unit normal there.
 
-
-@inlined
-def wall_force(s: float, c: Any) -> float:
-    """The size of f_w [N] at the signed distance s [m] of a centre from a wall.
-
-    f_w = A_w exp(-b_w (s - R)) + k_col max(0, R - s), the form of Helbing, Farkas & Vicsek 2000;
-    the exponent capped as that of f_v; behind the wall only the second term, to ``DEPTH``.
+    The distance is negative behind the wall; the normal points into the walkable side. Out of
+    reach of any wall they are inf and zero.
     """
-    if s > REACH or s < -DEPTH:
-        return 0.0
-    f = c.k_col * max(0.0, c.R - s)
-    if s >= 0.0:
-        f += c.A_w * exponential(max(min(-c.b_w * (s - c.R), c.cap), _LEAST_EXPONENT))
-    return float(f)
+    grid = _grid(walls)
+    for k in range(n):
+        best, best_x, best_y, inside, t_x, t_y = np.inf, 0.0, 0.0, True, 0.0, 0.0
+        cell = _cell(x[k], y[k], grid)
+        for at in range(cells[cell], cells[cell + 1] if cell >= 0 else 0):
+            wall = _wall(walls[cells[at]])
+            dx, dy, square, walkable = _to_wall(x[k], y[k], wall)
+            # of two walls back to back, the one whose walkable side this is counts
+            tie = abs(square - best) <= _AT * square
+            if (square < best and not tie) or (tie and walkable and not inside):
+                best, best_x, best_y, inside = square, dx, dy, walkable
+                t_x, t_y = wall.t_x, wall.t_y
+        distance = math.sqrt(best)
+        if distance <= _AT:  # on the wall there is no direction from it: its own normal
+            distance, best_x, best_y, best = 0.0, -t_y, t_x, 1.0
+        sign = 1.0 if inside else -1.0
+        inverse = sign / math.sqrt(best)
+        s[k], n_x[k], n_y[k] = sign * distance, best_x * inverse, best_y * inverse
 
 
 @inlined
 def add_walls(
-    rows: NDArray[np.float64], n: int, row_x: int, row_y: int, ground: Ground, c: Any
+    rows: NDArray[np.float64],
+    n: int,
+    row_x: int,
+    row_y: int,
+    walls: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    c: Any,
 ) -> None:
-    """Add the force f_w of the walls to ``row_x`` and ``row_y`` of the first n pedestrians."""
-    if ground.lines.shape[0] == 0:
+    """Add the force f_w of the nearest wall to ``row_x`` and ``row_y`` of the first n pedestrians.
+
+    f_w = (A_w exp(-b_w (s - R)) + k_col max(0, R - s)) n, the form of Helbing, Farkas & Vicsek
+    (Nature 2000) without friction; the exponent is capped as that of f_v. Behind the wall, down
+    to ``DEPTH``, the second term alone pushes back.
+    """
+    if walls.shape[0] == 1:
         return
+    distance, n_x, n_y = rows[WS], rows[WX], rows[WY]
+    find_walls(rows[PX], rows[PY], n, walls, cells, distance, n_x, n_y)
+    R, A_w, b_w, k_col, cap = c.R, c.A_w, c.b_w, c.k_col, c.cap
+    f_x, f_y = rows[row_x], rows[row_y]
     for k in range(n):
-        s, n_x, n_y = nearest_wall(rows[PX, k], rows[PY, k], ground)
-        f = wall_force(s, c)
-        rows[row_x, k] += f * n_x
-        rows[row_y, k] += f * n_y
-
-
-@inlined
-def _distance(x: float, y: float, lines: NDArray[np.float64], j: int) -> float:
-    return math.sqrt(_to_line(x, y, lines, j)[2])
+        s = distance[k]
+        near = A_w * exponential(max(min(-b_w * (s - R), cap), _LEAST_EXPONENT))
+        f = (near if s >= 0.0 else 0.0) + k_col * max(0.0, R - s)
+        f = f if -DEPTH <= s <= REACH else 0.0
+        f_x[k] += f * n_x[k]
+        f_y[k] += f * n_y[k]
 
 
 @kernel
 def sort_walls(
-    ground: GroundArrays, closest: NDArray[np.float64], member: NDArray[np.int64], phase: int
+    walls: NDArray[np.float64], closest: NDArray[np.float64], cells: NDArray[np.int64], phase: int
 ) -> None:
     """One of the three passes that sort the walls into the cells of the grid.
 
     A wall belongs to a cell if it may be the nearest to any place there: with h half the cell's
     diagonal, if it is no further from the centre than the closest one plus 2 h, or than
     ``REACH`` + h. Pass 0 finds the closest distance of each cell; pass 1 counts the walls of cell
-    i in ``first[i + 1]``; pass 2 fills ``member`` and moves ``first[i]`` on to ``first[i + 1]``.
+    i in ``cells[i + 1]``; pass 2 puts the members where ``cells[i]`` says and moves that on.
     """
-    g = Ground(*ground)
+    g = _grid(walls)
     side = 1.0 / g.per_metre
     h = side * math.sqrt(0.5)
-    for j in range(g.lines.shape[0]):
-        end_x = g.lines[j, X_0] + g.lines[j, LENGTH] * g.lines[j, T_X]
-        end_y = g.lines[j, Y_0] + g.lines[j, LENGTH] * g.lines[j, T_Y]
-        low_x, high_x = min(end_x, g.lines[j, X_0]), max(end_x, g.lines[j, X_0])
-        low_y, high_y = min(end_y, g.lines[j, Y_0]), max(end_y, g.lines[j, Y_0])
-        left = max(0, int((low_x - REACH - g.x_0) * g.per_metre) - 1)
-        right = min(g.columns - 1, int((high_x + REACH - g.x_0) * g.per_metre) + 1)
-        bottom = max(0, int((low_y - REACH - g.y_0) * g.per_metre) - 1)
-        top = min(g.strips - 1, int((high_y + REACH - g.y_0) * g.per_metre) + 1)
-        for strip in range(bottom, top + 1):
+    for j in range(1, walls.shape[0]):
+        wall = _wall(walls[j])
+        end_x, end_y = wall.x + wall.length * wall.t_x, wall.y + wall.length * wall.t_y
+        left = _index(min(wall.x, end_x) - REACH - side, g.x_0, g.per_metre, g.columns)
+        right = _index(max(wall.x, end_x) + REACH + side, g.x_0, g.per_metre, g.columns)
+        low = _index(min(wall.y, end_y) - REACH - side, g.y_0, g.per_metre, g.strips)
+        high = _index(max(wall.y, end_y) + REACH + side, g.y_0, g.per_metre, g.strips)
+        for strip in range(low, high + 1):
             for column in range(left, right + 1):
                 x, y = g.x_0 + (column + 0.5) * side, g.y_0 + (strip + 0.5) * side
-                distance = _distance(x, y, g.lines, j)
-                cell = strip * g.columns + column
+                distance = math.sqrt(_to_wall(x, y, wall)[2])
+                cell = strip * int(g.columns) + column
                 if phase == 0:
                     closest[cell] = min(closest[cell], distance)
                 elif distance <= min(closest[cell] + 2.0 * h, REACH + h) * (1.0 + 1e-9):
                     if phase == 1:
-                        g.first[cell + 1] += 1
+                        cells[cell + 1] += 1
                     else:
-                        member[g.first[cell]] = j
-                        g.first[cell] += 1
+                        cells[cells[cell]] = j
+                        cells[cell] += 1
 
 
 @inlined
-def _follower(j: int, g: Ground) -> int:
-    """The wall that goes on where wall j ends, along the same walkable ground; -1 if none does."""
-    t_x, t_y = g.lines[j, T_X], g.lines[j, T_Y]
-    x = g.lines[j, X_0] + g.lines[j, LENGTH] * t_x
-    y = g.lines[j, Y_0] + g.lines[j, LENGTH] * t_y
-    cell = int((y - g.y_0) * g.per_metre) * g.columns + int((x - g.x_0) * g.per_metre)
-    found, sharpest, closest = -1, np.inf, np.inf
-    for k in range(g.first[cell], g.first[cell + 1]):
-        i = g.member[k]
-        apart = math.sqrt((g.lines[i, X_0] - x) ** 2 + (g.lines[i, Y_0] - y) ** 2)
-        if i == j or apart > JOINED or apart > closest + _AT:
+def _index(x: float, x_0: float, per_metre: float, count: float) -> int:
+    """The column (or strip) of a coordinate, the nearest there is."""
+    return int(min(max(np.floor((x - x_0) * per_metre), 0.0), count - 1.0))
+
+
+@inlined
+def _follower(j: int, walls: NDArray[np.float64], cells: NDArray[np.int64]) -> int:
+    """The wall that goes on where wall j ends, along the same walkable ground; 0 if none does."""
+    wall = _wall(walls[j])
+    x, y = wall.x + wall.length * wall.t_x, wall.y + wall.length * wall.t_y
+    cell = _cell(x, y, _grid(walls))
+    found, sharpest, closest = 0, np.inf, np.inf
+    for at in range(cells[cell], cells[cell + 1]):
+        other = _wall(walls[cells[at]])
+        apart = math.sqrt((other.x - x) ** 2 + (other.y - y) ** 2)
+        if cells[at] == j or apart > JOINED or apart > closest + _AT:
             continue
-        # where many meet: the first wall met when turning clockwise from the way back
-        cross = t_x * g.lines[i, T_Y] - t_y * g.lines[i, T_X]
-        dot = t_x * g.lines[i, T_X] + t_y * g.lines[i, T_Y]
-        # the clockwise angle from -t_j to t_i, from 0 (turning back sharply left) to 2 pi
+        # Where many meet, the first met when turning clockwise from the way back bounds the
+        # same walkable ground; straight back (0) is the tip of a thin wall: all round (2 pi).
+        cross = wall.t_x * other.t_y - wall.t_y * other.t_x
+        dot = wall.t_x * other.t_x + wall.t_y * other.t_y
         angle = math.pi - math.atan2(cross, dot)
         angle = angle if angle > 0.0 else 2.0 * math.pi
         if apart < closest - _AT or angle < sharpest:
-            found, sharpest, closest = i, angle, min(apart, closest)
+            found, sharpest, closest = cells[at], angle, min(apart, closest)
     return found
 
 
 @kernel
-def join_walls(ground: GroundArrays) -> None:
+def join_walls(walls: NDArray[np.float64], cells: NDArray[np.int64]) -> None:
     """Fill the sums of the normals where the end of one wall is the start of another."""
-    g = Ground(*ground)
-    for j in range(g.lines.shape[0]):
-        i = _follower(j, g)
-        if i >= 0:
-            n_x = -g.lines[j, T_Y] - g.lines[i, T_Y]
-            n_y = g.lines[j, T_X] + g.lines[i, T_X]
-            g.lines[j, N1_X], g.lines[j, N1_Y] = n_x, n_y
-            g.lines[i, N0_X], g.lines[i, N0_Y] = n_x, n_y
+    for j in range(1, walls.shape[0]):
+        i = _follower(j, walls, cells)
+        if i > 0:
+            n_x, n_y = -walls[j, T_Y] - walls[i, T_Y], walls[j, T_X] + walls[i, T_X]
+            walls[j, N1_X], walls[j, N1_Y] = n_x, n_y
+            walls[i, N0_X], walls[i, N0_Y] = n_x, n_y
 
 
 @kernel
 def nearest_walls(
-    points: NDArray[np.float64], ground: GroundArrays, out: NDArray[np.float64]
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    walls: NDArray[np.float64],
+    cells: NDArray[np.int64],
+    out: NDArray[np.float64],
 ) -> None:
-    """Fill ``out`` (n, 3): signed distance and unit vector into the walkable side."""
-    g = Ground(*ground)
-    for i in range(points.shape[0]):
-        out[i, 0], out[i, 1], out[i, 2] = nearest_wall(points[i, 0], points[i, 1], g)
+    """Fill ``out`` (3, n): signed distance and unit normal into the walkable side, x and y."""
+    find_walls(x, y, x.shape[0], walls, cells, out[0], out[1], out[2])

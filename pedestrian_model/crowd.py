@@ -9,15 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pedestrian_model._check import as_floats, check_not_negative, check_shape, check_values
-from pedestrian_model._routes import fill_arrived, select_routes
+from pedestrian_model._routes import Routes, fill_arrived, select_routes
 from pedestrian_model.errors import CrowdError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
-
-    from pedestrian_model._routes import RouteArrays
 
 _UNIT = 1e-6  # a direction's length may differ from one by this
 
@@ -182,10 +180,12 @@ class Crowd:
         last: NDArray[np.float64] = self.waypoints[self.waypoint_start[1:] - 1]
         return last
 
-    @property
-    def routes(self) -> RouteArrays:
+    @cached_property
+    def routes(self) -> Routes:
         """All about the routes that a step never changes, as the kernels take it."""
-        return self.waypoints, self.waypoint_passage, self.waypoint_signal, self.waypoint_start
+        return Routes(
+            self.waypoints, self.waypoint_passage, self.waypoint_signal, self.waypoint_start
+        )
 
     @cached_property
     def signals(self) -> int:
@@ -219,7 +219,7 @@ class Crowd:
         total = int(start[-1])
         waypoints, passage = np.empty((total, 2)), np.empty((total, 3))
         signal = np.empty(total, dtype=np.int64)
-        select_routes(self.routes, mask, start, waypoints, passage, signal)
+        select_routes(*self.routes, mask, start, waypoints, passage, signal)
         return _unchecked(
             {
                 "position": self.position[chosen],
@@ -251,7 +251,15 @@ _JOINED = tuple(field.name for field in fields(Crowd) if field.name != "waypoint
 def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
     """Mask (n,): on the way to the last way-point and within ``radius`` [m] of it, or its line."""
     mask = np.empty(len(crowd), dtype=np.bool_)
-    fill_arrived(crowd.position, crowd.routes, crowd.waypoint_index, radius, mask)
+    fill_arrived(
+        crowd.position,
+        crowd.waypoints,
+        crowd.waypoint_passage,
+        crowd.waypoint_start,
+        crowd.waypoint_index,
+        radius,
+        mask,
+    )
     return mask
 
 

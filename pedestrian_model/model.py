@@ -114,17 +114,24 @@ class CrowdModel:
             DivergenceError: if a pedestrian's state is or becomes not finite.
             SurroundingsError: if a way-point's signal is not one of the surroundings.
         """
-        check_signals(crowd, surroundings)
+        closed, walls, wall_cells = surroundings.arrays
+        if crowd.signals > closed.shape[0]:
+            raise unknown_signal(crowd, surroundings)
         work = self._workspace
         work.reserve(crowd.position.shape[0])
         bad = _step.advance(
             crowd.position,
             crowd.velocity,
             crowd.desired_speed,
-            crowd.routes,
+            crowd.waypoints,
+            crowd.waypoint_passage,
+            crowd.waypoint_signal,
+            crowd.waypoint_start,
             crowd.waypoint_index,
             vehicles.array,
-            surroundings.arrays,
+            closed,
+            walls,
+            wall_cells,
             work.rows,
             work.index,
             work.buffer,
@@ -146,7 +153,8 @@ class CrowdModel:
             DivergenceError: if a pedestrian's state is not finite.
             SurroundingsError: if a way-point's signal is not one of the surroundings.
         """
-        check_signals(crowd, surroundings)
+        if crowd.signals > surroundings.closed.shape[0]:
+            raise unknown_signal(crowd, surroundings)
         none = replace(
             self.parameters,
             repulsion_strength=0.0,
@@ -207,13 +215,19 @@ class CrowdModel:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Where each walks next (n, 2) [m], s_des^2 there (n,) [m^2], f_w (n, 2) [N]."""
         out = np.zeros((len(crowd), 5))
+        closed, walls, wall_cells = surroundings.arrays
         _inspect.targets(
             crowd.position,
             crowd.desired_speed,
-            crowd.routes,
+            crowd.waypoints,
+            crowd.waypoint_passage,
+            crowd.waypoint_signal,
+            crowd.waypoint_start,
             crowd.waypoint_index.copy(),
             vehicles.array,
-            surroundings.arrays,
+            closed,
+            walls,
+            wall_cells,
             self._workspace.rows,
             self._workspace.index,
             self._constants,
@@ -222,15 +236,14 @@ class CrowdModel:
         return out[:, :2].copy(), out[:, 2].copy(), out[:, 3:].copy()
 
 
-def check_signals(crowd: Crowd, surroundings: Surroundings) -> None:
-    """Raise SurroundingsError if a way-point's signal is beyond ``surroundings.closed``."""
-    if crowd.signals > surroundings.closed.shape[0]:
-        at = int(np.argmax(crowd.waypoint_signal))
-        i = int(np.searchsorted(crowd.waypoint_start, at, side="right")) - 1
-        raise SurroundingsError(
-            f"pedestrian {i}: a way-point has signal {crowd.signals - 1}, but "
-            f"surroundings.closed has {surroundings.closed.shape[0]}: give one for each signal"
-        )
+def unknown_signal(crowd: Crowd, surroundings: Surroundings) -> SurroundingsError:
+    """The error of a way-point whose signal is beyond ``surroundings.closed``."""
+    at = int(np.argmax(crowd.waypoint_signal))
+    i = int(np.searchsorted(crowd.waypoint_start, at, side="right")) - 1
+    return SurroundingsError(
+        f"pedestrian {i}: a way-point has signal {crowd.signals - 1}, but "
+        f"surroundings.closed has {surroundings.closed.shape[0]}: give one for each signal"
+    )
 
 
 def divergence(i: int, crowd: Crowd, vehicles: Vehicles) -> DivergenceError:

@@ -83,8 +83,8 @@ class VciParameters:
     static_speed: float = 0.2  # [m/s] below, a vehicle is a rectangle (Yang & Özgüner 2019)
 
     # From a wall (ours, in the form of Helbing, Farkas & Vicsek, Nature 2000).
-    wall_strength: float = 8000.0  # A_w [N] in touch with the wall
-    wall_decay: float = 22.0  # b_w [1/m]
+    wall_strength: float = 2500.0  # A_w [N] in touch with the wall
+    wall_decay: float = 16.0  # b_w [1/m]
 
     # To the destination, TSAS 2020.
     destination_gain: float = 545.3125  # k_des [N s/m]

@@ -10,7 +10,7 @@ from pedestrian_model import _step
 from pedestrian_model._constants import pack
 from pedestrian_model._rows import Workspace
 from pedestrian_model.errors import DivergenceError, ParameterError, VehicleError
-from pedestrian_model.model import CELL_LIST_FROM, check_signals, substeps
+from pedestrian_model.model import CELL_LIST_FROM, substeps, unknown_signal
 from pedestrian_model.parameters import SIM
 from pedestrian_model.surroundings import OPEN_GROUND
 
@@ -92,7 +92,9 @@ class Predictor:
             DivergenceError: if a pedestrian's state is or becomes not finite.
             SurroundingsError: if a way-point's signal is not one of the surroundings.
         """
-        check_signals(crowd, surroundings)
+        closed, walls, wall_cells = surroundings.arrays
+        if crowd.signals > closed.shape[0]:
+            raise unknown_signal(crowd, surroundings)
         shape, flags = vehicles_trajectory.shape, vehicles_trajectory.flags
         if len(shape) != 3 or shape[0] != self.horizon or shape[2] != 7:
             raise VehicleError(
@@ -107,10 +109,15 @@ class Predictor:
             crowd.position,
             crowd.velocity,
             crowd.desired_speed,
-            crowd.routes,
+            crowd.waypoints,
+            crowd.waypoint_passage,
+            crowd.waypoint_signal,
+            crowd.waypoint_start,
             crowd.waypoint_index,
             vehicles_trajectory,
-            surroundings.arrays,
+            closed,
+            walls,
+            wall_cells,
             self._state,
             self._reached,
             work.rows,

@@ -15,8 +15,6 @@ from pedestrian_model.errors import SurroundingsError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from pedestrian_model._walls import GroundArrays
-
 _CELL = 1.0  # [m] of the grid of walls
 _MOST_CELLS = 2**21  # the grid of a larger place is coarser: 16 MB
 _SHORTEST = 1e-6  # [m] a shorter wall has no direction
@@ -32,7 +30,8 @@ class Walls:
     """
 
     segments: NDArray[np.float64]  # (k, 4) [m] x0, y0, x1, y1
-    _ground: GroundArrays = field(repr=False)
+    _lines: NDArray[np.float64] = field(repr=False)
+    _cells: NDArray[np.int64] = field(repr=False)
 
     def __len__(self) -> int:
         return int(self.segments.shape[0])
@@ -50,9 +49,8 @@ class Walls:
         check_values(array, "segments", SurroundingsError)
         length = np.sqrt(((array[:, 2:] - array[:, :2]) ** 2).sum(axis=1))
         array, length = array[length > _SHORTEST], length[length > _SHORTEST]
-        if not len(array):
-            return cls(array, _NO_GROUND)
-        return cls(array, _sorted(_lines(array, length)))
+        lines = _lines(array, length)
+        return cls(array, lines, _sorted(lines) if len(array) else _NO_CELLS)
 
     def nearest(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The signed distances (n,) [m] of ``points`` (n, 2) [m] to the nearest wall, and normals.
@@ -66,57 +64,45 @@ class Walls:
         x = as_floats(points, "points", SurroundingsError)
         check_shape(x, (None, 2), "points", SurroundingsError)
         check_values(x, "points", SurroundingsError)
-        out = np.empty((x.shape[0], 3))
-        _walls.nearest_walls(x, self._ground, out)
-        return out[:, 0].copy(), out[:, 1:].copy()
+        out = np.empty((3, x.shape[0]))
+        _walls.nearest_walls(x[:, 0].copy(), x[:, 1].copy(), self._lines, self._cells, out)
+        return out[0], out[1:].T.copy()
 
 
 def _lines(segments: NDArray[np.float64], length: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(k, LINE_COLUMNS) of the segments, the normals at their ends still zero: loose."""
-    lines = np.zeros((len(segments), _walls.LINE_COLUMNS))
-    lines[:, :2] = segments[:, :2]
-    lines[:, 2:4] = (segments[:, 2:] - segments[:, :2]) / length[:, None]
-    lines[:, 4] = length
+    """(1 + k, COLUMNS) of the segments, grid still missing, ends still loose: normals of zero."""
+    lines = np.zeros((1 + len(segments), _walls.COLUMNS))
+    lines[1:, :2] = segments[:, :2]
+    lines[1:, 2:4] = (segments[:, 2:] - segments[:, :2]) / length[:, None]
+    lines[1:, 4] = length
     return lines
 
 
-def _sorted(lines: NDArray[np.float64]) -> GroundArrays:
-    """The lines with their grid, joined."""
-    ends = lines[:, :2] + lines[:, 2:4] * lines[:, 4:5]
-    low = np.minimum(lines[:, :2], ends).min(axis=0) - _walls.REACH
-    size = np.maximum(lines[:, :2], ends).max(axis=0) + _walls.REACH - low
+def _sorted(lines: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The cells of the lines; sets their grid and joins them."""
+    ends = lines[1:, :2] + lines[1:, 2:4] * lines[1:, 4:5]
+    low = np.minimum(lines[1:, :2], ends).min(axis=0) - _walls.REACH
+    size = np.maximum(lines[1:, :2], ends).max(axis=0) + _walls.REACH - low
     side = _CELL
     while np.prod(size / side + 1.0) > _MOST_CELLS:
         side *= 2.0
     columns, strips = (int(cells) + 1 for cells in size / side)
-    first = np.zeros(columns * strips + 1, dtype=np.int64)
+    lines[0, :5] = low[0], low[1], 1.0 / side, columns, strips
+    count = np.zeros(columns * strips + 1, dtype=np.int64)
     closest = np.full(columns * strips, np.inf)
-    where = (float(low[0]), float(low[1]), 1.0 / side, columns, strips)
-    nobody, nothing = np.empty(0, dtype=np.int64), np.empty(0, dtype=np.bool_)
-    counted: GroundArrays = (nothing, lines, first, nobody, *where)
-    _walls.sort_walls(counted, closest, nobody, 0)
-    _walls.sort_walls(counted, closest, nobody, 1)
-    np.cumsum(first, out=first)
-    member = np.empty(int(first[-1]), dtype=np.int64)
-    ground: GroundArrays = (nothing, lines, first, member, *where)
-    _walls.sort_walls(ground, closest, member, 2)
-    first[1:] = first[:-1].copy()
-    first[0] = 0
-    _walls.join_walls(ground)
-    return ground
+    _walls.sort_walls(lines, closest, count, 0)
+    _walls.sort_walls(lines, closest, count, 1)
+    first = len(count) + np.cumsum(count)
+    cells = np.empty(int(first[-1]), dtype=np.int64)
+    cells[: len(first)] = first
+    _walls.sort_walls(lines, closest, cells, 2)
+    cells[: len(first)] = first
+    _walls.join_walls(lines, cells)
+    return cells
 
 
-_NO_GROUND: GroundArrays = (
-    np.empty(0, dtype=np.bool_),
-    np.empty((0, _walls.LINE_COLUMNS)),
-    np.zeros(1, dtype=np.int64),
-    np.empty(0, dtype=np.int64),
-    0.0,
-    0.0,
-    1.0,
-    0,
-    0,
-)
+_NO_CELLS = np.zeros(1, dtype=np.int64)
+_NO_LINES = np.zeros((1, _walls.COLUMNS))
 
 
 def _none_closed() -> NDArray[np.bool_]:
@@ -149,10 +135,11 @@ class Surroundings:
             )
 
     @cached_property
-    def arrays(self) -> GroundArrays:
-        """What the kernels take."""
-        ground = _NO_GROUND if self.walls is None else self.walls._ground
-        return (self.closed, *ground[1:])
+    def arrays(self) -> tuple[NDArray[np.bool_], NDArray[np.float64], NDArray[np.int64]]:
+        """What the kernels take: signals, walls, and the cells of the walls."""
+        if self.walls is None:
+            return self.closed, _NO_LINES, _NO_CELLS
+        return self.closed, self.walls._lines, self.walls._cells
 
 
 #: No walls, no signals.

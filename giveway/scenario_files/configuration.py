@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import xml.etree.ElementTree as ET
@@ -103,6 +104,12 @@ class ScenarioFiles:
             )
             raise ScenarioError(msg)
         for option, path in self.inputs:
+            if "," in str(path):
+                msg = (
+                    f"{self.config_file}: {option} names {path}; SUMO takes the ',' for the end of "
+                    "a file's name; expected a path without one; rename the folder"
+                )
+                raise ScenarioError(msg)
             if path.is_dir():
                 msg = f"{self.config_file}: {option} names the folder {path}; expected a file"
                 raise ScenarioError(msg)
@@ -224,6 +231,8 @@ def seconds(text: str) -> float:
         ValueError: it is none of these.
     """
     parts = [float(part) for part in text.split(":")]
+    if not all(map(math.isfinite, parts)):
+        raise ValueError(text)
     if len(parts) == 1:
         return parts[0]
     if len(parts) not in (3, 4):

@@ -36,6 +36,7 @@ _READS: Final = {"include": "href", "calibrator": "file", "variableSpeedSign": "
 _PICTURES: Final = ("imgFile", "osgFile")
 _DEVICES: Final = ("device.ssm.file", "device.toc.file")  # parameters of a type or a vehicle
 _SSM: Final = "has.ssm.device"
+_ELEMENTS: Final = frozenset({*_WRITES, *_READS, "param", "poly", "poi", "vType"})
 
 # What a file that writes or refers to another must contain; searched before anything is parsed.
 _SIGNS: Final = tuple(
@@ -74,6 +75,11 @@ class Copies:
         self.has_ssm = False
 
     @property
+    def read(self) -> tuple[Path, ...]:
+        """Every file prepared, and all that they include."""
+        return tuple(self._prepared)
+
+    @property
     def made(self) -> dict[Path, Path]:
         """Each copy to its original, for messages that name the copy."""
         return {copy: file for file, copy in self._prepared.items() if copy != file}
@@ -101,7 +107,7 @@ class Copies:
         copy = self._scratch / f"{len(self._prepared)}-{name}"
         editor = _Editor(file, self)
         with opened(file) as source, copy.open("wb") as target:
-            rewrite(source, target, editor.changes)
+            rewrite(source, target, editor.changes, _ELEMENTS)
         if editor.needed:
             return copy
         copy.unlink()

@@ -33,6 +33,9 @@ def parse_options(extra: Sequence[str]) -> dict[str, str]:
         if name in _OURS:
             msg = f"SUMO option '{word}': giveway sets it itself; leave it out"
             raise ConfigError(msg)
+        if name == "seed" and not value.lstrip("-").isdecimal():
+            msg = f"SUMO option --seed '{value}': expected a whole number"
+            raise ConfigError(msg)
         options[name] = value
     return options
 

@@ -21,7 +21,7 @@ _ATTRIBUTE = re.compile(rb"([\w:.-]+)\s*=\s*(\"[^\"]*\"|'[^']*')")
 _ENCODING = re.compile(rb"<\?xml[^>]*encoding\s*=\s*[\"']([\w.-]+)")
 
 
-def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor) -> None:
+def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor, names: frozenset[str]) -> None:
     """Copy XML from ``source`` to ``target``, with some attributes changed.
 
     Nothing is checked and nothing else changes: what is not well-formed stays so, for SUMO to
@@ -30,10 +30,11 @@ def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor) -> None:
     Args:
         source: XML in an encoding that contains ASCII.
         target: receives the copy.
-        visit: asked for each element: (name, attributes, name of the parent) -> the attributes
+        visit: asked for elements: (name, attributes, name of the parent) -> the attributes
             that change, to their new values; others in it are ignored.
+        names: of the elements that it is asked for.
     """
-    copy = _Copy(target, visit)
+    copy = _Copy(target, visit, names)
     pending = b""
     while chunk := source.read(_CHUNK):
         pending = copy.feed(pending + chunk)
@@ -43,45 +44,47 @@ def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor) -> None:
 class _Copy:
     """Where a copy stands: the elements that are open, the encoding."""
 
-    def __init__(self, target: IO[bytes], visit: Visitor) -> None:
+    def __init__(self, target: IO[bytes], visit: Visitor, names: frozenset[str]) -> None:
         self._target = target
         self._visit = visit
-        self._open: list[str] = []
+        self._names = frozenset(name.encode() for name in names)
+        self._open: list[bytes] = []
         self._encoding = "utf-8"
 
     def feed(self, text: bytes) -> bytes:
         """Copy what is complete of ``text``; hand the rest back."""
-        position = 0
+        written = position = 0
         while (start := text.find(b"<", position)) >= 0:
-            self._target.write(text[position:start])
-            end = self._copy_markup(text, start)
-            if end is None:
-                return text[start:]
-            position = end
-        self._target.write(text[position:])
+            tag = _TAG.match(text, start)
+            if tag is None:
+                end = self._end_of_other(text, start)
+                if end is None:  # its end is still to be read
+                    self._target.write(text[written:start])
+                    return text[start:]
+                position = end
+                continue
+            position = tag.end()
+            changed = self._changed(tag)
+            if changed is not None:
+                self._target.write(text[written:start])
+                self._target.write(changed)
+                written = position
+        self._target.write(text[written:])
         return b""
 
-    def _copy_markup(self, text: bytes, start: int) -> int | None:
-        """Copy the markup at ``start``; its end, None if that has not been read yet."""
+    def _end_of_other(self, text: bytes, start: int) -> int | None:
+        """Where the comment, declaration or literal text at ``start`` ends; None if not in here."""
         for opening, closing in _ENDS:
             if text.startswith(opening, start):
                 end = text.find(closing, start + len(opening))
                 if end < 0:
                     return None
                 end += len(closing)
-                self._target.write(text[start:end])
                 self._note_encoding(text[start:end])
                 return end
-        found = _TAG.match(text, start)
-        if found is not None:
-            self._target.write(self._changed(found))
-            return found.end()
         if text.startswith(b"<!", start) and len(text) - start > len("<![CDATA["):
             end = text.find(b">", start)  # a document type
-            if end < 0:
-                return None
-            self._target.write(text[start : end + 1])
-            return end + 1
+            return None if end < 0 else end + 1
         return None
 
     def _note_encoding(self, markup: bytes) -> None:
@@ -92,25 +95,29 @@ class _Copy:
             except LookupError:
                 self._encoding = "utf-8"
 
-    def _changed(self, tag: re.Match[bytes]) -> bytes:
-        closing, name, inside = bool(tag[1]), tag[2].decode("ascii", "replace"), tag[3]
+    def _changed(self, tag: re.Match[bytes]) -> bytes | None:
+        """The tag with its new values; None if it stays."""
+        closing, name, inside = tag.groups()
         if closing:
             if self._open:
                 self._open.pop()
-            return tag[0]
+            return None
+        parent = self._open[-1] if self._open else b""
+        if not inside.endswith(b"/"):
+            self._open.append(name)
+        if name not in self._names:
+            return None
         attributes = {
             found[1].decode("ascii", "replace"): html.unescape(
                 found[2][1:-1].decode(self._encoding, "replace")
             )
             for found in _ATTRIBUTE.finditer(inside)
         }
-        changes = self._visit(name, attributes, self._open[-1] if self._open else "")
-        if not inside.endswith(b"/"):
-            self._open.append(name)
+        changes = self._visit(name.decode(), attributes, parent.decode("ascii", "replace"))
         if not changes:
-            return tag[0]
+            return None
         changed = _ATTRIBUTE.sub(lambda found: self._replaced(found, changes), inside)
-        return b"<" + tag[2] + changed + b">"
+        return b"<" + name + changed + b">"
 
     def _replaced(self, attribute: re.Match[bytes], changes: Changes) -> bytes:
         value = changes.get(attribute[1].decode("ascii", "replace"))

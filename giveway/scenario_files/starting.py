@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from giveway.scenario_files.configuration import ScenarioFiles
 
+_VALIDATION: Final = ("xml-validation", "xml-validation.net", "xml-validation.routes")
 _SAVING_STATES: Final = ("save-state.times", "save-state.period")
 
 
@@ -57,6 +58,7 @@ class Start:
         remarks: what differs from the scenario, one line each, for the user.
         outputs: each output file as the scenario has it, to the file written instead.
         copies: each rewritten copy of a scenario file, to its original.
+        read: the scenario's network, routes and additional files, with all that they include.
         seed: the seed in effect.
     """
 
@@ -64,6 +66,7 @@ class Start:
     remarks: tuple[str, ...]
     outputs: Mapping[Path, Path]
     copies: Mapping[Path, Path]
+    read: tuple[Path, ...]
     seed: int
 
     def with_original_names(self, message: str) -> str:
@@ -85,7 +88,7 @@ def prepare_start(
     Args:
         scenario: the scenario's files.
         options: what is wanted.
-        scratch: an empty folder of the caller's, to be kept until SUMO is closed.
+        scratch: a folder of the caller's own, to be kept until SUMO is closed.
         types: an additional file's text, read before the scenario's own: the types of whatever
             is going to be added.
 
@@ -95,6 +98,7 @@ def prepare_start(
         ConfigError: ``options.extra`` holds what cannot be passed on.
     """
     scenario.require_inputs()
+    scratch.mkdir(parents=True, exist_ok=True)
     return _Preparation(scenario, options, scratch).start(types)
 
 
@@ -122,6 +126,7 @@ class _Preparation:
         self._own_outputs()
         self._wanted_outputs()
         self._say_where()
+        self._connections()
         self._options |= {"gui-settings-file": "", "verbose": "false"}
         self._options |= {"no-step-log": "true", "duration-log.disable": "true"}
         self._options |= extra
@@ -133,6 +138,7 @@ class _Preparation:
             tuple(self._remarks),
             dict(self._outputs.placed),
             self._copies.made,
+            self._copies.read,
             int(self._options.get("seed", self._scenario.seed or SUMO_SEED)),
         )
 
@@ -193,6 +199,25 @@ class _Preparation:
             )
         if "collision.check-junctions" not in own:
             self._options["collision.check-junctions"] = "true"
+
+    def _connections(self) -> None:
+        """Nobody outside is waited for or asked; who listens to an output is the user's affair."""
+        own = self._scenario.options
+        for name in _VALIDATION:
+            if own.get(name) in ("auto", "always"):
+                self._options[name] = "local"  # the schemas that come with SUMO, not the web's
+        for option, names in self._scenario.outputs.items():
+            self._remarks += [
+                f"{option}: {name} is a network address, left as it is; somebody must listen there"
+                for name in names
+                if not is_file(name) and ":" in name
+            ]
+        if own.get("remote-port", "0") != "0":
+            self._options["remote-port"] = "0"
+            self._remarks.append(
+                f"remote-port: not opened; the scenario's {own['remote-port']} would wait for a "
+                "TraCI client for ever"
+            )
 
     def _own_outputs(self) -> None:
         """Every output that the scenario's options name, and those that SUMO names itself."""

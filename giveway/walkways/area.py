@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from giveway.walkways.inside import polygon_of
+from giveway.walkways.inside import polygon_of, rings
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,11 +44,7 @@ def walls(area: shapely.MultiPolygon) -> Array:
     """The rings of an area as segments (k, 4) x0, y0, x1, y1 [m], the area on their left."""
     segments = [np.empty((0, 4))]
     for polygon in area.geoms:
-        for ring in (polygon.exterior, *polygon.interiors):
-            points = np.asarray(ring.coords)[:, :2]
-            if shapely.is_ccw(ring) != (ring is polygon.exterior):
-                points = points[::-1]
-            segments.append(np.hstack([points[:-1], points[1:]]))
+        segments += [np.hstack([ring[:-1], ring[1:]]) for ring in rings(polygon)]
     return np.ascontiguousarray(np.vstack(segments))
 
 

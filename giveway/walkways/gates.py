@@ -21,17 +21,22 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 BODY_RADIUS = 0.27  # [m] of a pedestrian: half of a shoulder breadth of 0.54 m
+TRACKS = 2  # to either side of the middle: people on one track go round the same corners
 NO_GATES: Array = np.empty((0, 7))
 _NO_SIGNAL = -1
 
 
 def gate(
-    middle: Array, direction: Array, half_width: float = 0.0, *, signal: int = _NO_SIGNAL
+    middle: Array | tuple[float, float],
+    direction: Array,
+    half_width: float = 0.0,
+    *,
+    signal: int = _NO_SIGNAL,
 ) -> Array:
     """One gate (1, 7) across ``direction`` (unit), ``half_width`` [m] to either side."""
+    x, y = middle
     d_x, d_y = direction
-    spread = -d_y * half_width, d_x * half_width
-    return np.array([[middle[0], middle[1], *spread, d_x, d_y, signal]])
+    return np.array([[x, y, -d_y * half_width, d_x * half_width, d_x, d_y, signal]])
 
 
 def turned(gates: Array) -> Array:
@@ -40,6 +45,11 @@ def turned(gates: Array) -> Array:
     back[:, 2:6] *= -1.0
     back[:, 6] = _NO_SIGNAL
     return back
+
+
+def track_of(side: float) -> int:
+    """The track, -TRACKS to TRACKS, of somebody on ``side`` [-1, 1]."""
+    return round(side * TRACKS)
 
 
 def places(gates: Array, side: float) -> Array:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from giveway.walkways.gates import NO_GATES, gate, turned
+from giveway.walkways.gates import TRACKS, gate, turned
 from giveway.walkways.inside import Interior
 from giveway.walkways.polyline import Polyline, usable_half_width
 from giveway.walkways.reading import Signal
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _KERB = 0.4  # [m] from the roadway: there one waits for green
-_PER_LEG = 1e-6  # [m] added to each leg of a way, against detours that rounding makes look shorter
 
 
 class End(NamedTuple):
@@ -47,22 +46,23 @@ class Portal:
     gate: Array  # (1, 7) walked into the area
 
 
-class Leg(NamedTuple):
-    """The next step of the way from a portal to the target."""
+class Step(NamedTuple):
+    """What is left to go from a portal, and the portal that comes next."""
 
-    portal: int  # index
-    crossing: bool  # along the portals' crossing, not through their area
-
-
-_ARRIVED = Leg(-1, crossing=False)
+    distance: float  # [m]
+    portal: int  # index; -1: none, this is the target
 
 
 @dataclass(frozen=True)
 class Tree:
-    """The shortest ways from the portals of a junction to the end of one lane."""
+    """The shortest ways from the portals of a junction to the end of one lane.
 
-    distance: dict[int, float]  # [m] by portal
-    leg: dict[int, Leg]  # none at the target
+    Areas and crossings take turns, so each portal has two roles: one comes into its area there,
+    or leaves it.
+    """
+
+    coming: dict[int, Step]  # next: where one leaves the area
+    leaving: dict[int, Step]  # next: the other end of the crossing
 
 
 class WalkGraph:
@@ -92,7 +92,7 @@ class WalkGraph:
         self._portals_in: dict[str, list[int]] = {}
         self._interiors: dict[str, Interior] = {}
         self._trees: dict[End, Tree] = {}
-        self._inside: dict[tuple[int, int], Array] = {}
+        self._inside: dict[tuple[int, int, int], Array] = {}
         self._across: dict[tuple[int, int], Array] = {}
 
     def _add(self, link: Link) -> None:
@@ -183,9 +183,8 @@ class WalkGraph:
         row = self.lane_end(end)
         if end.edge in self._crossing_lines:
             # One waits on the kerb, and leaves the roadway before one turns.
-            depth = self.interior(area).depth(row[0, :2], row[0, 4:6], _KERB)
-            row[0, :2] += depth * row[0, 4:6]
-        return self.interior(area).fitted(row)
+            row = self.interior(area).gate_within(row, _KERB)
+        return row
 
     # --- ways ---------------------------------------------------------------------------------
 
@@ -195,35 +194,35 @@ class WalkGraph:
         if found is not None:
             return found
         tree = Tree({}, {})
-        heap = [(0.0, i, _ARRIVED) for i in self.portals_of(target)]
+        heap = [(0.0, i, True, -1) for i in self.portals_of(target)]
         while heap:
-            distance, i, leg = heapq.heappop(heap)
-            if i in tree.distance:
+            distance, i, leaves, following = heapq.heappop(heap)
+            steps = tree.leaving if leaves else tree.coming
+            if i in steps:
                 continue
-            tree.distance[i] = distance
-            if leg is not _ARRIVED:
-                tree.leg[i] = leg
+            steps[i] = Step(distance, following)
             here = self._portals[i]
-            for j in self.portals_in(here.area):
-                if j not in tree.distance:
-                    step = _length(self._portals[j].gate, self.inside(j, i), here.gate)
-                    heapq.heappush(heap, (distance + step + _PER_LEG, j, Leg(i, crossing=False)))
-            if here.end.edge in self._crossing_lines:
-                step = self._crossing_lines[here.end.edge].length + _PER_LEG
+            if leaves:
+                for j in self.portals_in(here.area):
+                    if j != i:
+                        onwards = _length(self._portals[j].gate, self.inside(j, i), here.gate)
+                        heapq.heappush(heap, (distance + onwards, j, False, i))
+            elif here.end.edge in self._crossing_lines:
+                onwards = self._crossing_lines[here.end.edge].length
                 for j in self.portals_of(End(here.end.edge, not here.end.last)):
-                    if j not in tree.distance:
-                        heapq.heappush(heap, (distance + step, j, Leg(i, crossing=True)))
+                    heapq.heappush(heap, (distance + onwards, j, True, i))
         self._trees[target] = tree
         return tree
 
-    def inside(self, start: int, end: int) -> Array:
-        """The gates (k, 7) between two portals of a walkingarea."""
-        found = self._inside.get((start, end))
+    def inside(self, start: int, end: int, track: int = 0) -> Array:
+        """The gates (k, 7) between two portals of a walkingarea, for people on one track."""
+        found = self._inside.get((start, end, track))
         if found is None:
             first, last = self._portals[start], self._portals[end]
-            found = self.interior(first.area).between(first.gate, turned(last.gate))
-            self._inside[start, end] = found
-            self._inside[end, start] = turned(found)
+            side = track / TRACKS
+            found = self.interior(first.area).between(first.gate, turned(last.gate), side)
+            self._inside[start, end, track] = found
+            self._inside[end, start, -track] = turned(found)
         return found
 
     def across(self, start: int, end: int) -> Array:
@@ -243,16 +242,24 @@ class WalkGraph:
         gates = self._crossing_lines[start.edge].gates(half_width)[1:-1]
         return turned(gates) if start.last else gates
 
-    def follow(self, start: int, tree: Tree) -> Array:
-        """The gates (k, 7) from a portal, itself left out, to the target's."""
-        pieces = [NO_GATES]
-        here = start
-        while here in tree.leg:
-            leg = tree.leg[here]
-            gates_between = self.across if leg.crossing else self.inside
-            pieces.append(gates_between(here, leg.portal))
-            here = leg.portal
-        return np.vstack([*pieces, turned(self._portals[here].gate)])
+    def follow(self, start: int, tree: Tree, track: int) -> Array:
+        """The gates (k, 7) from a portal where one comes into an area, left out, to the target."""
+        pieces = []
+        while True:
+            out = tree.coming[start].portal
+            pieces.append(self.inside(start, out, track))
+            following = tree.leaving[out].portal
+            if following < 0:
+                return np.vstack([*pieces, turned(self._portals[out].gate)])
+            pieces.append(self.across(out, following))
+            start = following
+
+    def leave(self, start: int, tree: Tree, track: int) -> Array:
+        """The gates (k, 7) from a portal at which one leaves its area, included, to the target."""
+        following = tree.leaving[start].portal
+        if following < 0:
+            return turned(self._portals[start].gate)
+        return np.vstack([self.across(start, following), self.follow(following, tree, track)])
 
 
 def _length(start: Array, between: Array, end: Array) -> float:

@@ -41,9 +41,9 @@ class Stretch(NamedTuple):
 
 
 class Hop(NamedTuple):
-    """The way over a junction from one lane's end to another's, both included."""
+    """The way over a junction from one lane's end to another's."""
 
-    gates: Array
+    portal: int | None  # where it begins; None: straight across
     length: float  # [m]
     connected: bool
 
@@ -60,6 +60,7 @@ class Ways:
         self._edges = survey.edges
         self._graph = graph
         self._hops: dict[tuple[End, End], Hop] = {}
+        self._hop_gates: dict[tuple[End, End, int], Array] = {}
         self._bends: dict[Stretch, Array] = {}
 
     def directed(self, walk: list[str]) -> list[list[Stretch]]:
@@ -87,21 +88,34 @@ class Ways:
         line = self._graph.lines[edge].points
         return math.dist(here, line[0]) <= math.dist(here, line[-1])
 
-    def onwards(self, stretches: list[Stretch], arrival: float) -> tuple[list[Array], float, int]:
-        """All gates from the exit of the first stretch on, their length [m] and gaps."""
-        pieces: list[Array] = []
-        length, gaps = 0.0, 0
+    def behind(self, stretches: list[Stretch], junction: str) -> list[Stretch]:
+        """The part of a walk behind a junction in which one is."""
+        for i, stretch in enumerate(stretches[:-1]):
+            if self.junction(stretch.exit) == junction:
+                return stretches[i + 1 :]
+        return stretches
+
+    def measure(self, stretches: list[Stretch], arrival: float) -> tuple[int, float]:
+        """Gaps and length [m] from the exit of the first stretch to the arrival on the last."""
+        if len(stretches) == 1:
+            return 0, 0.0
+        hops = [self._hop(a.exit, b.entry) for a, b in itertools.pairwise(stretches)]
+        length = sum(hop.length for hop in hops)
+        length += sum(self._graph.lines[there.edge].length for there in stretches[1:-1])
+        length += abs(arrival - self.station(stretches[-1].entry))
+        return sum(not hop.connected for hop in hops), length
+
+    def gates(self, stretches: list[Stretch], arrival: float, side: float) -> list[Array]:
+        """The gates from the exit of the first stretch to the arrival on the last."""
+        track = g.track_of(side)
+        pieces = []
         for here, there in itertools.pairwise(stretches):
-            hop = self._hop(here.exit, there.entry)
-            pieces.append(hop.gates)
-            length += hop.length
-            gaps += not hop.connected
-            if there is not stretches[-1]:
+            pieces.append(self._over(here.exit, there.entry, track))
+            if there is stretches[-1]:
+                pieces.append(self.partly(there, None, arrival))
+            else:
                 pieces.append(self.bends(there))
-                length += self._graph.lines[there.edge].length
-        last = stretches[-1]
-        pieces.append(self.partly(last, None, arrival))
-        return pieces, length + abs(arrival - self.station(last.entry)), gaps
+        return pieces
 
     def _hop(self, start: End, end: End) -> Hop:
         found = self._hops.get((start, end))
@@ -111,19 +125,30 @@ class Ways:
 
     def _new_hop(self, start: End, end: End) -> Hop:
         graph = self._graph
-        leaving, entering = graph.lane_end(start), g.turned(graph.lane_end(end))
-        distance = math.dist(leaving[0, :2], entering[0, :2])
         tree = graph.towards(end)
-        starts = [(tree.distance[i], i) for i in graph.portals_of(start) if i in tree.distance]
+        starts = [(tree.coming[i].distance, i) for i in graph.portals_of(start) if i in tree.coming]
         if starts:
             distance, i = min(starts)
-            onwards = graph.follow(i, tree)
-            return Hop(np.concatenate([leaving, onwards]), distance, connected=True)
+            return Hop(i, distance, connected=True)
+        distance = math.dist(graph.lane_end(start)[0, :2], graph.lane_end(end)[0, :2])
         meets = self.junction(start) == self.junction(end)
         # Where there are no walkingareas, people go straight over the junction.
         open_ground = not graph.portals_of(start) and not graph.portals_of(end)
-        straight = np.concatenate([leaving, entering])
-        return Hop(straight, distance, (meets and open_ground) or distance < _AT_END)
+        return Hop(None, distance, (meets and open_ground) or distance < _AT_END)
+
+    def _over(self, start: End, end: End, track: int) -> Array:
+        """The gates of a hop, those across the lanes' ends included."""
+        found = self._hop_gates.get((start, end, track))
+        if found is None:
+            graph = self._graph
+            hop = self._hop(start, end)
+            if hop.portal is None:
+                onwards = g.turned(graph.lane_end(end))
+            else:
+                onwards = graph.follow(hop.portal, graph.towards(end), track)
+            found = np.concatenate([graph.lane_end(start), onwards])
+            self._hop_gates[start, end, track] = found
+        return found
 
     def junction(self, end: End) -> str:
         """The junction at an end."""

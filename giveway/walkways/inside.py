@@ -21,21 +21,34 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _TOLERANCE = 0.05  # [m] that a way may lie outside of the area
-_SLIGHT = math.sin(math.radians(5.0))  # a corner that juts in by less does not stand in the way
+_SLIGHT = math.sin(math.radians(0.5))  # a corner that juts in by less is none
 _INSET = 0.02  # [m] from a corner to the place that ways round it are looked for
-_SIDES = 0.0, -1.0, 1.0
 
 
 def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:
-    """A walkingarea's outline as a valid polygon; a degenerate one is widened to its width."""
+    """A walkingarea's outline as a valid polygon.
+
+    One that crosses itself gets room for a body along its outline, or it would fall into pieces;
+    one without an area is widened to its width.
+    """
     if len(area.shape) >= 3:
         polygon = shapely.Polygon(area.shape)
         if not polygon.is_valid:
-            polygon = polygon.buffer(0.0)
+            outline = shapely.LinearRing(area.shape).buffer(BODY_RADIUS, join_style="mitre")
+            polygon = shapely.union_all([shapely.make_valid(polygon), outline])
         if polygon.area > 0.01:
             return polygon
     line = shapely.Point(area.shape[0]) if len(area.shape) < 2 else shapely.LineString(area.shape)
     return line.buffer(area.width / 2)
+
+
+def rings(polygon: shapely.Polygon) -> list[Array]:
+    """The closed rings (k, 2) [m] of a polygon, the inside on their left: holes run clockwise."""
+    found = []
+    for i, ring in enumerate((polygon.exterior, *polygon.interiors)):
+        points = np.asarray(ring.coords)[:, :2]
+        found.append(points if shapely.is_ccw(ring) == (i == 0) else points[::-1])
+    return found
 
 
 class Interior:
@@ -51,44 +64,50 @@ class Interior:
         shapely.prepare(self._room)
         self._corners, self._inwards = _corners(self.polygon)
 
-    def depth(self, middle: Array, direction: Array, wanted: float) -> float:
-        """How far [m], at most ``wanted``, one can go in from ``middle`` and be inside."""
-        for depth in (wanted, wanted / 2):
-            if self.polygon.contains(shapely.Point(middle + depth * direction)):
-                return depth
-        return 0.0
+    def gate_within(self, row: Array, depth: float) -> Array:
+        """A gate (1, 7) on the area's edge moved ``depth`` [m] in, as wide as there is room.
 
-    def fitted(self, row: Array) -> Array:
-        """A gate (1, 7) narrowed to where a body has room in this area."""
-        middle, spread = row[0, :2], row[0, 2:4]
-        half = float(np.hypot(*spread))
-        if half == 0.0:
-            return row
-        left = spread / half
-        reach = (half + BODY_RADIUS) * left
-        piece = self._piece_near(middle, shapely.LineString([middle - reach, middle + reach]))
+        In a shallow corner it stays nearer to the edge.
+        """
+        widest = -1.0, row
+        for share in (1.0, 0.5, 0.1):
+            moved = row.copy()
+            moved[0, :2] += share * depth * row[0, 4:6]
+            fitted, room = self._fitted(moved)
+            if room > 2 * BODY_RADIUS:
+                return fitted
+            widest = max(widest, (room, fitted), key=lambda pair: pair[0])
+        return widest[1]
+
+    def _fitted(self, row: Array) -> tuple[Array, float]:
+        """A gate narrowed to where a body has room, and how much room [m] there is."""
+        middle, direction = row[0, :2], row[0, 4:6]
+        half = float(np.hypot(*row[0, 2:4])) + BODY_RADIUS
+        left = np.array([-direction[1], direction[0]])
+        across = shapely.LineString([middle - half * left, middle + half * left])
+        piece = self._piece_near(middle, across)
         if piece.is_empty:
-            return row
+            return row, 0.0
         ends = (np.asarray(piece.coords)[:, :2] - middle) @ left
         low, high = ends.min() + BODY_RADIUS, ends.max() - BODY_RADIUS
         fitted = row.copy()
         fitted[0, :2] += (low + high) / 2 * left
         fitted[0, 2:4] = max(0.0, high - low) / 2 * left
-        return fitted
+        return fitted, float(piece.length)
 
-    def between(self, start: Array, end: Array) -> Array:
-        """The gates (k, 7) of the way from one gate (1, 7) to another, those two left out."""
+    def between(self, start: Array, end: Array, side: float) -> Array:
+        """The gates (k, 7) of the way from one gate (1, 7) to another, those two left out.
+
+        Args:
+            start: where one comes from.
+            end: where one goes.
+            side: for people on or near this side [-1, 1].
+        """
         if not len(self._corners):
             return NO_GATES
-        bends: dict[int, float] = {}
-        chord = end[0, :2] - start[0, :2]
-        for side in _SIDES:
-            a, b = places(start, side)[0], places(end, side)[0]
-            for corner in self._shortest(a, b):
-                bends[corner] = float((self._corners[corner] - start[0, :2]) @ chord)
-        if not bends:
+        order = self._shortest(places(start, side)[0], places(end, side)[0])
+        if not order:
             return NO_GATES
-        order = sorted(bends, key=bends.__getitem__)
         width = 2 * BODY_RADIUS + 2 * max(np.hypot(*start[0, 2:4]), np.hypot(*end[0, 2:4]))
         return self._round(order, start[0, :2], end[0, :2], width)
 
@@ -190,11 +209,8 @@ def _corners(polygon: shapely.Polygon | shapely.MultiPolygon) -> tuple[Array, Ar
     inwards: list[Array] = []
     simple = polygon.simplify(_TOLERANCE)
     for part in getattr(simple, "geoms", [simple]):
-        for ring in (part.exterior, *part.interiors):
-            # Walked so that the inside is on the left: holes clockwise.
-            points = np.asarray(ring.coords)[:-1, :2]
-            if shapely.is_ccw(ring) != (ring is part.exterior):
-                points = points[::-1]
+        for points in rings(part):
+            points = points[:-1]
             back = points - np.roll(points, 1, axis=0)
             forth = np.roll(points, -1, axis=0) - points
             back /= np.maximum(np.hypot(*back.T), 1e-12)[:, None]

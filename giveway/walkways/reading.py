@@ -118,8 +118,9 @@ def survey(net_file: Path) -> Survey:
         msg = f"{net_file}: not XML ({error}); expected a SUMO network, made by netconvert"
         raise ScenarioError(msg) from error
     except (KeyError, ValueError) as error:
+        reason = f"attribute {error} is missing" if isinstance(error, KeyError) else str(error)
         msg = (
-            f"{net_file}: line {reader.line}: not understood ({error!r}); "
+            f"{net_file}: line {reader.line}: {reason}; "
             "expected a SUMO network, made by netconvert"
         )
         raise ScenarioError(msg) from error

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from giveway.walkways import gates as g
-from giveway.walkways.graph import End
-from giveway.walkways.hops import Hop, Stretch, Ways
+from giveway.walkways.hops import Stretch, Ways
 from giveway.walkways.polyline import usable_half_width
+from giveway.walkways.starts import Starts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from giveway.walkways.graph import Tree, WalkGraph
+    from giveway.walkways.graph import WalkGraph
     from giveway.walkways.reading import Survey
 
     Array = NDArray[np.float64]
+    Place = tuple[float, float]
 
 _TOGETHER = 0.05  # [m] way-points nearer to each other than this are one
 
@@ -44,6 +44,15 @@ class WalkRoute:
     gaps: int
 
 
+class _Way(NamedTuple):
+    """One of the ways somebody could go."""
+
+    gaps: int
+    length: float  # [m]
+    side: float  # [-1, 1] on which one is now, seen in walking direction
+    gates: Callable[[float], list[Array]]  # by the side that one keeps to
+
+
 class Router:
     """Puts ways together from pieces that it builds once.
 
@@ -54,14 +63,14 @@ class Router:
 
     def __init__(self, survey: Survey, graph: WalkGraph) -> None:
         self._edges = survey.edges
-        self._survey = survey
-        self._graph = graph
+        self._lines = graph.lines
         self._ways = Ways(survey, graph)
+        self._starts = Starts(survey, graph)
 
     def route(
         self,
         edges: Sequence[str],
-        position: tuple[float, float],
+        position: Place,
         lane: str,
         arrival_position: float,
         side: float | None,
@@ -72,14 +81,10 @@ class Router:
             return _stay(position, max(gaps, 1))
         place = lane[: lane.rfind("_")]
         arrival = self._arrival(walk[-1], arrival_position)
-        if lane.startswith(":"):
-            pieces, more = self._from_junction(walk, place, position, arrival)
-        else:
-            pieces, more = self._from_lane(walk, place, position, arrival)
-        rows = np.concatenate(pieces)
-        if side is None:
-            side = self._side_now(place, position, rows)
-        return _finished(rows, side, gaps + more)
+        begin = self._from_junction if lane.startswith(":") else self._from_lane
+        best = min(begin(walk, place, position, arrival), key=lambda way: (way.gaps, way.length))
+        side = min(1.0, max(-1.0, best.side if side is None else side))
+        return _finished(np.concatenate(best.gates(side)), side, gaps + best.gaps)
 
     def _known(self, edges: Iterable[str]) -> tuple[list[str], int]:
         """The edges that can be walked, without repetitions, and how many others there were."""
@@ -96,148 +101,68 @@ class Router:
 
     def _arrival(self, edge: str, position: float) -> float:
         """The station [m] on the centre line of a position in SUMO's metres."""
-        lane = self._edges[edge].lane
+        length = self._edges[edge].lane.length
         if position < 0.0:
-            position += lane.length
-        share = position / lane.length if lane.length > 0.0 else 0.0
-        return min(1.0, max(0.0, share)) * self._graph.lines[edge].length
-
-    # --- where one begins ---------------------------------------------------------------------
+            position += length
+        share = position / length if length > 0.0 else 0.0
+        return min(1.0, max(0.0, share)) * self._lines[edge].length
 
     def _from_lane(
-        self, walk: list[str], place: str, position: tuple[float, float], arrival: float
-    ) -> tuple[list[Array], int]:
-        """The way of somebody on the lane of the first edge, or beside all lanes."""
+        self, walk: list[str], place: str, position: Place, arrival: float
+    ) -> Iterator[_Way]:
+        """The ways of somebody on the lane of the first edge, or beside all lanes."""
+        ways = self._ways
         if place in walk:
             walk = walk[walk.index(place) :]
-        first = self._graph.lines[walk[0]]
-        station, _ = first.project(*position)
+        station, left = self._lines[walk[0]].project(*position)
+        half_width = usable_half_width(self._edges[walk[0]].lane.width)
+        left = left / half_width if half_width > 0.0 else 0.0
         if len(walk) == 1:
-            return [self._ways.partly(Stretch(walk[0], arrival >= station), station, arrival)], 0
-        best: tuple[float, list[Array], int] | None = None
-        for stretches in self._ways.directed(walk):
-            ahead = first.length - station if stretches[0].forward else station
-            pieces, length, gaps = self._ways.onwards(stretches, arrival)
-            start = self._ways.partly(stretches[0], station, first.length * stretches[0].forward)
-            if best is None or (gaps, ahead + length) < (best[2], best[0]):
-                best = ahead + length, [start[:-1], *pieces], gaps
-        assert best is not None
-        return best[1], best[2]
+            only = Stretch(walk[0], arrival >= station)
+            goal = ways.partly(only, station, arrival)
+            yield _Way(0, abs(arrival - station), left if only.forward else -left, lambda _: [goal])
+            return
+        for stretches in ways.directed(walk):
+            first = stretches[0]
+            gaps, length = ways.measure(stretches, arrival)
+            end = ways.station(first.exit)
+            bends = ways.partly(first, station, end)[:-1]
+
+            def gates(
+                side: float, bends: Array = bends, stretches: list[Stretch] = stretches
+            ) -> list[Array]:
+                return [bends, *ways.gates(stretches, arrival, side)]
+
+            yield _Way(gaps, length + abs(end - station), left if first.forward else -left, gates)
 
     def _from_junction(
-        self, walk: list[str], place: str, position: tuple[float, float], arrival: float
-    ) -> tuple[list[Array], int]:
-        """The way of somebody in a walkingarea, on a crossing or elsewhere inside a junction."""
+        self, walk: list[str], place: str, position: Place, arrival: float
+    ) -> Iterator[_Way]:
+        """The ways of somebody in a walkingarea, on a crossing or elsewhere inside a junction."""
         ways = self._ways
         junction = place[1 : place.rfind("_")]
-        best: tuple[tuple[int, float], list[Array]] | None = None
         for whole in ways.directed(walk):
-            stretches = self._behind(whole, junction)
+            stretches = ways.behind(whole, junction)
             first = stretches[0]
-            begin, distance, connected = self._into(place, position, first.entry)
-            if len(stretches) == 1:
-                rest, gaps = [ways.partly(first, None, arrival)], 0
-                distance += abs(arrival - ways.station(first.entry))
-            else:
-                onwards, length, gaps = ways.onwards(stretches, arrival)
-                rest = [ways.bends(first), *onwards]
-                distance += self._graph.lines[first.edge].length + length
-            order = gaps + (not connected), distance
-            if best is None or order < best[0]:
-                best = order, [begin, *rest]
-        assert best is not None
-        return best[1], best[0][0]
+            start = self._starts.into(place, position, first.entry)
+            gaps, length = ways.measure(stretches, arrival)
+            goes_on = len(stretches) > 1
+            end = ways.station(first.exit) if goes_on else arrival
+            bends = ways.partly(first, None, end)[: -1 if goes_on else None]
 
-    def _behind(self, stretches: list[Stretch], junction: str) -> list[Stretch]:
-        """The part of a walk behind a junction in which one is."""
-        for i, stretch in enumerate(stretches[:-1]):
-            if self._ways.junction(stretch.exit) == junction:
-                return stretches[i + 1 :]
-        return stretches
+            def gates(
+                side: float,
+                begin: Callable[[float], Array] = start.gates,
+                bends: Array = bends,
+                stretches: list[Stretch] = stretches,
+            ) -> list[Array]:
+                return [begin(side), bends, *ways.gates(stretches, arrival, side)]
 
-    def _into(self, place: str, position: tuple[float, float], entry: End) -> Hop:
-        """The gates from a place in a junction to a lane's end."""
-        graph = self._graph
-        tree = graph.towards(entry)
-        found = None
-        if place in self._survey.crossings:
-            found = self._off_crossing(place, position, tree)
-        elif place in self._survey.walkingareas:
-            found = self._out_of_area(place, position, tree)
-        if found is not None:
-            return Hop(*found, connected=True)
-        straight = g.turned(graph.lane_end(entry))
-        paved = place in self._survey.walkingareas or place in self._survey.crossings
-        open_ground = not paved and not graph.portals_of(entry)
-        return Hop(straight, math.dist(position, straight[0, :2]), connected=open_ground)
-
-    def _out_of_area(
-        self, place: str, position: tuple[float, float], tree: Tree
-    ) -> tuple[Array, float] | None:
-        """From the middle of a walkingarea: to the portal with the shortest way on."""
-        graph = self._graph
-        exits = [
-            (tree.distance[i] + math.dist(position, graph.portal(i).gate[0, :2]), i)
-            for i in graph.portals_in(place)
-            if i in tree.distance and (i not in tree.leg or tree.leg[i].crossing)
-        ]
-        if not exits:
-            return None
-        distance, i = min(exits)
-        way_out = g.turned(graph.portal(i).gate)
-        here = g.gate(np.array(position), way_out[0, 4:6])
-        between = graph.interior(place).between(here, way_out)
-        onwards = graph.follow(i, tree) if i in tree.leg else way_out
-        return np.concatenate([between, onwards]), distance
-
-    def _off_crossing(
-        self, place: str, position: tuple[float, float], tree: Tree
-    ) -> tuple[Array, float] | None:
-        """From the middle of a crossing: on in the direction of the walk, without waiting."""
-        graph = self._graph
-        line = graph.line(place)
-        station, _ = line.project(*position)
-        ways = []
-        for last in (False, True):
-            ahead = line.length - station if last else station
-            for i in graph.portals_of(End(place, last)):
-                if i not in tree.distance:
-                    continue
-                # The shortest way from this end leads back over the crossing?
-                back = i in tree.leg and tree.leg[i].crossing
-                ways.append((back, tree.distance[i] + ahead, i, last))
-        if not ways:
-            return None
-        _, distance, i, last = min(ways)
-        ahead_gates = line.gates(usable_half_width(graph.lane(place).width))[1:-1]
-        stations = np.array(line.stations[1:-1])
-        if last:
-            ahead_gates = ahead_gates[stations > station]
-        else:
-            ahead_gates = g.turned(ahead_gates[stations < station])
-        onwards = graph.follow(i, tree)
-        return np.concatenate([ahead_gates, graph.portal(i).gate, onwards]), distance
-
-    # --- the way on ---------------------------------------------------------------------------
-
-    # --- the side -----------------------------------------------------------------------------
-
-    def _side_now(self, place: str, position: tuple[float, float], rows: Array) -> float:
-        """The side [-1, 1] of the way on which somebody is now, seen in walking direction."""
-        graph = self._graph
-        if place in self._survey.walkingareas or not graph.has_line(place):
-            return g.side_at(rows, position)
-        half_width = usable_half_width(graph.lane(place).width)
-        if half_width == 0.0:
-            return 0.0
-        line = graph.line(place)
-        station, left = line.project(*position)
-        forward = float(line.gate_at(station, 0.0)[0, 4:6] @ rows[0, 4:6]) >= 0.0
-        return (left if forward else -left) / half_width
+            length += start.length + abs(end - ways.station(first.entry))
+            yield _Way(gaps + (not start.connected), length, start.side, gates)
 
 
 def _finished(rows: Array, side: float, gaps: int) -> WalkRoute:
-    side = min(1.0, max(-1.0, side))
     points = g.places(rows, side)
     if len(points) > 1:
         apart = np.abs(np.diff(points, axis=0)).max(axis=1) > _TOGETHER
@@ -247,7 +172,7 @@ def _finished(rows: Array, side: float, gaps: int) -> WalkRoute:
     return WalkRoute(points, g.passages(rows, side), g.signals(rows), gaps)
 
 
-def _stay(position: tuple[float, float], gaps: int) -> WalkRoute:
+def _stay(position: Place, gaps: int) -> WalkRoute:
     """One way-point where one is: the network knows none of the edges."""
     place = np.array([position], dtype=np.float64)
     return WalkRoute(place, np.zeros((1, 3)), np.array([-1], dtype=np.int64), gaps)

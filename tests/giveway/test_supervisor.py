@@ -52,7 +52,10 @@ from pathlib import Path
 from giveway import supervisor
 
 supervisor._PATIENCE = 0.3
-verdict = supervisor.supervise([sys.executable, sys.argv[1]], Path(sys.argv[2]))
+script, journal, hang_limit = sys.argv[1:]
+verdict = supervisor.supervise(
+    [sys.executable, script], Path(journal), hang_limit=float(hang_limit)
+)
 print("VERDICT", json.dumps(dataclasses.asdict(verdict)), flush=True)
 """
 
@@ -214,6 +217,46 @@ def test_sumo_killed_in_the_middle_of_a_simulation(tmp_path: Path, journal: Path
     assert verdict.pulse.time == pytest.approx(verdict.pulse.step * 1.0)
 
 
+# SUMO 1.28 dies of moves that are pending when a simulation is closed, in the next simulation.
+SUMO_CRASH = """
+import libsumo
+from giveway.heartbeat import Phase
+from giveway.journal import Journal
+from giveway.supervised import Supervised, take_journal_folder
+from sumo_scenarios import find
+
+ids = [f"p{i}" for i in range(50)]
+folder = take_journal_folder()
+with Supervised(folder):
+    journal = Journal(folder)
+    rows = journal.rows("round", 1)
+    for k in range(10):
+        rows.block(1)[0] = k
+        journal.heartbeat.step(k, 0.0)
+        journal.commit()
+        journal.heartbeat.beat(Phase.SUMO)
+        config = str(find("shared_space").config_file)
+        libsumo.start(["sumo", "-c", config, "--no-step-log", "--no-warnings"])
+        for name in ids:
+            libsumo.person.add(name, "gate", 1.0, -3)
+            libsumo.person.appendWalkingStage(name, ["gate"], -1)
+        libsumo.simulationStep()
+        for name in ids:
+            libsumo.person.moveToXY(name, "", 25.0, -13.0, 0.0, 2, -1.0)
+        libsumo.close()
+"""
+
+
+def test_a_segmentation_fault_of_sumos_own(tmp_path: Path, journal: Path) -> None:
+    script = tmp_path / "run.py"
+    script.write_text(SUMO_CRASH)
+    verdict = supervise([sys.executable, str(script)], journal)
+    assert verdict.message.startswith("SIGSEGV inside SUMO's step from 0.00 s")
+    assert "libsumo" in verdict.traceback
+    rounds = read_journal(journal).tables["round"][:, 0].tolist()
+    assert rounds == list(range(verdict.pulse.step + 1))
+
+
 # --- signals and terminals --------------------------------------------------------------------
 
 HEEDS = """
@@ -231,8 +274,10 @@ HEEDS = """
 """
 
 
-def start(script: Path, journal: Path, **options: Any) -> subprocess.Popen[str]:
-    command = [sys.executable, "-c", PARENT, str(script), str(journal)]
+def start(
+    script: Path, journal: Path, hang_limit: float = 30.0, **options: Any
+) -> subprocess.Popen[str]:
+    command = [sys.executable, "-c", PARENT, str(script), str(journal), str(hang_limit)]
     streams: dict[str, Any] = {"stdout": subprocess.PIPE, **options}
     return subprocess.Popen(command, text=True, **streams)
 
@@ -292,6 +337,35 @@ def test_ctrl_c_before_the_loop_counts_once(child: Callable[[str], Path], journa
         output = parent.communicate(timeout=20)[0]
     assert output.startswith("TIDY\n")
     assert verdict_in(output)["code"] == 130
+
+
+def test_a_terminal_that_is_closed_costs_no_row(
+    child: Callable[[str], Path], journal: Path
+) -> None:
+    with start(child("print('READY', flush=True); time.sleep(60)"), journal) as parent:
+        assert parent.stdout is not None
+        parent.stdout.readline()
+        parent.send_signal(signal.SIGHUP)
+        verdict = verdict_in(parent.communicate(timeout=20)[0])
+    assert (verdict["cause"], verdict["code"], verdict["interrupted"]) == ("SIGHUP", 129, True)
+    assert len(read_journal(journal).tables["ego"]) == 3
+
+
+def test_a_suspended_run_is_not_a_hanging_one(child: Callable[[str], Path], journal: Path) -> None:
+    steps = """
+        print("READY", flush=True)
+        for k in range(20):
+            time.sleep(0.1)
+            journal.heartbeat.step(k, 13.0)
+    """
+    with start(child(steps), journal, 0.9, start_new_session=True) as parent:
+        assert parent.stdout is not None
+        parent.stdout.readline()
+        os.killpg(parent.pid, signal.SIGSTOP)  # as Ctrl-Z does
+        time.sleep(1.2)
+        os.killpg(parent.pid, signal.SIGCONT)
+        verdict = verdict_in(parent.communicate(timeout=20)[0])
+    assert not verdict["crashed"]
 
 
 @pytest.mark.parametrize("body", ["time.sleep(60)", "ctypes.PyDLL(None).sleep(60)"])
@@ -381,6 +455,20 @@ def test_the_folder_of_a_journal_is_gone_afterwards(
     monkeypatch.setattr("tempfile.tempdir", None)
     with journal_folder() as folder:
         assert folder.parent == tmp_path
+
+
+def test_journals_of_killed_supervisors_do_not_pile_up(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    for name, age in (("giveway-journal-old", 2 * 86400), ("giveway-journal-new", 60)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "rows").touch()
+        os.utime(tmp_path / name / "rows", (time.time() - age,) * 2)
+    with journal_folder():
+        assert not (tmp_path / "giveway-journal-old").exists()
+        assert (tmp_path / "giveway-journal-new").exists()
 
 
 def test_open_files_reach_the_child(tmp_path: Path, journal: Path) -> None:

@@ -157,6 +157,7 @@ def test_files_that_write_nothing_are_used_where_they_are(
     start = prepare_start(read_scenario(config), StartOptions(), tmp_path)
     assert start.command[4].split(",")[1:] == [str(stops)]
     assert not start.copies
+    assert set(start.read) == {path for _, path in read_scenario(config).inputs}
     assert not start.outputs
 
 

@@ -1,0 +1,61 @@
+"""``giveway doctor``: the findings as a table, the exit code for scripts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from giveway.doctor import examine_environment, examine_scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from giveway.doctor import Finding
+
+_STYLES = {"ok": "green", "note": "cyan", "warning": "yellow", "error": "bold red"}
+
+
+def doctor_command(scenario: str | None) -> int:
+    """Examine the environment, and the scenario if one is named.
+
+    Returns:
+        1 if there is an error among the findings, 0 otherwise.
+    """
+    console = Console()
+    with console.status("Examining the environment ..."):
+        findings = examine_environment()
+    console.print(_table("Environment", findings))
+    if scenario is not None:
+        with console.status("SUMO tries the scenario ..."):
+            of_scenario = examine_scenario(scenario)
+        console.print(_table("Scenario", of_scenario))
+        findings += of_scenario
+    errors = sum(finding.level == "error" for finding in findings)
+    warnings = sum(finding.level == "warning" for finding in findings)
+    console.print(_verdict(errors, warnings), highlight=False)
+    return 1 if errors else 0
+
+
+def _table(title: str, findings: Sequence[Finding]) -> Table:
+    table = Table(title=title, title_justify="left", show_header=False, box=None, pad_edge=False)
+    table.add_column(no_wrap=True)
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold", ratio=1)
+    for finding in findings:
+        text = Text(finding.text)  # not markup: ids and paths may hold brackets
+        if finding.remedy:
+            text.append(f"\n-> {finding.remedy}", style="italic")
+        level = Text(finding.level, style=_STYLES[finding.level])
+        table.add_row(level, Text(finding.subject), text)
+    return table
+
+
+def _verdict(errors: int, warnings: int) -> str:
+    if errors:
+        return f"{errors} error{'s' * (errors > 1)}: a run will not work before that is put right."
+    if warnings:
+        return f"No errors, {warnings} warning{'s' * (warnings > 1)}."
+    return "All is well."

@@ -1,0 +1,81 @@
+"""What scenario files contain, counted as their bytes stream by: cheap on files of any size."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from giveway.scenario_files.reading import opened
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_CHUNK: Final = 1 << 22  # [bytes]
+_LONGEST: Final = 4096  # [bytes] a tag that begins in one chunk ends within this in the next
+_DEMAND = re.compile(rb"<(vehicle|trip|flow|person|personFlow|tlLogic)[\s>]")
+_REMOTE = re.compile(rb"\b(?:file|href|dest|output|imgFile)\s*=\s*[\"'](https?://[^\"']{1,200})")
+_NET = re.compile(rb"<net\s([^>]*)>")
+_ATTRIBUTE = re.compile(rb"([\w:.]+)\s*=\s*[\"']([^\"']*)[\"']")
+_WALKINGAREA: Final = b'function="walkingarea"'
+_CROSSING: Final = b'function="crossing"'
+_SIDEWALK: Final = b'allow="pedestrian"'
+
+
+@dataclass
+class Contents:
+    """What one or several files contain.
+
+    Attributes:
+        elements: how many of each of vehicle, trip, flow, person, personFlow, tlLogic, and in a
+            network walkingarea, crossing, sidewalk; commented-out ones are counted too.
+        network: the attributes of the ``<net>`` element.
+        remote: addresses that are referred to.
+    """
+
+    elements: Counter[str] = field(default_factory=Counter)
+    network: dict[str, str] = field(default_factory=dict)
+    remote: list[str] = field(default_factory=list)
+
+    @property
+    def vehicles(self) -> int:
+        """Vehicles and trips; those that flows bring are not among them."""
+        return self.elements["vehicle"] + self.elements["trip"]
+
+    @property
+    def persons(self) -> int:
+        """Persons and flows of persons."""
+        return self.elements["person"] + self.elements["personFlow"]
+
+
+def read_contents(file: Path, into: Contents) -> None:
+    """Count what ``file`` contains.
+
+    Raises:
+        OSError, EOFError: it cannot be read.
+    """
+    with opened(file) as stream:
+        tail = b""
+        while chunk := stream.read(_CHUNK):
+            text = tail + chunk
+            last = text.rfind(b"<", max(0, len(text) - _LONGEST))
+            end = last if last >= 0 else len(text)
+            _count(text[:end], into)
+            tail = text[end:]
+        _count(tail, into)
+
+
+def _count(text: bytes, into: Contents) -> None:
+    into.elements.update(found[1].decode() for found in _DEMAND.finditer(text))
+    into.elements["walkingarea"] += text.count(_WALKINGAREA)
+    into.elements["crossing"] += text.count(_CROSSING)
+    into.elements["sidewalk"] += text.count(_SIDEWALK)
+    into.remote += [found[1].decode("utf-8", "replace") for found in _REMOTE.finditer(text)]
+    if not into.network:
+        network = _NET.search(text)
+        if network is not None:
+            into.network = {
+                name.decode(): value.decode("utf-8", "replace")
+                for name, value in _ATTRIBUTE.findall(network[1])
+            }

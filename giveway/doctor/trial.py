@@ -1,0 +1,119 @@
+"""The probe from outside: what SUMO made of the scenario, whatever became of it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, Final
+
+from giveway.doctor.finding import Finding, error, note, ok, warning
+
+PATIENCE: Final = 120.0  # [s] for loading and a moment's running
+_HOUSE: Final = Path(__file__).resolve().parents[2]
+_SHOWN: Final = 12  # edges of a route
+
+
+def try_in_sumo(config_file: Path, patience: float = PATIENCE) -> list[Finding]:
+    """Let SUMO load the scenario and run it for a moment, in a process of its own.
+
+    Args:
+        config_file: the .sumocfg.
+        patience: how long to wait [s].
+    """
+    # -P: a controller.py in the user's folder is not our controller
+    command = [sys.executable, "-P", "-m", "giveway.doctor.probe", str(config_file)]
+    ours = os.pathsep.join(filter(None, (str(_HOUSE), os.environ.get("PYTHONPATH"))))
+    try:
+        result = subprocess.run(
+            command,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            check=False,
+            timeout=patience,
+            stdin=subprocess.DEVNULL,
+            env=os.environ | {"PYTHONPATH": ours},
+        )
+    except subprocess.TimeoutExpired:
+        text = f"SUMO was still busy after {patience:g} s"
+        return [error("SUMO", text, f"see where it waits: sumo -c {config_file}")]
+    except OSError as problem:
+        return [error("SUMO", f"no process can be started ({problem})", "free some memory")]
+    return judged(config_file, result)
+
+
+def judged(config_file: Path, result: subprocess.CompletedProcess[str]) -> list[Finding]:
+    """What the probe's process left behind: an exit code, JSON, SUMO's messages."""
+    if result.returncode < 0:
+        name = signal.Signals(-result.returncode).name
+        remedy = f"look at it alone: sumo -c {config_file}; report it to the authors of SUMO"
+        return [error("SUMO", f"SUMO crashed ({name})", remedy)]
+    if result.returncode != 0:
+        last = (result.stderr.strip().splitlines() or [f"exit code {result.returncode}"])[-1]
+        return [
+            error("SUMO", f"the trial failed: {last}", f"look at it alone: sumo -c {config_file}")
+        ]
+    seen: dict[str, Any] = json.loads(result.stdout.strip().splitlines()[-1])
+    if "refused" in seen:
+        text = f"SUMO refuses the scenario: {_reasons(result.stderr, seen['refused'])}"
+        return [error("SUMO", text, f"correct it; sumo -c {config_file} says the same")]
+    findings = [*_loaded(seen), *_warnings(result.stderr, seen["copies"]), *_outputs(seen)]
+    return [*findings, *_remarks(seen), *_egos(seen)]
+
+
+def _reasons(stderr: str, refused: str) -> str:
+    """All that SUMO said: on stderr, and in the exception, which often says only that it failed."""
+    lines = [line.strip() for line in stderr.splitlines()]
+    said = [line.removeprefix("Error:").strip() for line in lines if line.startswith("Error:")]
+    return "; ".join(dict.fromkeys([*said, *([] if refused == "Process Error" else [refused])]))
+
+
+def _loaded(seen: dict[str, Any]) -> list[Finding]:
+    text = f"loads in {seen['loaded_in']:.1f} s ({seen['edges']} edges) and runs"
+    return [ok("SUMO", f"{text} to {seen['time']:g} s")]
+
+
+def _warnings(stderr: str, copies: dict[str, str]) -> list[Finding]:
+    lines = [line for line in stderr.splitlines() if line.startswith("Warning")]
+    if not lines:
+        return []
+    first = lines[0].removeprefix("Warning:").strip()
+    for copy, original in copies.items():
+        first = first.replace(copy, original)
+    number = f"{len(lines)} warnings, the first" if len(lines) > 1 else "one warning"
+    return [note("SUMO's warnings", f"{number}: {first}", "they are the scenario's, not a run's")]
+
+
+def _outputs(seen: dict[str, Any]) -> list[Finding]:
+    """What the scenario would write: its options, its additional files, its vehicles' devices."""
+    if not seen["outputs"]:
+        return [ok("outputs", "the scenario writes none")]
+    names = ", ".join(seen["outputs"][:_SHOWN])
+    more = len(seen["outputs"]) - _SHOWN
+    names += f" and {more} more" if more > 0 else ""
+    return [note("outputs", f"{names}: written into RESULTS/sumo, not beside the scenario")]
+
+
+def _remarks(seen: dict[str, Any]) -> list[Finding]:
+    """What a run changes, beyond what the scenario's own findings say."""
+    said = ("outputs", "pedestrian.model", "random")
+    parted = [remark.partition(": ") for remark in seen["remarks"]]
+    return [note(option, text) for option, _, text in parted if option not in said]
+
+
+def _egos(seen: dict[str, Any]) -> list[Finding]:
+    """Vehicles that can be taken over, and a route for one of our own."""
+    vehicles: dict[str, list[str]] = seen["vehicles"]
+    if not vehicles:
+        text = f"no road vehicle departs before {seen['time']:g} s"
+        return [warning("ego", text, "insert one with --ego-route EDGE,EDGE")]
+    named = ", ".join(f"{name} ({facts[0]})" for name, facts in vehicles.items())
+    first, (_, *edges) = next(iter(vehicles.items()))
+    route = ",".join(edges[:_SHOWN])
+    return [
+        note("ego", f"first to depart: {named}", f"--ego={first}, or --ego-route={route}"),
+    ]
