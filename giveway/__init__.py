@@ -15,8 +15,9 @@ from giveway._environment import check_rooms, choose_kernel_cache
 from giveway.errors import GivewayError
 
 if TYPE_CHECKING:
-    from giveway.api import RunResult, run
+    from giveway.api import run
     from giveway.config import RunConfig
+    from giveway.run_result import RunResult
 
 __version__ = "0.1.0"
 __all__ = ["GivewayError", "RunConfig", "RunResult", "__version__", "run"]

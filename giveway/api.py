@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from giveway.assembly import Parts, assemble
 from giveway.configfile import dump_toml
 from giveway.errors import GivewayError
+from giveway.heartbeat import Phase
 from giveway.interrupts import DeferredInterrupt
 from giveway.journal import Journal
 from giveway.loading import as_layer, load
@@ -23,8 +25,9 @@ from giveway.results import (
     write_pictures,
     write_results,
 )
-from giveway.run_result import EgoResult, RunResult
-from giveway.simulation import Ending, Loop, Watcher
+from giveway.run_result import RunResult, results_of_egos
+from giveway.simulation import Ending, Loop, Progress, Watcher
+from giveway.supervised import STDERR_FILE
 
 if TYPE_CHECKING:
     from giveway.config import RunConfig
@@ -42,7 +45,10 @@ def run(
     pictures: bool = True,
     watcher: Watcher | None = None,
 ) -> RunResult:
-    """Drive the ego through the crowd once.
+    """Run one configuration: drive the egos through the scenario and its crowd.
+
+    The simulation runs in this process: native code that crashes (SUMO, an FMU) takes it along.
+    The command line isolates it.
 
     Args:
         config: the options that differ from the scenario's settings and the defaults, as a
@@ -79,32 +85,69 @@ def run_layers(
     parquet: bool = False,
     pictures: bool = True,
     watcher: Watcher | None = None,
+    journal: Path | None = None,
 ) -> RunResult:
-    """As :func:`run`, from layers of settings with their origins."""
+    """As :func:`run`, from layers of settings with their origins.
+
+    Args:
+        layers: of settings.
+        results: as for :func:`run`.
+        force: as for :func:`run`.
+        parquet: as for :func:`run`.
+        pictures: as for :func:`run`.
+        watcher: as for :func:`run`.
+        journal: an empty folder for the rows, to be read should this process die.
+    """
     config, scenario = load(layers)
     folder = None if results is None else Path(results)
     if parquet:
         require_parquet()
     taken = folder is not None and take_folder(folder, force=force)
+    rows = Journal(journal)
+    where = None if folder is None else str(folder.absolute())
+    wanted = {"results": where, "parquet": parquet, "pictures": pictures}
+    rows.write_meta({"config": dump_toml(config), **wanted})
+    native_log = None if journal is None else journal / STDERR_FILE
     with DeferredInterrupt() as interrupt:  # writing is not to be torn either
         try:
             outputs = None if folder is None else sumo_folder(folder)
-            result = simulate(config, scenario, watcher, interrupt, outputs=outputs)
+            result = simulate(
+                config,
+                scenario,
+                watcher,
+                interrupt,
+                outputs=outputs,
+                journal=rows,
+                native_log=native_log,
+            )
         except Exception:
             if folder is not None and taken:
                 release_folder(folder)
             raise
-        if folder is not None and len(result.time):
-            write_results(result, folder, parquet=parquet)
-            if pictures:
-                write_pictures(result, folder)
-        elif folder is not None and taken:
-            release_folder(folder)
+        rows.heartbeat.beat(Phase.WRITING)
+        if folder is not None:
+            keep(result, folder, parquet=parquet, pictures=pictures, taken=taken)
     if result.error is not None:
         if isinstance(result.error, GivewayError):
             result.error.result = result
         raise result.error
     return result
+
+
+def keep(
+    result: RunResult, folder: Path, *, parquet: bool, pictures: bool, taken: bool
+) -> None:
+    """Write everything into ``folder``, or free it if there is nothing to write.
+
+    Raises:
+        ResultsError: it cannot be written.
+    """
+    if len(result.time):
+        write_results(result, folder, parquet=parquet)
+        if pictures:
+            write_pictures(result, folder)
+    elif taken:
+        release_folder(folder)
 
 
 def simulate(
@@ -115,6 +158,7 @@ def simulate(
     *,
     outputs: Path | None = None,
     journal: Journal | None = None,
+    native_log: Path | None = None,
 ) -> RunResult:
     """Run one configuration; an error on the way becomes the result's ``error``.
 
@@ -125,6 +169,7 @@ def simulate(
         interrupt: looked at between two steps.
         outputs: folder for SUMO's own outputs; None drops them.
         journal: keeps the rows where a dying process cannot take them along.
+        native_log: file for what SUMO prints; None: a temporary one.
 
     Raises:
         GivewayError: the run could not begin.
@@ -133,8 +178,15 @@ def simulate(
     def interrupted() -> bool:
         return interrupt is not None and interrupt.requested
 
+    def goes_on(clock: float) -> bool:
+        if watcher is not None:
+            watcher(Progress(0.0, clock, math.nan, math.nan, math.nan, "", 0))
+        return not interrupted()
+
     with ExitStack() as stack:
-        parts = assemble(config, scenario, stack, outputs=outputs, interrupted=interrupted)
+        parts = assemble(
+            config, scenario, stack, outputs=outputs, native_log=native_log, goes_on=goes_on
+        )
         recorder = Recorder(journal)
         loop = Loop(parts, recorder)
         began = perf_counter()
@@ -158,32 +210,14 @@ def _result(
 ) -> RunResult:
     """What the loop has left behind."""
     tables = recorder.tables()
-    crowd = tables.crowd_track()
-    egos = []
-    for ego in loop.drives:
-        if ego.id not in tables.egos:
-            continue  # it departed in the very instant at which the run ended
-        first, track = tables.ego_track(ego.id)
-        egos.append(
-            EgoResult(
-                ego.config,
-                ego.id,
-                ego.shape,
-                ego.goal,
-                first,
-                track,
-                loop.endings.get(ego.id, ending),
-                crowd.during(first, len(track.time)),
-            )
-        )
     return RunResult(
         config=parts.config,
         scenario=scenario,
         ending=ending,
         error=error,
         time=tables.time,
-        egos=tuple(egos),
-        crowd_track=crowd,
+        egos=results_of_egos(parts.config, tables, ending, loop.endings),
+        crowd_track=tables.crowd_track(),
         background_track=tables.background_track(),
         timings=tables.timings(),
         elapsed=elapsed,

@@ -99,7 +99,8 @@ def assemble(
     stack: ExitStack,
     *,
     outputs: Path | None = None,
-    interrupted: Callable[[], bool] = lambda: False,
+    native_log: Path | None = None,
+    goes_on: Callable[[float], bool] = lambda _: True,
 ) -> Parts:
     """Set up every part and let SUMO run up to the first departure; ``stack`` closes everything.
 
@@ -111,7 +112,8 @@ def assemble(
         scenario: its scenario.
         stack: closes SUMO and the FMUs.
         outputs: folder for SUMO's own outputs; None drops them.
-        interrupted: looked at while SUMO runs up to the first departure.
+        native_log: file for what SUMO prints; None: a temporary one.
+        goes_on: asked, with SUMO's clock, at each step until the first departure.
 
     Raises:
         GivewayError: a part cannot be set up as asked.
@@ -126,7 +128,9 @@ def assemble(
     walkers = not zone.nowhere and not (zone.follows_egos and not egos)
     moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
     sumo = stack.enter_context(
-        SumoSession(files, _start_options(config, moved, outputs), _types(egos))
+        SumoSession(
+            files, _start_options(config, moved, outputs), _types(egos), native_log=native_log
+        )
     )
     substeps = _substeps(time_step, sumo.step_length)
     remarks = list(sumo.start.remarks)
@@ -139,7 +143,7 @@ def assemble(
         for ego, regulator in zip(egos, regulators, strict=True)
     )
     departures = Departures(drivers, sumo, scenario.config_file, time_step)
-    departures.run_until_first(interrupted)
+    departures.run_until_first(goes_on)
     population = _population(config, departures, sumo, files.net_file, network)
     exchange = None
     if network is not None:
@@ -171,7 +175,7 @@ def assemble(
 
 
 def _require_distinct(egos: Sequence[RunConfig]) -> None:
-    names = [ego.ego.take_over[0] if ego.ego.take_over else ego.ego.id for ego in egos]
+    names = [ego.ego_id for ego in egos]
     for name in names:
         if names.count(name) > 1:
             msg = f"ego '{name}': two egos have this id; give each [[egos]] entry its own"

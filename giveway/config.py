@@ -347,6 +347,11 @@ class RunConfig(Section):
         ]
 
     @property
+    def ego_id(self) -> str:
+        """SUMO's id of the ego, of a configuration for one."""
+        return self.ego.take_over[0] if self.ego.take_over else self.ego.id
+
+    @property
     def corridor_margin(self) -> float:
         """What the corridor is wider than half the vehicle, on each side [m]."""
         return 0.25

@@ -74,6 +74,8 @@ class Option:
 def options(model: type[Section] = RunConfig, prefix: Location = ()) -> Iterator[Option]:
     """Every leaf option of the configuration, in declaration order."""
     for name, field in model.model_fields.items():
+        if name == "egos":
+            continue  # a list of tables, which has no flag
         annotation = field.annotation
         if isinstance(annotation, type) and issubclass(annotation, Section):
             yield from options(annotation, (*prefix, name))
@@ -104,6 +106,11 @@ def read_toml(path: Path) -> Layer:
         reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
         msg = f"{path}: cannot be read ({reason}); expected a TOML file"
     raise ConfigError(msg)
+
+
+def read_toml_text(text: str, origin: str) -> Layer:
+    """The settings in a TOML text that giveway itself has written."""
+    return Layer(origin, tomllib.loads(text))
 
 
 def _anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
@@ -200,4 +207,9 @@ def dump_toml(config: RunConfig) -> str:
         item = tomlkit.item(list(value) if isinstance(value, tuple) else value)
         unit = f"[{entry.unit}] " if entry.unit else ""
         node.add(key, item.comment(f"{unit}{entry.field.description}"))
+    if config.egos:
+        tables = tomlkit.aot()
+        for entry in config.egos:
+            tables.append(tomlkit.item(entry))
+        document.add("egos", tables)
     return tomlkit.dumps(document)

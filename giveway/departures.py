@@ -64,15 +64,20 @@ class Departures:
         """The way of the first ego to be inserted, if there is one."""
         return next((path for path, _ in self._ways.values()), None)
 
-    def run_until_first(self, interrupted: Callable[[], bool]) -> None:
+    def run_until_first(self, goes_on: Callable[[float], bool]) -> None:
         """Let the scenario run by itself until somebody is due.
+
+        Args:
+            goes_on: asked at each SUMO step, with SUMO's clock [s].
 
         Raises:
             ScenarioError: nobody ever is.
         """
         session = self._session
         began = session.time
-        while self.waiting and not interrupted() and not any(map(self._is_due, self.waiting)):
+        while self.waiting and not any(map(self._is_due, self.waiting)):
+            if not goes_on(session.time):
+                return
             over = session.time >= min(session.end, began + LONGEST_WAIT) - 1e-9
             if over or (session.end == math.inf and not session.expects_more and self._all_taken):
                 raise ScenarioError(self._never(self.waiting[0]))

@@ -54,8 +54,7 @@ class Driver:
     @property
     def id(self) -> str:
         """SUMO's id of the vehicle."""
-        taken = self.config.ego.take_over
-        return taken[0] if taken else self.config.ego.id
+        return self.config.ego_id
 
     @property
     def taken_over(self) -> bool:

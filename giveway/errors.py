@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from giveway.api import RunResult
+    from giveway.run_result import RunResult
 
 
 class GivewayError(Exception):
@@ -53,6 +53,10 @@ class ControlError(GivewayError):
 
 class CrowdError(GivewayError):
     """The pedestrians cannot be placed or moved as asked."""
+
+
+class CrashError(GivewayError):
+    """Native code (SUMO, an FMU, a solver) ended or hung the run's process; rows are kept."""
 
 
 class ResultsError(GivewayError):

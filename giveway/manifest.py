@@ -53,7 +53,7 @@ def manifest(
     pedestrians: dict[str, int],
     traffic: dict[str, float],
     sumo: dict[str, float],
-    time_step: float,
+    time_step: float | None,
     remarks: Sequence[str],
     ending: str,
     error: str | None,
@@ -68,7 +68,7 @@ def manifest(
         pedestrians: the ledger of who was moved.
         traffic: what the yield layer did.
         sumo: seed and step length in effect.
-        time_step: of the co-simulation [s].
+        time_step: of the co-simulation [s]; None: unknown, the process died.
         remarks: for the user.
         ending: why the run ended.
         error: what ended it, if it failed.

@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from pathlib import Path
     from types import TracebackType
 
 
@@ -15,10 +16,18 @@ class NativeStderr:
     """Redirects file descriptor 2 into a file while a native call runs.
 
     Use the object itself as the context manager, round one call at a time; ``close`` at the end.
+
+    Args:
+        path: of the file, for whoever wants to read it after this process has died; None: a
+            temporary file without a name.
     """
 
-    def __init__(self) -> None:
-        self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the session
+    def __init__(self, path: Path | None = None) -> None:
+        self._log: IO[bytes]
+        if path is None:
+            self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the session
+        else:
+            self._log = path.open("w+b")
         try:
             self._saved = os.dup(2)
         except OSError:  # closed by whoever started us: what is printed there goes nowhere

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from giveway.jit import kernel
 from giveway.journal import Journal
-from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings
+from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings, VehicleShape
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from giveway.ego_path import Pose
     from giveway.traffic import BackgroundVehicles
@@ -56,6 +56,7 @@ class Recorder:
         self._crowd = rows("crowd", 6)  # instant, pedestrian, x, y, vx, vy
         self._background = rows("background", 9)  # time, vehicle, type, x, y, heading, ...
         self._timings = rows("timing", len(Timings.NAMES))
+        self._drives = rows("drives", 4)  # ego, length, width, goal
         self._words = names("words")
         self._egos = names("egos")
         self._pedestrians = names("pedestrians")
@@ -76,6 +77,11 @@ class Recorder:
         """Note the names of pedestrians, in the order of their indices."""
         for name in ids:
             self._pedestrians.index(name)
+
+    def drive(self, ego_id: str, shape: VehicleShape, goal: float) -> None:
+        """Note an ego that departs: its body and the distance [m] it is to drive."""
+        row = (self._egos.index(ego_id), shape.length, shape.width, goal)
+        self._drives.block(1)[0] = row
 
     def ego(self, ego_id: str, row: EgoRow) -> None:
         """Record an ego at the present control instant."""
@@ -123,6 +129,7 @@ class Recorder:
                 "crowd": self._crowd.filled,
                 "background": self._background.filled,
                 "timing": self._timings.filled,
+                "drives": self._drives.filled,
             },
             {
                 "words": self._words.names,
@@ -131,6 +138,16 @@ class Recorder:
                 "vehicles": self._vehicles.names,
             },
         )
+
+
+class Drive(NamedTuple):
+    """One ego's rows."""
+
+    id: str
+    shape: VehicleShape
+    goal: float  # [m]
+    first: int  # the control instant at which it departed
+    track: EgoTrack
 
 
 class Tables:
@@ -148,26 +165,26 @@ class Tables:
         self.time = np.ascontiguousarray(rows["clock"][:, 0])  # (T,) [s]
         self._ego = rows["ego"][rows["ego"][:, 0] < instants]
 
-    @property
-    def egos(self) -> tuple[str, ...]:
-        """Ids of the egos, in the order of their departure."""
-        return self._names["egos"]
+    def drives(self) -> Iterator[Drive]:
+        """Every ego that has rows, in the order of departure."""
+        for number, length, width, goal in self._rows["drives"]:
+            rows = self._ego[self._ego[:, 1] == number]
+            if len(rows):
+                name = self._names["egos"][int(number)]
+                shape = VehicleShape(float(length), float(width))
+                yield Drive(name, shape, float(goal), int(rows[0, 0]), self._track(rows))
 
-    def ego_track(self, ego_id: str) -> tuple[int, EgoTrack]:
-        """The first control instant of an ego, and its rows as arrays."""
-        number = self._names["egos"].index(ego_id)
-        rows = self._ego[self._ego[:, 1] == number]
+    def _track(self, rows: Array) -> EgoTrack:
         columns = [np.ascontiguousarray(column) for column in rows.T]
         word = self._words
         acting, reason, status, iterations = columns[-4:]
-        track = EgoTrack(
+        return EgoTrack(
             *columns[2:-4],
             acting=word(acting),
             reason=word(reason),
             solver_status=word(status),
             solver_iterations=iterations.astype(np.int64),
         )
-        return int(rows[0, 0]), track
 
     def _words(self, indices: Array) -> NDArray[np.str_]:
         return np.array(self._names["words"], dtype=np.str_)[indices.astype(np.int64)]

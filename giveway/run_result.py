@@ -18,9 +18,12 @@ from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings, Vehic
 from pedestrian_model import PRESETS
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from giveway.config import RunConfig
+    from giveway.recorder import Tables
     from sumo_scenarios import Scenario
 
     Array = NDArray[np.float64]
@@ -212,6 +215,34 @@ class RunResult:
             "summary": (*SUMMARY_HEAD, *SUMMARY_FIELDS),
             "timing": TIMING_COLUMNS,
         }
+
+
+def results_of_egos(
+    config: RunConfig, tables: Tables, ending: Ending, endings: Mapping[str, Ending]
+) -> tuple[EgoResult, ...]:
+    """What each ego leaves behind.
+
+    Args:
+        config: the run's.
+        tables: its rows.
+        ending: of the run.
+        endings: of those egos whose drive ended by itself.
+    """
+    crowd = tables.crowd_track()
+    configs = {ego.ego_id: ego for ego in config.each_ego()}
+    return tuple(
+        EgoResult(
+            config=configs[drive.id],
+            id=drive.id,
+            shape=drive.shape,
+            goal=drive.goal,
+            first=drive.first,
+            track=drive.track,
+            ending=endings.get(drive.id, ending),
+            crowd=crowd.during(drive.first, len(drive.track.time)),
+        )
+        for drive in tables.drives()
+    )
 
 
 PEDESTRIAN_TABLE = (

@@ -49,16 +49,19 @@ class Ending(enum.StrEnum):
     SCENARIO_END = "scenario end"  # the scenario's own end came first
     INTERRUPTED = "interrupted"  # the user wanted it to end
     FAILED = "failed"  # an error ended it
+    CRASHED = "crashed"  # native code ended or hung its process
 
 
 @dataclass(frozen=True)
 class Progress:
     """Where a run stands, for whoever watches."""
 
-    time: float  # [s] since the run's first instant
+    time: float  # [s] since the run's first instant; 0 while SUMO runs up to it by itself
+    clock: float  # [s] SUMO's
     position: float  # [m] driven by the first ego on the road; nan without one
-    speed: float  # [m/s] of it
-    acting: str  # which controller acts
+    goal: float  # [m] it is to drive; nan without one
+    speed: float  # [m/s] of it; nan without one
+    acting: str  # which controller acts; empty without an ego
     pedestrians: int  # in the crowd
 
 
@@ -87,7 +90,6 @@ class Loop:
         self._k = 0
         self._population = parts.population
         self._egos: list[Ego] = []
-        self.drives: list[Ego] = []  # everybody who ever was on the road
         self.endings = {}
         self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
         self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
@@ -151,10 +153,12 @@ class Loop:
 
     def _progress(self, acting: str) -> Progress:
         elapsed, people = self._k * self._time_step, len(self._population)
+        clock = self._start + elapsed
         if not self._egos:
-            return Progress(elapsed, np.nan, np.nan, acting, people)
-        vehicle = self._egos[0].vehicle
-        return Progress(elapsed, vehicle.position, vehicle.speed, acting, people)
+            return Progress(elapsed, clock, np.nan, np.nan, np.nan, acting, people)
+        ego = self._egos[0]
+        position, speed = ego.vehicle.position, ego.vehicle.speed
+        return Progress(elapsed, clock, position, ego.goal, speed, acting, people)
 
     # --- step 1 -------------------------------------------------------------------------------
 
@@ -162,7 +166,8 @@ class Loop:
         parts = self._parts
         arrivals = parts.departures.due(self._k)
         self._egos += arrivals
-        self.drives += arrivals
+        for ego in arrivals:
+            self._recorder.drive(ego.id, ego.shape, ego.goal)
         if parts.exchange is not None:
             parts.exchange.update(self._places())
         people = self._population.crowd.position

@@ -51,6 +51,7 @@ class SumoSession:
         scenario: the scenario's files; nothing is written beside them.
         options: how SUMO is to be run.
         types: an additional file's text with the types of whatever is going to be added.
+        native_log: file for what SUMO prints; None: a temporary one.
 
     Raises:
         ScenarioError: an input file is missing or cannot be read.
@@ -60,12 +61,20 @@ class SumoSession:
 
     _running = False
 
-    def __init__(self, scenario: ScenarioFiles, options: StartOptions, types: str) -> None:
+    def __init__(
+        self,
+        scenario: ScenarioFiles,
+        options: StartOptions,
+        types: str,
+        *,
+        native_log: Path | None = None,
+    ) -> None:
         if SumoSession._running:
             msg = "SUMO: a simulation is already running; libsumo holds one per process, close it"
             raise SumoError(msg)
         self.module = self._sumo = _import_libsumo()
         self._config_file = scenario.config_file
+        self._native_log = native_log
         self._scratch = tempfile.TemporaryDirectory(prefix="giveway-")
         try:
             self.start = prepare_start(scenario, options, Path(self._scratch.name), types=types)
@@ -84,7 +93,7 @@ class SumoSession:
         self.step_length = float(self._sumo.simulation.getDeltaT())
 
     def _load(self) -> None:
-        self._stderr = NativeStderr()
+        self._stderr = NativeStderr(self._native_log)
         try:
             with self._stderr:
                 self._sumo.start(list(self.start.command))

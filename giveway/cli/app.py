@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from giveway.cli import INTERRUPTED, fail
+from giveway.errors import GivewayError
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
 
@@ -33,6 +34,7 @@ def build_app(arguments: Sequence[str]) -> typer.Typer:
     app.callback()(_main)
     app.command("run")(_with_flags(_run, command))
     app.command("scenarios")(_scenarios)
+    app.command("doctor")(_doctor)
     app.command("config")(_with_flags(_config, command))
     app.add_typer(_build_plot(), name="plot")
     return app
@@ -88,15 +90,28 @@ def _run(
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Neither progress bar nor summary.")
     ] = False,
+    isolate: Annotated[
+        bool, typer.Option(help="Run in a process of its own, whose crash loses no row.")
+    ] = True,
 ) -> None:
     """Drive the ego through a crowd once: summary, CSVs, pictures."""
+    from giveway.supervised import Supervised, take_journal_folder
+
+    journal = take_journal_folder()
+    if isolate and journal is None:
+        from giveway.cli.isolated import run_isolated
+
+        raise typer.Exit(run_isolated())
     from giveway.cli.run import Outputs, run_command
 
     outputs = Outputs(out, force=force, parquet=parquet, pictures=pictures, quiet=quiet)
-    try:
-        code = run_command(scenario, config, settings, outputs)
-    except KeyboardInterrupt:  # typer would end without a word
-        code = fail("interrupted before the run began", INTERRUPTED)
+    with Supervised(journal):
+        try:
+            code = run_command(scenario, config, settings, outputs, journal)
+        except KeyboardInterrupt:  # typer would end without a word
+            code = fail("interrupted before the run began", INTERRUPTED)
+        except GivewayError as error:
+            code = fail(str(error), error.exit_code)
     raise typer.Exit(code)
 
 
@@ -111,6 +126,17 @@ def _config(
     from giveway.loading import load
 
     typer.echo(dump_toml(load(layers_of(scenario, config, settings))[0]), nl=False)
+
+
+def _doctor(
+    scenario: Annotated[
+        str | None, typer.Argument(help="Bundled scenario, folder or .sumocfg.")
+    ] = None,
+) -> None:
+    """Examine the installation, and a scenario: findings and their remedies."""
+    from giveway.cli.doctor import doctor_command
+
+    raise typer.Exit(doctor_command(scenario))
 
 
 def _scenarios() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from contextlib import contextmanager
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -33,12 +34,10 @@ def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None
     columns = (
         TextColumn("{task.description}"),
         BarColumn(bar_width=None),
-        TextColumn("{task.completed:.1f}/{task.total:g} m"),
         TextColumn("{task.fields[state]}"),
     )
     with Progress(*columns, console=console, auto_refresh=False, transient=True) as bar:
-        distance = config.ego.travel_distance
-        task = bar.add_task(f"{config.controller.upper()} drives", total=distance, state="")
+        task = bar.add_task("SUMO runs up to the departure", total=None, state="")
         drawn = -_REFRESH
 
         def watch(state: State) -> None:
@@ -47,10 +46,21 @@ def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None
             if now - drawn < _REFRESH:
                 return
             drawn = now
+            if not math.isfinite(state.goal):  # no ego on the road
+                what = f"{state.pedestrians} pedestrians" if state.pedestrians else ""
+                bar.update(task, state=f"t = {state.clock:.1f} s  {what}", refresh=True)
+                return
             text = (
-                f"t = {state.time:.1f} s  v = {state.speed:.1f} m/s  {state.acting}  "
-                f"{state.pedestrians} pedestrians"
+                f"{state.position:.1f}/{state.goal:.4g} m  t = {state.time:.1f} s  "
+                f"v = {state.speed:.1f} m/s  {state.acting}  {state.pedestrians} pedestrians"
             )
-            bar.update(task, completed=min(state.position, distance), state=text, refresh=True)
+            bar.update(
+                task,
+                description=f"{config.controller.upper()} drives",
+                total=state.goal,
+                completed=min(state.position, state.goal),
+                state=text,
+                refresh=True,
+            )
 
         yield watch

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
+from rich.markup import escape
 
 from giveway.cli import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
@@ -19,8 +20,8 @@ from giveway.simulation import Ending
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from giveway.api import RunResult
     from giveway.config import RunConfig
+    from giveway.run_result import RunResult
 
 
 @dataclass(frozen=True)
@@ -44,9 +45,20 @@ def layers_of(
 
 
 def run_command(
-    scenario: str | None, config: Path | None, settings: Mapping[str, Any], outputs: Outputs
+    scenario: str | None,
+    config: Path | None,
+    settings: Mapping[str, Any],
+    outputs: Outputs,
+    journal: Path | None = None,
 ) -> int:
     """Run once; the exit code is 0, or 130 when the user interrupted.
+
+    Args:
+        scenario: name or path; None: the file's, or the default.
+        config: a TOML file.
+        settings: what the flags set.
+        outputs: what is wanted.
+        journal: a folder for the rows, should this process die.
 
     Raises:
         GivewayError: one line that says what to do.
@@ -72,9 +84,10 @@ def run_command(
                 parquet=outputs.parquet,
                 pictures=outputs.pictures,
                 watcher=watcher,
+                journal=journal,
             )
         except GivewayError as error:
-            if error.result is not None and len(error.result.ego_track.time):
+            if error.result is not None and len(error.result.time):
                 error.args = (f"{error}; rows up to then are in {folder}",)
             raise
     if result.ending is Ending.INTERRUPTED:
@@ -84,14 +97,20 @@ def run_command(
 
 
 def default_folder(config: RunConfig, scenario: str) -> Path:
-    """``results/<scenario>_<controller>_<persons>ped_seed<seed>``."""
-    crowd = f"{config.crowd.pedestrians}ped"
-    return Path("results") / f"{scenario}_{config.controller}_{crowd}_seed{config.seed}"
+    """``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with an ego's id if taken over."""
+    egos = config.each_ego()
+    drivers = "_".join(dict.fromkeys(ego.controller for ego in egos)) or "no_ego"
+    taken = "".join(f"_{name}" for ego in egos for name in ego.ego.take_over)
+    safe = "".join(letter if letter.isalnum() or letter in "._-" else "-" for letter in taken)
+    people = f"{config.crowd.pedestrians}ped"
+    return Path("results") / f"{scenario}_{drivers}{safe[:60]}_{people}_seed{config.seed}"
 
 
 def _show(console: Console, result: RunResult, folder: Path) -> None:
     from giveway.cli.summary import summary_table
 
     console.print(summary_table(result))
+    for remark in result.remarks:
+        console.print(f"[yellow]note[/yellow] {escape(remark)}", highlight=False)
     files = ", ".join(sorted(path.name for path in folder.iterdir()))
     console.print(f"Results in [bold]{folder}[/bold]: {files}", highlight=False)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
 if TYPE_CHECKING:
-    from giveway.api import RunResult
+    from giveway.run_result import EgoResult, RunResult
 
 _SHOWN = (
     ("Time to the goal", "completion_time", "s"),
@@ -24,25 +24,62 @@ _SHOWN = (
     ("Steps below the safe distance", "share_below_safe_distance", "%"),
     ("Steps in which the MPC acted", "mpc_feasibility_rate", "%"),
 )
+_LEDGER = (
+    ("Pedestrians added", "added"),
+    ("Walkers taken over from SUMO", "taken_over"),
+    ("handed back", "handed_back"),
+    ("arrived", "arrived"),
+    ("gone on by vehicle, or to a stop", "continued"),
+    ("still walking", "walking"),
+)
 
 
 def summary_table(result: RunResult) -> Table:
     """The summary's most asked-for numbers, with units; a dash where there is none."""
-    config, summary = result.config, result.summary
-    people = config.crowd.pedestrians
-    title = (
-        f"{result.scenario.name}: {config.controller.upper()}, {people} pedestrians, "
-        f"seed {config.seed} - {result.ending}"
-    )
-    table = Table(title=title, show_header=False, title_justify="left")
+    table = Table(title=_title(result), show_header=len(result.egos) > 1, title_justify="left")
     table.add_column()
-    table.add_column(justify="right")
+    for ego in result.egos:
+        table.add_column(ego.id, justify="right")
+    if not result.egos:
+        table.add_column(justify="right")
     table.add_column()
-    for label, name, unit in _SHOWN:
-        table.add_row(label, *_formatted(summary[name], unit))
-    factor = result.timing_summary["real_time_factor"]
-    table.add_row("Real-time factor", *_formatted(factor, "x"))
+    for label, name, unit in _SHOWN if result.egos else ():
+        cells = [_formatted(ego.summary[name], unit) for ego in result.egos]
+        table.add_row(label, *(value for value, _ in cells), max(unit for _, unit in cells))
+    blanks = [""] * max(0, len(result.egos) - 1)
+    for label, count in _people(result):
+        table.add_row(label, count, *blanks, "")
+    factor, unit = _formatted(result.timing_summary["real_time_factor"], "x")
+    table.add_row("Real-time factor", factor, *blanks, unit)
     return table
+
+
+def _title(result: RunResult) -> str:
+    if len(result.egos) == 1:
+        return f"{_drive(result, result.egos[0])} - {result.ending}"
+    egos = f"{len(result.egos)} egos" if result.egos else "no ego"
+    people = len(result.crowd_track.ids)
+    seed = result.config.seed
+    return f"{result.scenario.name}: {egos}, {people} pedestrians, seed {seed} - {result.ending}"
+
+
+def _drive(result: RunResult, ego: EgoResult) -> str:
+    people = len(result.crowd_track.ids)
+    controller = ego.config.controller.upper()
+    seed = result.config.seed
+    return f"{result.scenario.name}: {controller}, {people} pedestrians, seed {seed}"
+
+
+def _people(result: RunResult) -> list[tuple[str, str]]:
+    """The ledger's lines, where the scenario has walkers, and what the yield layer did."""
+    ledger: dict[str, Any] = result.manifest["pedestrians"]
+    lines = []
+    if ledger.get("taken_over"):
+        lines += [(label, str(ledger[name])) for label, name in _LEDGER if ledger[name]]
+    yielded = result.manifest["traffic"].get("vehicles_that_yielded", 0)
+    if yielded:
+        lines.append(("SUMO's vehicles that yielded", str(yielded)))
+    return lines
 
 
 def _formatted(value: float | None, unit: str) -> tuple[str, str]:

@@ -1,0 +1,96 @@
+"""After a crash of native code: what the run had recorded, as a result like any other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.api import keep
+from giveway.configfile import read_toml_text
+from giveway.errors import CrashError
+from giveway.journal_reader import read_journal
+from giveway.loading import load
+from giveway.manifest import manifest
+from giveway.recorder import Tables
+from giveway.results import release_folder
+from giveway.run_result import RunResult, results_of_egos
+from giveway.simulation import Ending
+
+if TYPE_CHECKING:
+    from giveway.config import RunConfig
+    from giveway.journal_reader import JournalContents
+    from giveway.supervisor import Verdict
+    from sumo_scenarios import Scenario
+
+
+def recover(journal: Path, verdict: Verdict) -> CrashError:
+    """Write the rows of a run whose process died, and say how it died.
+
+    Args:
+        journal: the folder that the dead process wrote to.
+        verdict: on its end.
+
+    Returns:
+        The error to report; its ``result`` holds the rows, if there are any.
+
+    Raises:
+        GivewayError: the rows cannot be read or written.
+    """
+    contents = read_journal(journal)
+    if not contents.meta:
+        return CrashError(f"the run's process died: {verdict.message}; run 'giveway doctor'")
+    config, scenario = load([read_toml_text(contents.meta["config"], "the run's configuration")])
+    folder = contents.meta["results"]
+    report = (
+        f"{scenario.config_file}: the run's process died: {verdict.message}; 'giveway doctor "
+        f"{config.scenario}' looks for the cause"
+    )
+    error = CrashError(report)
+    error.result = result = _result_of(config, scenario, contents, error, verdict)
+    if folder is not None:
+        wanted = {name: contents.meta[name] for name in ("parquet", "pictures")}
+        if len(result.time):
+            keep(result, Path(folder), taken=False, **wanted)
+        else:
+            release_folder(Path(folder))
+    return error
+
+
+def _result_of(
+    config: RunConfig,
+    scenario: Scenario,
+    contents: JournalContents,
+    error: CrashError,
+    verdict: Verdict,
+) -> RunResult:
+    tables = Tables(contents.tables, contents.names)
+    return RunResult(
+        config=config,
+        scenario=scenario,
+        ending=Ending.CRASHED,
+        error=error,
+        time=tables.time,
+        egos=results_of_egos(config, tables, Ending.CRASHED, {}),
+        crowd_track=tables.crowd_track(),
+        background_track=tables.background_track(),
+        timings=tables.timings(),
+        elapsed=float(np.nansum(tables.timings().seconds[:, -1])),
+        manifest=manifest(
+            config,
+            scenario,
+            config_text=contents.meta["config"],
+            vehicles={},
+            pedestrians={},
+            traffic={},
+            sumo={},
+            time_step=None,
+            remarks=(),
+            ending=str(Ending.CRASHED),
+            error=str(error),
+        ),
+        sumo_messages="\n".join(part for part in (verdict.last_words, verdict.traceback) if part),
+        lanes=(),
+        remarks=(),
+    )
