@@ -49,10 +49,11 @@ def read_journal(folder: Path) -> JournalContents:
     meta_file, rows_file = folder / META_FILE, folder / ROWS_FILE
     meta = json.loads(meta_file.read_text(encoding="utf-8")) if meta_file.exists() else {}
     pulse = Heartbeat(folder).read()
-    if not rows_file.exists() or rows_file.stat().st_size < len(MAGIC):
+    if not rows_file.exists() or not rows_file.stat().st_size:
         return JournalContents(meta, {}, {}, 0, pulse)
     content = np.memmap(rows_file, np.uint8, mode="r").data
-    if content[: len(MAGIC)] != MAGIC:
+    begun = bytes(content[: len(MAGIC)]).rstrip(b"\0")  # death may have come as early as that
+    if not MAGIC.startswith(begun):
         msg = f"{rows_file}: is not a journal of giveway ({MAGIC.decode()} expected at its start)"
         raise ResultsError(msg)
     reader = _Reader()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import quoteattr
 
-from giveway.errors import ScenarioError
+from giveway.errors import ScenarioError, SumoError
 from giveway.scenario_files import read_scenario
 
 if TYPE_CHECKING:
@@ -91,9 +91,15 @@ def sumo_command(
         step_length: SUMO's step [s]; None keeps the scenario's.
 
     Raises:
-        ScenarioError: there is no such configuration, or it is not readable.
+        ScenarioError: there is no such configuration.
+        SumoError: it is not readable.
     """
-    scenario = read_scenario(config_file)
+    try:
+        scenario = read_scenario(config_file)
+    except ScenarioError as error:
+        if not config_file.exists():
+            raise
+        raise SumoError(str(error)) from error
     additional = [str(types), *map(str, scenario.additional_files)]
     command = ["sumo", "-c", str(config_file)]
     command += ["--additional-files", ",".join(additional)]

@@ -28,7 +28,8 @@ class StartOptions:
 
     Attributes:
         seed: SUMO's seed; None keeps the scenario's, or SUMO's own where it names none.
-        fallback_seed: the seed of a scenario that wants a random one, where ``seed`` is None.
+        fallback_seed: the seed of a scenario that wants a random one, where neither ``seed`` nor
+            the scenario names one.
         step_length: SUMO's step [s]; None keeps the scenario's.
         interact: whether persons or vehicles are to be moved; if not, SUMO's simulation is the
             scenario's own to the last bit.
@@ -130,6 +131,7 @@ class _Preparation:
         self._options |= {"gui-settings-file": "", "verbose": "false"}
         self._options |= {"no-step-log": "true", "duration-log.disable": "true"}
         self._options |= extra
+        own_seed = self._scenario.seed
         command = ["sumo", "-c", str(self._scenario.config_file)]
         for name, value in self._options.items():
             command += [f"--{name}", value]
@@ -139,7 +141,7 @@ class _Preparation:
             dict(self._outputs.placed),
             self._copies.made,
             self._copies.read,
-            int(self._options.get("seed", self._scenario.seed or SUMO_SEED)),
+            int(self._options.get("seed", SUMO_SEED if own_seed is None else own_seed)),
         )
 
     def _inputs(self, types: str, more: str) -> None:
@@ -161,7 +163,9 @@ class _Preparation:
     def _randomness(self) -> None:
         seed = self._wanted.seed
         if self._scenario.random:
-            seed = self._wanted.fallback_seed if seed is None else seed
+            own = self._scenario.seed
+            fallback = self._wanted.fallback_seed if own is None else own
+            seed = fallback if seed is None else seed
             self._options["random"] = "false"
             self._remarks.append(
                 f"random: the scenario asks for a seed by the clock; seed {seed} is used instead, "

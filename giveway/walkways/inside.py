@@ -32,12 +32,13 @@ def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:
     one without an area is widened to its width.
     """
     if len(area.shape) >= 3:
-        polygon = shapely.Polygon(area.shape)
-        if not polygon.is_valid:
-            outline = shapely.LinearRing(area.shape).buffer(BODY_RADIUS, join_style="mitre")
-            polygon = shapely.union_all([shapely.make_valid(polygon), outline])
+        drawn = shapely.Polygon(area.shape)
+        polygon = drawn if drawn.is_valid else shapely.make_valid(drawn)
         if polygon.area > 0.01:
-            return polygon
+            if polygon is drawn:
+                return polygon
+            outline = shapely.LinearRing(area.shape).buffer(BODY_RADIUS, join_style="mitre")
+            return shapely.union_all([polygon, outline])
     line = shapely.Point(area.shape[0]) if len(area.shape) < 2 else shapely.LineString(area.shape)
     return line.buffer(area.width / 2)
 

@@ -120,8 +120,7 @@ def survey(net_file: Path) -> Survey:
     except (KeyError, ValueError) as error:
         reason = f"attribute {error} is missing" if isinstance(error, KeyError) else str(error)
         msg = (
-            f"{net_file}: line {reader.line}: {reason}; "
-            "expected a SUMO network, made by netconvert"
+            f"{net_file}: line {reader.line}: {reason}; expected a SUMO network, made by netconvert"
         )
         raise ScenarioError(msg) from error
     if not reader.is_network:

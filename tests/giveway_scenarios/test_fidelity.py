@@ -66,6 +66,32 @@ def test_the_seed_asked_for_is_the_seed_that_plain_sumo_would_take(
     assert same_fcd(city, 40, "--seed", "7", seed=7) != same_fcd(city, 40)
 
 
+WRITING = """<additional>
+    <edgeData id="e" file="edges.xml" period="10"/>
+    <instantInductionLoop id="i" lane="A0A1_1" pos="7" file="more/loops.xml"/>
+    <include href="more/slow.add.xml"/>
+</additional>"""
+SLOW = """<additional>
+    <variableSpeedSign id="v" lanes="A0A1_1" file="steps.xml"/>
+    <laneData id="l" file="lanes.xml"/>
+</additional>"""
+
+
+def test_a_scenario_run_from_copies_because_it_writes(
+    small: Callable[..., Path], same_fcd: Callable[..., bytes], tmp_path: Path
+) -> None:
+    config = small('<additional-files value="w.add.xml"/><tripinfo-output value="t.xml"/>')
+    more = config.parent / "more"
+    more.mkdir()
+    config.with_name("w.add.xml").write_text(WRITING)
+    (more / "slow.add.xml").write_text(SLOW)
+    (more / "steps.xml").write_text('<vss><step time="0" speed="3"/></vss>')
+    same_fcd(config, 60)
+    for name in ("edges.xml", "t.xml", "more/loops.xml", "more/lanes.xml"):
+        file = config.parent / name  # plain SUMO wrote it there
+        assert content(tmp_path / "out" / file.name) == content(file)
+
+
 @pytest.mark.parametrize("name", ["shared_space", "street"])
 def test_the_bundled_scenarios(name: str, same_fcd: Callable[..., bytes]) -> None:
     same_fcd(find(name).config_file, 60)

@@ -49,6 +49,7 @@ def test_the_seed_asked_for_wins(started: Callable[..., Start]) -> None:
     start = started('<seed value="9"/>', seed=4)
     assert options_of(start)["--seed"] == "4"
     assert start.seed == 4
+    assert started('<seed value="0"/>').seed == 0
     assert started().seed == SUMO_SEED
 
 

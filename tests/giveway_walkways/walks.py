@@ -20,10 +20,8 @@ def main() -> None:
     request = json.loads(Path(sys.argv[1]).read_text())
     libsumo.start(["sumo", *request["command"], "--no-step-log", "true", "--no-warnings", "true"])
     try:
-        links = {
-            tls: [[place for link in links for place in link] for links in libsumo.trafficlight.getControlledLinks(tls)]
-            for tls in libsumo.trafficlight.getIDList()
-        }
+        lights = libsumo.trafficlight
+        links = {tls: lights.getControlledLinks(tls) for tls in lights.getIDList()}
         walks = _watch(request["steps"])
     finally:
         libsumo.close()

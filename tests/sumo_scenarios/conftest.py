@@ -40,8 +40,14 @@ def probe(tmp_path: Path) -> Callable[..., dict[str, Any]]:
     return run
 
 
-@pytest.fixture(params=["shared_space", "street"])
+@pytest.fixture(params=["junction", "shared_space", "street"])
 def scenario(request: pytest.FixtureRequest) -> Scenario:
+    return find(request.param)
+
+
+@pytest.fixture(params=["shared_space", "street"])
+def open_road(request: pytest.FixtureRequest) -> Scenario:
+    """A scenario whose ego drives along one edge, which nothing holds up."""
     return find(request.param)
 
 

@@ -24,7 +24,7 @@ PERSON_TYPE = '<vType id="walker" vClass="ignoring" speedDev="0"/>'
 FLAGS = [
     *("--pedestrian.model", "striping", "--gui-settings-file", ""),
     *("--collision.action", "warn", "--collision.check-junctions", "true"),
-    *("--random", "false", "--seed", "1"),
+    *("--random", "false"),
     *("--no-step-log", "true", "--duration-log.disable", "true"),
 ]
 NOW = -3  # "depart now" of person.add
@@ -32,7 +32,7 @@ NOW = -3  # "depart now" of person.add
 
 @contextmanager
 def simulation(
-    config: str, step_length: float | None, ego_speed: float | None = None
+    config: str, step_length: float | None, ego_speed: float | None = None, seed: int = 1
 ) -> Iterator[None]:
     """A running simulation, with the flags that giveway uses."""
     speed = (
@@ -44,7 +44,7 @@ def simulation(
     types.write_text(f"<additional>{EGO_TYPE.format(speed=speed)}{PERSON_TYPE}</additional>")
     step = [] if step_length is None else ["--step-length", str(step_length)]
     command = ["sumo", "-c", config, *step, "--additional-files", str(types)]
-    libsumo.start([*command, *FLAGS])
+    libsumo.start([*command, "--seed", str(seed), *FLAGS])
     try:
         yield
     finally:
@@ -172,7 +172,7 @@ def move_ghosts(config: str, step_length: float | None, crowd: dict[str, Any]) -
         for person in ids:
             libsumo.person.remove(person)
         libsumo.simulationStep()
-        left = len(libsumo.person.getIDList())
+        left = len(set(ids).intersection(libsumo.person.getIDList()))
     return {"first_error": errors[0], "largest_error": max(errors), "left": left}
 
 
@@ -204,7 +204,53 @@ def watch_traffic(config: str, step_length: float | None, seconds: float) -> dic
     }
 
 
-PROBES = {probe.__name__: probe for probe in (load, drive, mirror_ego, move_ghosts, watch_traffic)}
+def watch_junction(config: str, step_length: float | None, seed: int) -> dict[str, Any]:
+    """Let cars and people meet for two minutes: who used which crossing, under which light."""
+    used: dict[str, set[str]] = {}
+    cars: set[str] = set()
+    on_red, lights, departed = [], {}, []
+    with simulation(config, step_length, seed=seed):
+        signals = {
+            after: index
+            for index, links in enumerate(libsumo.trafficlight.getControlledLinks("centre"))
+            for _, after, _ in links
+            if after.startswith(":")  # people's links lead to a crossing, cars' out of the junction
+        }
+        crossings = [e for e in libsumo.edge.getIDList() if e.rpartition("_")[2][0] == "c"]
+        where: dict[str, str] = {}
+        teleports = collisions = 0
+        while libsumo.simulation.getTime() < 120.0:
+            libsumo.simulationStep()
+            departed += libsumo.simulation.getDepartedPersonIDList()
+            teleports += libsumo.simulation.getStartingTeleportNumber()
+            collisions += len(libsumo.simulation.getCollisions())
+            state = libsumo.trafficlight.getRedYellowGreenState("centre")  # as it was in the step
+            lights[libsumo.simulation.getTime()] = state
+            cars |= {name.partition(".")[0] for name in libsumo.vehicle.getIDList()}
+            for person in libsumo.person.getIDList():
+                lane = libsumo.person.getLaneID(person)
+                if lane != where.get(person) and lane.startswith(":") and "_c" in lane:
+                    used.setdefault(lane[1:].rpartition("_")[0], set()).add(person)
+                    if lane in signals and state[signals[lane]] == "r":
+                        on_red.append(person)
+                where[person] = lane
+    return {
+        "crossings": sorted(name[1:] for name in crossings),
+        "signalised": sorted(lane[1:].rpartition("_")[0] for lane in signals),
+        "used": {crossing: len(people) for crossing, people in used.items()},
+        "on_red": on_red,
+        "departed": departed,
+        "lights": lights,
+        "teleports": teleports,
+        "collisions": collisions,
+        "cars": sorted(cars),
+    }
+
+
+PROBES = {
+    probe.__name__: probe
+    for probe in (load, drive, mirror_ego, move_ghosts, watch_traffic, watch_junction)
+}
 
 if __name__ == "__main__":
     sys.stdout.write(json.dumps(PROBES[sys.argv[1]](**json.loads(sys.argv[2]))))

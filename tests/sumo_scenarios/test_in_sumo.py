@@ -88,11 +88,11 @@ def test_a_pedestrian_can_live_on_the_host_edge_and_only_there(
 
 @pytest.mark.parametrize("step_length", STEP_LENGTHS)
 def test_a_vehicle_on_the_egos_route_gets_where_it_should(
-    scenario: Scenario, step_length: float | None, probe: Probe, settings: Settings
+    open_road: Scenario, step_length: float | None, probe: Probe, settings: Settings
 ) -> None:
-    ego = settings(scenario)["ego"]
-    seen = probe("drive", scenario.config_file, step_length, ego=ego)
-    lane = probe("load", scenario.config_file)["lanes"][f"{ego['route'][0]}_{ego['lane']}"]
+    ego = settings(open_road)["ego"]
+    seen = probe("drive", open_road.config_file, step_length, ego=ego)
+    lane = probe("load", open_road.config_file)["lanes"][f"{ego['route'][0]}_{ego['lane']}"]
     goal = ego["depart_position"] + seen["distance"]
     assert seen["departed_at"] == ego["depart_time"]
     assert seen["speed"] == ego["initial_speed"]
@@ -104,10 +104,10 @@ def test_a_vehicle_on_the_egos_route_gets_where_it_should(
 
 @pytest.mark.parametrize("step_length", [0.05, 1.0])
 def test_the_mirrored_ego_is_exactly_where_it_is_put_and_followers_respect_it(
-    scenario: Scenario, step_length: float, probe: Probe, settings: Settings
+    open_road: Scenario, step_length: float, probe: Probe, settings: Settings
 ) -> None:
-    ego = settings(scenario)["ego"]
-    seen = probe("mirror_ego", scenario.config_file, step_length, ego=ego)
+    ego = settings(open_road)["ego"]
+    seen = probe("mirror_ego", open_road.config_file, step_length, ego=ego)
     per_step = ego["initial_speed"] * step_length
     assert seen["points"] >= int(ego["travel_distance"] / per_step)
     assert seen["off_position"] < EXACT
