@@ -134,9 +134,7 @@ def run_layers(
     return result
 
 
-def keep(
-    result: RunResult, folder: Path, *, parquet: bool, pictures: bool, taken: bool
-) -> None:
+def keep(result: RunResult, folder: Path, *, parquet: bool, pictures: bool, taken: bool) -> None:
     """Write everything into ``folder``, or free it if there is nothing to write.
 
     Raises:

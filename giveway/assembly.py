@@ -222,9 +222,7 @@ def _remarks_on(network: WalkNetwork, net_file: Path) -> list[str]:
     ]
 
 
-def _driver(
-    config: RunConfig, regulator: Regulator, time_step: float, stack: ExitStack
-) -> Driver:
+def _driver(config: RunConfig, regulator: Regulator, time_step: float, stack: ExitStack) -> Driver:
     parameters = PRESETS[config.crowd.preset]
     vehicle = _vehicle(config, time_step, stack)
     predictor = None
@@ -329,9 +327,7 @@ def _vehicle(config: RunConfig, time_step: float, stack: ExitStack) -> VehicleFm
     path = Path(settings.fmu) if bundled is None else bundled_fmu(bundled)
     start_values = {"M": settings.mass, "alpha": settings.friction, "exact": settings.exact}
     try:
-        return stack.enter_context(
-            VehicleFmu(path, step_size=time_step, start_values=start_values)
-        )
+        return stack.enter_context(VehicleFmu(path, step_size=time_step, start_values=start_values))
     except FmuError as error:
         raise VehicleError(str(error)) from error
 

@@ -81,7 +81,10 @@ class EgoConfig(Section):
     id: str = option("ego", None, "SUMO id of an inserted ego", min_length=1)
     route: NameList = option((), None, "edges that an inserted ego drives along, comma-separated")
     lane: int | None = option(
-        None, None, "index of its departure lane, 0 is the rightmost; none: the first for cars", ge=0
+        None,
+        None,
+        "index of its departure lane, 0 is the rightmost; none: the first for cars",
+        ge=0,
     )
     depart_time: float = option(
         0.0, "s", "simulation time at which it enters; at begin if that is later", ge=0, le=1e7
@@ -152,7 +155,9 @@ class CrowdConfig(Section):
         5.0, "m", "they are handed back to SUMO this far outside the zone", ge=0, le=1e4
     )
     walls: bool = option(
-        False, None, "the edges of sidewalks, crossings and walkingareas hold people back",
+        False,
+        None,
+        "the edges of sidewalks, crossings and walkingareas hold people back",
         flag="--walls",
     )
 
@@ -191,9 +196,7 @@ class RegulationConfig(Section):
     vehicles: bool = option(
         True, None, "vehicles in front are obstacles too", flag="--respect-vehicles"
     )
-    traffic_lights: bool = option(
-        True, None, "the ego stops at red lights", flag="--obey-lights"
-    )
+    traffic_lights: bool = option(True, None, "the ego stops at red lights", flag="--obey-lights")
     comfortable_deceleration: float = option(
         2.0, "m/s^2", "of the approach to a red light or a slower vehicle", gt=0, le=10
     )

@@ -209,7 +209,7 @@ def dump_toml(config: RunConfig) -> str:
         node.add(key, item.comment(f"{unit}{entry.field.description}"))
     if config.egos:
         tables = tomlkit.aot()
-        for entry in config.egos:
-            tables.append(tomlkit.item(entry))
+        for ego in config.egos:
+            tables.append(tomlkit.item(ego))
         document.add("egos", tables)
     return tomlkit.dumps(document)

@@ -318,9 +318,7 @@ def vehicles_in_front(
             continue  # it cannot meet the ego within the horizon
         for k in range(1, min(N, poses.shape[0] - 1) + 1):
             at = front + k * advance
-            station = outline_in_front(
-                vertices, stations, first, last, poses[k, j], at, half_width
-            )
+            station = outline_in_front(vertices, stations, first, last, poses[k, j], at, half_width)
             ahead[k - 1] = min(ahead[k - 1], station)
     return nearest, its_speed
 

@@ -169,9 +169,7 @@ class Ego:
             raise VehicleError(f"{msg} from the FMU")
         return pose
 
-    def look(
-        self, row: int, poses: Array, crowd: Crowd, surroundings: Surroundings
-    ) -> Seen:
+    def look(self, row: int, poses: Array, crowd: Crowd, surroundings: Surroundings) -> Seen:
         """Find what is in front, now and over the horizon.
 
         Args:

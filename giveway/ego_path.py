@@ -97,8 +97,8 @@ class EgoPath:
 @kernel
 def segment_at(stations: Array, station: float) -> int:
     """Index of the segment that ``station`` [m] lies on; the first or last one beyond the ends."""
-    last = len(stations) - 2
-    return min(max(np.searchsorted(stations, station, side="right") - 1, 0), last)
+    i: int = np.searchsorted(stations, station, side="right") - 1  # type: ignore[assignment]
+    return min(max(i, 0), len(stations) - 2)
 
 
 @kernel

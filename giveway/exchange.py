@@ -93,9 +93,7 @@ class Exchange:
             for walker in walkers
         ]
         self.unconnected += sum(route.gaps for route in routes)
-        velocity = [
-            (w.speed * math.cos(w.heading), w.speed * math.sin(w.heading)) for w in walkers
-        ]
+        velocity = [(w.speed * math.cos(w.heading), w.speed * math.sin(w.heading)) for w in walkers]
         return Crowd.create(
             [(w.x, w.y) for w in walkers],
             velocity,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -141,7 +142,7 @@ class Lanes:
         # best[lane]: changes so far, (entry, leave) of each edge before, links taken
         best: dict[int, tuple[int, list[tuple[int, int]], list[Link]]]
         best = {lane: (0, [], []) for lane in first}
-        for edge, following in zip(edges[:-1], edges[1:], strict=True):
+        for edge, following in itertools.pairwise(edges):
             reached: dict[int, tuple[int, list[tuple[int, int]], list[Link]]] = {}
             for leave in self._drivable(edge, kind) or sorted(best):
                 for link in self._links(f"{edge}_{leave}", following):

@@ -51,9 +51,7 @@ class Mirror:
     poses: Array
     vehicles: Vehicles
 
-    def __init__(
-        self, session: SumoSession, time_step: float, substeps: int, horizon: int
-    ) -> None:
+    def __init__(self, session: SumoSession, time_step: float, substeps: int, horizon: int) -> None:
         self._session = session
         self._time_step = time_step
         self._substeps = substeps

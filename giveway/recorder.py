@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,7 +104,9 @@ class Recorder:
         block = self._crowd.block(len(present))
         fill_block(self._steps - 1, present, position, velocity, block)
 
-    def background(self, time: float, vehicles: BackgroundVehicles, wanted: Sequence[int]) -> None:
+    def background(
+        self, time: float, vehicles: BackgroundVehicles, wanted: NDArray[np.int64]
+    ) -> None:
         """Record those of SUMO's own vehicles at ``time`` [s] whose indices are ``wanted``."""
         if not len(wanted):
             return
@@ -178,13 +180,9 @@ class Tables:
         columns = [np.ascontiguousarray(column) for column in rows.T]
         word = self._words
         acting, reason, status, iterations = columns[-4:]
-        return EgoTrack(
-            *columns[2:-4],
-            acting=word(acting),
-            reason=word(reason),
-            solver_status=word(status),
-            solver_iterations=iterations.astype(np.int64),
-        )
+        words: Sequence[Any] = (word(acting), word(reason), word(status))
+        numbers: Sequence[Any] = columns[2:-4]  # in EgoTrack's order
+        return EgoTrack(*numbers, *words, iterations.astype(np.int64))  # type: ignore[call-arg]
 
     def _words(self, indices: Array) -> NDArray[np.str_]:
         return np.array(self._names["words"], dtype=np.str_)[indices.astype(np.int64)]

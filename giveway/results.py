@@ -145,7 +145,9 @@ def sumo_folder(folder: Path) -> Path:
     except FileNotFoundError:
         pass
     except OSError as error:
-        msg = f"{error.filename or folder}: cannot be removed ({error.strerror}); name another --out"
+        msg = (
+            f"{error.filename or folder}: cannot be removed ({error.strerror}); name another --out"
+        )
         raise ResultsError(msg) from error
     return folder / SUMO_FOLDER
 

@@ -52,7 +52,12 @@ SUMMARY_HEAD = (
     Column("controller", "string", None, "the controller that was asked for"),
     Column("pedestrians", "integer", "persons", "pedestrians that giveway moved"),
     Column("seed", "integer", None, "seed of the crowd that giveway adds"),
-    Column("ending", "string", None, "completed, time limit, scenario end, interrupted, failed or crashed"),
+    Column(
+        "ending",
+        "string",
+        None,
+        "completed, time limit, scenario end, interrupted, failed or crashed",
+    ),
 )
 
 TRAJECTORY_COLUMNS = (

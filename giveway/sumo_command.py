@@ -67,8 +67,8 @@ def all_types(egos: Mapping[str, VehicleShape]) -> str:
     """
     never_stuck = 'maxSpeed="100" speedDev="0" timeToTeleport="-1"'
     inserted = [
-        f'    <vType id={quoteattr(name)} vClass="passenger" length="{body.length}" width="{body.width}" '
-        f"{never_stuck}/>\n"
+        f'    <vType id={quoteattr(name)} vClass="passenger" length="{body.length}" '
+        f'width="{body.width}" {never_stuck}/>\n'
         for name, body in egos.items()
     ]
     taken_over = [

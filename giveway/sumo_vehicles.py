@@ -13,6 +13,7 @@ from giveway.traffic import NO_VEHICLES, BackgroundVehicles, angle_to_heading
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
     from numpy.typing import NDArray
 
     from giveway.lanes import Lanes
@@ -190,4 +191,3 @@ class SumoVehicles:
     def release(self, name: str) -> None:
         """Let SUMO's driver go as it wants again."""
         self._call(self._vehicle.setSpeed, name, -1.0)
-

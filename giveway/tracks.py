@@ -47,7 +47,7 @@ class EgoTrack:
 
 @dataclass(frozen=True)
 class CrowdTrack:
-    """The crowd as flat records, one per pedestrian recorded at a control instant, in time order."""
+    """The crowd as flat records, one per pedestrian recorded at an instant, in time order."""
 
     step: NDArray[np.int64]  # (R,) index into the control instants
     pedestrian: NDArray[np.int64]  # (R,) index into ``ids``
@@ -62,8 +62,15 @@ class CrowdTrack:
         a, b = np.searchsorted(self.step, (first, first + instants))
         if first == 0 and b == len(self.step):
             return self
-        columns = (self.pedestrian, self.x, self.y, self.vx, self.vy)
-        return CrowdTrack(self.step[a:b] - first, *(c[a:b] for c in columns), self.ids)
+        return CrowdTrack(
+            step=self.step[a:b] - first,
+            pedestrian=self.pedestrian[a:b],
+            x=self.x[a:b],
+            y=self.y[a:b],
+            vx=self.vx[a:b],
+            vy=self.vy[a:b],
+            ids=self.ids,
+        )
 
 
 @dataclass(frozen=True)

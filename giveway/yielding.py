@@ -90,9 +90,7 @@ class Yielding:
                     limits[cars.ids[i]] = limit
         return limits
 
-    def _limit(
-        self, cars: BackgroundVehicles, i: int, sight: float, people: Array
-    ) -> float | None:
+    def _limit(self, cars: BackgroundVehicles, i: int, sight: float, people: Array) -> float | None:
         name = cars.ids[i]
         points = self._vehicles.path_ahead(name, sight)
         if points is None:

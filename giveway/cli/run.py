@@ -97,7 +97,7 @@ def run_command(
 
 
 def default_folder(config: RunConfig, scenario: str) -> Path:
-    """``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with an ego's id if taken over."""
+    """``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with ids of egos taken over."""
     egos = config.each_ego()
     drivers = "_".join(dict.fromkeys(ego.controller for ego in egos)) or "no_ego"
     taken = "".join(f"_{name}" for ego in egos for name in ego.ego.take_over)
