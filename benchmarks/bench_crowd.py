@@ -1,4 +1,4 @@
-"""How fast is the crowd: one step against JuPedSim, the prediction, ring against cell list.
+"""How fast is the crowd: one step against JuPedSim, a city, the prediction, ring or cell list.
 
     python benchmarks/bench_crowd.py
 
@@ -21,7 +21,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pedestrian_model import SIM, Crowd, CrowdModel, Predictor, Vehicles, constant_speed
+from pedestrian_model import (
+    SIM,
+    Crowd,
+    CrowdModel,
+    Predictor,
+    Surroundings,
+    Vehicles,
+    Walls,
+    constant_speed,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -38,6 +47,9 @@ TIME_STEP = 0.05  # [s]
 SPEED = 1.4  # [m/s]
 ROUNDS = 9
 MARGIN = 100.0  # [m] of empty plane round the crowd
+BLOCK = 24.0  # [m] from street to street of the city
+SIDEWALK = 4.0  # [m]
+PEOPLE_PER_VEHICLE = 60
 
 
 def places(n: int) -> tuple[NDArray[np.float64], float]:
@@ -127,6 +139,88 @@ def against_jupedsim() -> None:
         print(f"JuPedSim {jupedsim.__version__}, SocialForceModel")
 
 
+def sidewalk_walls(streets: int, length: float) -> Walls:
+    """Both edges of a sidewalk along each street, in pieces of 10 m as of a map."""
+    x = np.arange(-20.0, length + 100.0, 10.0)
+    y = np.repeat(BLOCK * np.arange(streets), len(x))
+    x = np.tile(x, streets)
+    south = np.stack([x, y, x + 10.0, y], axis=1)
+    north = np.stack([x + 10.0, y + SIDEWALK, x, y + SIDEWALK], axis=1)
+    return Walls.create(np.concatenate([south, north]))
+
+
+def city(n: int) -> tuple[Crowd, Vehicles, Surroundings]:
+    """A crowd of n on sidewalks along parallel streets, at the density.
+
+    Everybody walks from line to line, every 8 m, one of ten with a signal. In the streets there
+    are vehicles, half of them standing, as many for as many people.
+    """
+    rng = np.random.default_rng(n)
+    streets = int(np.ceil(np.sqrt(n / DENSITY / (BLOCK * SIDEWALK))))
+    length = n / DENSITY / (streets * SIDEWALK)
+    x, edge = np.linspace(0.0, length, n), BLOCK * (np.arange(n) % streets)
+    ways = np.empty((n, 10, 2))
+    ways[:, :, 0] = x[:, None] + 8.0 * np.arange(1, 11)
+    ways[:, :, 1] = edge[:, None] + SIDEWALK / 2.0
+    signals = np.full((n, 10), -1)
+    signals[:, 4] = np.arange(n) % 8
+    crowd = Crowd.create(
+        np.stack([x, edge + rng.uniform(0.5, SIDEWALK - 0.5, n)], axis=1),
+        np.tile([SPEED, 0.0], (n, 1)),
+        SPEED,
+        list(ways),
+        passages=list(np.tile([1.0, 0.0, SIDEWALK / 2.0], (n, 10, 1))),
+        signals=list(signals),
+    )
+    count = max(1, n // PEOPLE_PER_VEHICLE)
+    vehicles = Vehicles.create(
+        rng.uniform(0.0, length, count),
+        BLOCK * rng.integers(0, streets, count) - 3.0,
+        0.0,
+        np.where(np.arange(count) % 2 == 0, 0.0, 8.0),
+    )
+    return crowd, vehicles, Surroundings(sidewalk_walls(streets, length), np.arange(8) % 2 == 0)
+
+
+def streets() -> None:
+    print(f"\ncity: sidewalks at {DENSITY} persons/m^2, way-points, signals, walls, vehicles")
+    print(f"{'':>8} {'':>9} {'':>6} {'step':>18}   {'prediction N = 15':>17} {'join + leave':>13}")
+    print(
+        f"{'n':>8} {'vehicles':>9} {'walls':>6} {'[ms]':>8} {'[ns/person]':>11}"
+        f" {'[ms]':>17} {'[ms]':>13}"
+    )
+    for n in (100, 1_000, 3_000, 10_000):
+        crowd, vehicles, surroundings = city(n)
+        model, predictor = CrowdModel(time_step=TIME_STEP), Predictor(time_step=TIME_STEP)
+        poses = constant_speed(vehicles, TIME_STEP, predictor.horizon)
+        leaving = np.arange(n) % 1_000 == 50
+        joining, count = crowd.select(leaving), max(1, 3_000 // n)
+
+        def walk(m: Any = model, c: Any = crowd, v: Any = vehicles, s: Any = surroundings) -> None:
+            now = c.copy()
+            for _ in range(20):
+                m.advance(now, v, s)
+
+        def predict(
+            p: Any = predictor,
+            c: Any = crowd,
+            v: Any = poses,
+            s: Any = surroundings,
+            k: Any = count,
+        ) -> None:
+            for _ in range(k):
+                p.predict(c, v, s)
+
+        def turn_over(c: Any = crowd, gone: Any = leaving, new: Any = joining) -> None:
+            c.select(~gone).concatenate(new)
+
+        step, ahead, joined = interleaved(walk, predict, turn_over)
+        print(
+            f"{n:>8} {len(vehicles):>9} {len(surroundings.walls or ()):>6} {step * 50:>8.3f}"
+            f" {step / 20 / n * 1e9:>11.0f} {ahead / count * 1e3:>17.2f} {joined * 1e3:>13.3f}"
+        )
+
+
 def prediction() -> None:
     print("\nprediction, wrapper included [us]")
     print(f"{'n':>8} {'N':>4} {'vehicles':>9} {'time':>8}")
@@ -157,5 +251,6 @@ def crossover() -> None:
 
 if __name__ == "__main__":
     against_jupedsim()
+    streets()
     prediction()
     crossover()

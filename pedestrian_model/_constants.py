@@ -83,7 +83,7 @@ def pack(parameters: VciParameters) -> NDArray[Any]:
         "cap": p.vehicle_exponent_cap,
         "u_static": p.static_speed,
         "reach": p.body_radius
-        + math.log(max(p.vehicle_strength / LEAST_FORCE, 1.0)) / p.vehicle_decay,
+        + math.ceil(math.log(max(p.vehicle_strength / LEAST_FORCE, 1.0))) / p.vehicle_decay,
         "A_w": p.wall_strength,
         "b_w": p.wall_decay,
         "k_des": p.destination_gain,

@@ -73,7 +73,7 @@ def set_targets(
 
     The destination force fades towards a way-point at which somebody stops: the last, or one
     whose signal is closed. Towards all others people walk at their desired speed (ours: with the
-    fading everywhere, a route of many way-points is walked at two thirds of it).
+    fading everywhere, way-points 2 m apart cost a quarter of it, 5 m apart an eighth).
     """
     w, q, signal, start = routes
     radius, R = c.r_waypoint, c.R

@@ -215,20 +215,19 @@ def _follower(j: int, walls: NDArray[np.float64], cells: NDArray[np.int64]) -> i
     wall = _wall(walls[j])
     x, y = wall.x + wall.length * wall.t_x, wall.y + wall.length * wall.t_y
     cell = _cell(x, y, _grid(walls))
-    found, sharpest, closest = 0, np.inf, np.inf
+    found, sharpest, closest = 0, -np.inf, np.inf
     for at in range(cells[cell], cells[cell + 1]):
         other = _wall(walls[cells[at]])
         apart = math.sqrt((other.x - x) ** 2 + (other.y - y) ** 2)
         if cells[at] == j or apart > JOINED or apart > closest + _AT:
             continue
-        # Where many meet, the first met when turning clockwise from the way back bounds the
-        # same walkable ground; straight back (0) is the tip of a thin wall: all round (2 pi).
-        cross = wall.t_x * other.t_y - wall.t_y * other.t_x
+        # Where many meet, the sharpest turn to the left bounds the same walkable ground (rises
+        # with the angle, from -2 to 2); straight back is the tip of a thin wall, the last choice.
         dot = wall.t_x * other.t_x + wall.t_y * other.t_y
-        angle = math.pi - math.atan2(cross, dot)
-        angle = angle if angle > 0.0 else 2.0 * math.pi
-        if apart < closest - _AT or angle < sharpest:
-            found, sharpest, closest = cells[at], angle, min(apart, closest)
+        left = wall.t_x * other.t_y - wall.t_y * other.t_x >= 0.0 and dot > _AT - 1.0
+        turn = 1.0 - dot if left else dot - 1.0
+        if apart < closest - _AT or turn > sharpest:
+            found, sharpest, closest = cells[at], turn, min(apart, closest)
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -68,10 +69,23 @@ def _bare_junctions(survey: Survey) -> list[shapely.Geometry]:
     """The outlines of junctions at which a lane ends and no walkingarea begins."""
     served = {(link.source, True) for link in survey.links}
     served |= {(link.target, False) for link in survey.links}
-    bare: dict[str, list[Array]] = {}
+    bare: dict[str, list[Array]] = defaultdict(list)
     for name, edge in survey.edges.items():
         for last in (False, True):
-            if (name, last) not in served and edge.junctions[last] in survey.junctions:
-                bare.setdefault(edge.junctions[last], []).append(edge.lane.shape[-last])
-    hulls = [np.vstack([survey.junctions[name], *ends]) for name, ends in bare.items()]
-    return [shapely.MultiPoint(points).convex_hull.buffer(0.01) for points in hulls]
+            if (name, last) not in served:
+                bare[edge.junctions[last]].append(_end(edge.lane, last))
+    outlines = survey.junctions
+    hulls = [
+        np.vstack([*ends, outlines.get(name, ends[0])])
+        for name, ends in bare.items()
+        if len(ends) > 1  # else nobody walks on there
+    ]
+    return [shapely.MultiPoint(points).convex_hull for points in hulls]
+
+
+def _end(lane: PedLane, last: bool) -> Array:
+    """The two corners (2, 2) [m] of a lane at one of its ends."""
+    end, inner = lane.shape[[-1, -2]] if last else lane.shape[[0, 1]]
+    along = (end - inner) / max(float(np.hypot(*(end - inner))), 1e-9)
+    across = lane.width / 2 * np.array([-along[1], along[0]])
+    return np.stack([end - across, end + across])

@@ -28,17 +28,17 @@ _INSET = 0.02  # [m] from a corner to the place that ways round it are looked fo
 def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:
     """A walkingarea's outline as a valid polygon.
 
-    One that crosses itself gets room for a body along its outline, or it would fall into pieces;
-    one without an area is widened to its width.
+    One that crosses itself or is thinner than a body gets room for a body along its outline, or
+    it would fall into pieces; one without an area is widened to its width.
     """
     if len(area.shape) >= 3:
-        drawn = shapely.Polygon(area.shape)
-        polygon = drawn if drawn.is_valid else shapely.make_valid(drawn)
+        polygon = shapely.make_valid(shapely.Polygon(area.shape))
+        outline = shapely.LinearRing(area.shape)
         if polygon.area > 0.01:
-            if polygon is drawn:
+            if outline.is_simple and polygon.area > BODY_RADIUS * outline.length:
                 return polygon
-            outline = shapely.LinearRing(area.shape).buffer(BODY_RADIUS, join_style="mitre")
-            return shapely.union_all([polygon, outline])
+            room = outline.buffer(BODY_RADIUS, join_style="mitre")
+            return shapely.union_all([polygon, room])
     line = shapely.Point(area.shape[0]) if len(area.shape) < 2 else shapely.LineString(area.shape)
     return line.buffer(area.width / 2)
 

@@ -79,6 +79,7 @@ def test_everybody_sees_the_first_standing_car_in_the_way(random_crowd, cell_lis
 def test_a_vehicle_that_is_not_finite_is_named_among_many(random_crowd):
     for column in (0, 1, 2, 3, 4, 6):  # x, y, heading, speed, front, width
         cars = traffic(9, 0, side=10.0)
+        cars.array[4, :4] = 2.0, 5.0, 0.0, 4.0  # forwards, people ahead: its rear does not matter
         cars.array[4, column] = np.nan
         with pytest.raises(DivergenceError, match="vehicle 4, column"):
             CrowdModel(cell_list_from=0).step(random_crowd(50, 0), cars)
