@@ -9,6 +9,7 @@ import numpy as np
 
 from controller import LongitudinalModel, Mpc, MpcParameters
 from giveway._environment import kernel_cache
+from pedestrian_model import Crowd
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -36,7 +37,7 @@ def compile_kernels_once(console: Console) -> None:
 
 
 def _tiny_run() -> None:
-    """Pass through every kernel once: a free drive, people in the way, a street with cars."""
+    """Pass through every kernel once: a free drive, people in the way, cars, walls."""
     from giveway.api import run
     from giveway.simulation import Ending
 
@@ -45,12 +46,14 @@ def _tiny_run() -> None:
         {"time_limit": 0.2, "crowd": {"pedestrians": 0}},
         {"time_limit": 0.2, "crowd": people},
         {"time_limit": 1.2, "scenario": "street", "controller": "pid"},
+        {"time_limit": 0.3, "scenario": "junction", "crowd": {"walls": True}},
     ):
         result = run(settings)
         if result.ending is Ending.INTERRUPTED:
             raise KeyboardInterrupt
         result.summary  # noqa: B018 - the metrics have kernels too
     _solve_without_solution()
+    _come_and_go()
 
 
 def _solve_without_solution() -> None:
@@ -58,3 +61,9 @@ def _solve_without_solution() -> None:
     mpc = Mpc(LongitudinalModel(), MpcParameters())
     ahead = np.full(mpc.parameters.horizon, mpc.parameters.safe_distance + 0.21)
     mpc.solve(0.0, 1.0, 0.0, ahead)
+
+
+def _come_and_go() -> None:
+    """People join a crowd and leave it."""
+    one = Crowd.create([(0.0, 0.0)], [(1.0, 0.0)], 1.4, [[(9.0, 0.0)]])
+    one.concatenate(one).select(np.array([True, False]))

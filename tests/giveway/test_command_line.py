@@ -89,11 +89,11 @@ def test_a_broken_scenario_carries_sumos_own_reason(tmp_path: Path) -> None:
         '<configuration><input><net-file value="missing.net.xml"/></input></configuration>'
     )
     (tmp_path / "broken.giveway.toml").write_text('[ego]\nroute = ["a"]\n')
-    message = refused("run", "broken.sumocfg", "--pedestrians", 0, cwd=tmp_path, code=1)
+    message = refused("run", "broken.sumocfg", "--pedestrians", 0, cwd=tmp_path)
     assert "broken.sumocfg" in message
     assert "missing.net.xml" in message
     (tmp_path / "broken.sumocfg").write_text("<configuration><input>")
-    message = refused("run", "broken.sumocfg", "--pedestrians", 0, cwd=tmp_path, code=1)
+    message = refused("run", "broken.sumocfg", "--pedestrians", 0, cwd=tmp_path)
     assert "broken.sumocfg" in message
 
 
@@ -126,6 +126,7 @@ def test_an_unwritable_results_folder_is_named(tmp_path: Path) -> None:
 def test_ctrl_c_keeps_the_rows_and_exits_130(tmp_path: Path) -> None:
     words = ["--pedestrians", "2000", "--spawn-area", "20,-200,120,-10", "--out", "r"]
     words += ["--ego-travel-distance", "70", "--no-pictures"]
+    words += ["--regulation-reference-speed", "0.2"]  # it takes its time
     process = subprocess.Popen(
         [sys.executable, "-u", "-m", "giveway", "run", *words],
         cwd=tmp_path,

@@ -23,7 +23,7 @@ def explain(values: dict, *, flags: bool = False) -> str:
 
 def test_defaults_are_the_papers_table() -> None:
     config = RunConfig()
-    assert (config.vehicle.mass, config.vehicle.friction, config.time_step) == (1000, 100, 0.05)
+    assert (config.vehicle.mass, config.vehicle.friction) == (1000, 100)
     assert (config.mpc.force_limit, config.mpc.force_rate_limit, config.mpc.horizon) == (
         8000,
         1000,
@@ -155,13 +155,6 @@ def test_speeds_outside_of_the_mpcs_limits_are_refused() -> None:
     build_config([Layer("", {"controller": "pid", "ego": {"initial_speed": 30}})])
 
 
-def test_the_corridor_grows_with_the_vehicle_unless_it_is_given() -> None:
-    assert RunConfig().corridor_half_width == 1.25
-    assert RunConfig.model_validate({"vehicle": {"width": 3}}).corridor_half_width == 1.75
-    wide = {"vehicle": {"width": 3}, "regulation": {"corridor_half_width": 1.0}}
-    assert RunConfig.model_validate(wide).corridor_half_width == 1.0
-
-
 def test_the_api_takes_names_and_files_and_refuses_the_rest(tmp_path: Path) -> None:
     assert as_layer("street").values == {"scenario": "street"}
     (tmp_path / "study.toml").write_bytes(b"\xef\xbb\xbfseed = 3\n")  # as Windows' editor saves it
@@ -169,3 +162,41 @@ def test_the_api_takes_names_and_files_and_refuses_the_rest(tmp_path: Path) -> N
     for nonsense in (None, 3, ["street"]):
         with pytest.raises(ConfigError, match="expected a RunConfig"):
             as_layer(nonsense)  # type: ignore[arg-type]
+
+
+def test_an_ego_entry_overrides_its_own_keys_only() -> None:
+    config = RunConfig.model_validate(
+        {
+            "controller": "pid",
+            "vehicle": {"mass": 1200.0},
+            "egos": [
+                {"ego": {"id": "a", "route": ["x"]}, "controller": "mpc"},
+                {"ego": {"take_over": "b"}, "vehicle": {"friction": 50.0}},
+            ],
+        }
+    )
+    first, second = config.each_ego()
+    assert (first.ego_id, first.controller, first.vehicle.mass) == ("a", "mpc", 1200.0)
+    assert (second.ego_id, second.controller, second.vehicle.friction) == ("b", "pid", 50.0)
+    assert second.vehicle.mass == 1200.0
+    again = build_config([Layer("dump", tomllib.loads(dump_toml(config)))])
+    assert again.each_ego() == config.each_ego()
+
+
+def test_several_vehicles_of_the_scenario_become_several_egos() -> None:
+    config = RunConfig.model_validate({"ego": {"take_over": "b.1, c"}})
+    assert [one.ego_id for one in config.each_ego()] == ["b.1", "c"]
+    assert RunConfig.model_validate({"ego": {"none": True}}).each_ego() == ()
+
+
+@pytest.mark.parametrize(
+    ("entry", "expected"),
+    [
+        ({"crowd": {"pedestrians": 3}}, r"egos\[0\]: unknown key 'crowd'"),
+        ({"vehicle": {"mass": -1}}, r"egos\[0\]: vehicle.mass = -1"),
+        ({"ego": {"initial_speed": 30}}, r"expected within \[mpc\] speed_min"),
+    ],
+)
+def test_a_wrong_ego_entry_is_named(entry: dict, expected: str) -> None:
+    with pytest.raises(ConfigError, match=expected):
+        build_config([Layer("study.toml", {"egos": [entry]})])

@@ -21,6 +21,7 @@ def corridor(points: list[tuple[float, float]], horizon: int = 3) -> Corridor:
         horizon=horizon,
         time_step=0.05,
         walking_speed_limit=2.5,
+        body_length=5.0,
     )
 
 
@@ -99,9 +100,30 @@ def test_predicted_people_count_once_they_are_in_front_of_the_moved_bumper() -> 
 def test_predicted_poses_follow_the_bend() -> None:
     bend = corridor(L_SHAPE)
     poses = np.zeros((3, 1, 7))
-    bend.fill_poses(poses, 9.0, 20.0, 2.5)  # one metre a step
+    bend.fill_poses(poses, 0, 9.0, 20.0)  # one metre a step
     assert poses[0, 0, :4] == pytest.approx([6.5, 0, 0, 20])
-    assert poses[2, 0, :4] == pytest.approx([10, 1 - 2.5, math.pi / 2, 20])
+    front, rear = np.array([10.0, 1.0]), np.array([6.0, 0.0])  # 11 m and 6 m along the path
+    heading = math.atan2(1.0, 4.0)
+    centre = front - 2.5 * np.array([math.cos(heading), math.sin(heading)])
+    assert poses[2, 0, :4] == pytest.approx([*centre, heading, 20])
+    assert np.hypot(*(front - rear)) < 5.0  # the body cuts the corner, as SUMO's do
+
+
+def test_a_body_turns_with_its_rear_on_the_path() -> None:
+    path = EgoPath.through(L_SHAPE)
+    assert path.pose(9.0, 5.0).heading == 0.0
+    assert path.pose(12.5, 5.0).heading == pytest.approx(math.pi / 4)
+    assert path.pose(15.1, 5.0).heading == pytest.approx(math.pi / 2)
+    assert path.pose(12.5)[:2] == path.pose(12.5, 5.0)[:2] == (10.0, 2.5)
+
+
+def test_what_is_out_of_sight_is_not_in_front() -> None:
+    plaza = corridor([(0, 0), (300, 0)])
+    assert plaza.closest_now(np.array([[104.0, 0.0]]), 5.0)[0] == 104.0
+    assert plaza.closest_now(np.array([[106.0, 0.0]]), 5.0)[0] == 106.0  # its segment is seen
+    pieces = corridor([(x, 0) for x in range(0, 301, 10)])
+    assert pieces.closest_now(np.array([[104.0, 0.0]]), 5.0)[0] == 104.0
+    assert pieces.closest_now(np.array([[121.0, 0.0]]), 5.0)[0] == math.inf
 
 
 def test_who_is_in_front_on_a_path_that_comes_past_twice() -> None:
@@ -133,6 +155,6 @@ def test_whoever_stands_on_the_path_ahead_is_in_front(
         return
     station = where * path.path.length
     x, y, _ = path.path.pose(station)
-    closest, reachable = path.closest_now(np.array([[x, y]]), -1.0)
+    closest, reachable = path.closest_now(np.array([[x, y]]), station - 50.0)
     assert closest <= station + 1e-6
     assert reachable

@@ -15,8 +15,10 @@ from giveway.errors import ConfigError, GivewayError, SumoError
 from giveway.interrupts import DeferredInterrupt
 from giveway.loading import load
 from giveway.recorder import Recorder
+from giveway.scenario_files import StartOptions, read_scenario
 from giveway.simulation import Ending, Loop
 from giveway.sumo import SumoSession
+from giveway.sumo_command import all_types, inserted_type
 from giveway.tracks import VehicleShape
 from sumo_scenarios import find
 
@@ -28,15 +30,16 @@ def parts_of(stack: ExitStack, **settings: object) -> Parts:
 
 
 def session(step_length: float | None = None) -> SumoSession:
-    return SumoSession(PLAZA, seed=1, step_length=step_length, ego_shape=VehicleShape())
+    types = all_types({inserted_type("ego"): VehicleShape()})
+    return SumoSession(read_scenario(PLAZA), StartOptions(step_length=step_length), types)
 
 
 def test_a_nan_in_the_crowd_is_named_by_id_and_step() -> None:
     with ExitStack() as stack:
         parts = parts_of(stack, controller="pid")
-        recorder = Recorder(parts.spawned.ids)
+        recorder = Recorder()
         loop = Loop(parts, recorder)
-        parts.crowd.position[3] = np.nan
+        parts.population.crowd.position[3] = np.nan
         with pytest.raises(GivewayError, match=r"ped3.*step 0"):
             loop.run(None, lambda: False)
         assert recorder.steps == 1
@@ -63,10 +66,10 @@ def test_rows_up_to_a_failure_are_written(tmp_path: Path) -> None:
 
 def test_sumo_stands_where_we_do() -> None:
     with session() as sumo:
-        sumo.add_ego("ego", ["plaza"], lane=0, position=22.5, speed=4.0)
+        sumo.vehicles.insert("ego", ["plaza"], lane=0, position=22.5, speed=4.0)
         sumo.add_persons(["a", "b"], "gate")
         x, y, angles = [25.0, 31.125], [-13.25, 7.0], [0.0, 271.0]
-        sumo.mirror(Pose(2.7, 0.0, 0.0), ["a", "b"], x, y, angles)
+        sumo.mirror([("ego", Pose(2.7, 0.0, 0.0))], ["a", "b"], x, y, angles)
         import libsumo
 
         assert libsumo.person.getPosition("b") == pytest.approx((31.125, 7.0), abs=1e-9)
@@ -77,10 +80,10 @@ def test_sumo_stands_where_we_do() -> None:
 
 def test_sumo_disagreeing_is_an_error() -> None:
     with session() as sumo:
-        sumo.add_ego("ego", ["plaza"], lane=0, position=22.5, speed=4.0)
-        sumo.mirror(Pose(2.7, 0.0, 0.0), [], [], [], [])
+        sumo.vehicles.insert("ego", ["plaza"], lane=0, position=22.5, speed=4.0)
+        sumo.mirror([("ego", Pose(2.7, 0.0, 0.0))], [], [], [], [])
         with pytest.raises(SumoError, match=r"ego.*away from our state"):
-            sumo._check(Pose(2.8, 0.0, 0.0), [], [])
+            sumo._check([("ego", Pose(2.8, 0.0, 0.0))], [], [])
 
 
 def test_two_simulations_at_once_are_refused() -> None:
@@ -91,7 +94,7 @@ def test_two_simulations_at_once_are_refused() -> None:
 def test_names_that_the_scenario_has_already_are_refused() -> None:
     with session() as sumo:
         sumo.add_persons(["a"], "gate")
-        sumo.mirror(None, ["a"], [25.0], [-13.0], [0.0])
+        sumo.mirror([], ["a"], [25.0], [-13.0], [0.0])
         with pytest.raises(GivewayError, match="'a'"):
             sumo.add_persons(["a"], "gate")
 
@@ -100,7 +103,7 @@ def test_many_sessions_in_one_process() -> None:
     for _ in range(20):
         with session(1.0) as sumo:
             sumo.add_persons(["a"], "gate")
-            sumo.mirror(None, ["a"], [25.0], [-13.0], [0.0])
+            sumo.mirror([], ["a"], [25.0], [-13.0], [0.0])
             assert sumo.time == 1.0
 
 

@@ -9,8 +9,8 @@ import pytest
 import sumo as sumo_wheel
 
 from giveway.errors import ScenarioError
+from giveway.scenario_files import StartOptions, read_scenario
 from giveway.sumo import SumoSession
-from giveway.tracks import VehicleShape
 
 
 @pytest.fixture(scope="module")
@@ -30,8 +30,8 @@ def crossroads(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_left_turn_is_one_continuous_line(crossroads: Path) -> None:
-    with SumoSession(crossroads, seed=1, step_length=None, ego_shape=VehicleShape()) as session:
-        points = np.array(session.lanes.along(["A1B1", "B1B2"], 0))
+    with SumoSession(read_scenario(crossroads), StartOptions(), "<additional/>") as session:
+        points = session.lanes.along(["A1B1", "B1B2"], 0).points
     jumps = np.hypot(*np.diff(points, axis=0).T)
     east, north = points[0], points[-1]
     assert east[0] < 20
@@ -43,7 +43,7 @@ def test_a_left_turn_is_one_continuous_line(crossroads: Path) -> None:
 
 def test_lanes_that_do_not_connect_are_named(crossroads: Path) -> None:
     with (
-        SumoSession(crossroads, seed=1, step_length=None, ego_shape=VehicleShape()) as session,
-        pytest.raises(ScenarioError, match=r"'A1B1_0' has no connection to edge 'C1C2'"),
+        SumoSession(read_scenario(crossroads), StartOptions(), "<additional/>") as session,
+        pytest.raises(ScenarioError, match=r"'A1B1' has no connection to edge 'C1C2'"),
     ):
         session.lanes.along(["A1B1", "C1C2"], 0)

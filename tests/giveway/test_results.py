@@ -69,7 +69,7 @@ def test_the_manifest_names_what_the_run_was_made_of(folder: Path) -> None:
     manifest = json.loads((folder / "manifest.json").read_text())
     assert manifest["ending"] == "completed"
     assert manifest["seed"] == 4
-    assert len(manifest["vehicle"]["sha256"]) == 64
+    assert len(manifest["vehicles"]["ego"]["sha256"]) == 64
     assert {"shared_space.net.xml", "shared_space.sumocfg"} <= set(manifest["scenario"]["sha256"])
     assert {"giveway", "libsumo", "fmpy", "osqp", "numpy"} <= set(manifest["software"])
 

@@ -12,7 +12,9 @@ AXIS = EgoPath.through([(-20, 0), (100, 0)])
 
 
 def test_the_same_seed_draws_the_same_crowd_and_another_seed_another() -> None:
-    first, again, other = (spawn(CrowdConfig(), AXIS, seed) for seed in (1, 1, 2))
+    first, again, other = (
+        spawn(CrowdConfig(pedestrians=30), AXIS, seed) for seed in (1, 1, 2)
+    )
     assert np.array_equal(first.position, again.position)
     assert np.array_equal(first.desired_speed, again.desired_speed)
     assert not np.array_equal(first.position, other.position)
@@ -79,5 +81,5 @@ def test_two_sided_mirrors_about_the_path_beside_the_area_not_about_its_start() 
 
 @pytest.mark.parametrize("low", [1.394, 1.393999])
 def test_bounds_that_leave_one_speed_give_everybody_that_speed(low: float) -> None:
-    config = CrowdConfig(desired_speed_min=low, desired_speed_max=1.394)
+    config = CrowdConfig(pedestrians=30, desired_speed_min=low, desired_speed_max=1.394)
     assert spawn(config, AXIS, 1).desired_speed == pytest.approx(np.full(30, 1.394), abs=1e-5)
