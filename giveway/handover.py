@@ -70,7 +70,8 @@ class Handover:
         if len(edges) == 1:
             self._approach(name, walk, foot)
             return
-        rerouted = self._person.getStage(name).edges[-len(walk.edges) :] != walk.edges
+        present = tuple(self._person.getStage(name).edges)
+        rerouted = present[-len(walk.edges) :] != walk.edges  # by one of SUMO's devices
         if rerouted or walk.was_inside or edges[0] in edges[1:] + walk.edges[:step]:
             self._restart(name, walk, edges)
         self._person.moveTo(name, foot.lane, foot.position, foot.lateral)

@@ -81,7 +81,8 @@ class ScenarioWalkers:
         self._free: dict[str, None] = {}  # departed and SUMO's, in order of departure
         self._seen_until = -math.inf  # [s] SUMO's clock when `_free` was brought up to date
         self._walks: dict[str, Walk] = {}
-        self._leaving: dict[str, int] = {}  # at their walk's end: stages left then
+        self._leaving: dict[str, tuple[int, float]] = {}  # at their walk's end: see `arrive`
+        self._put_back: set[str] = set()  # since SUMO's last step
         self._paths = FootPaths(sumo)
         self._speeds = WalkSpeeds.of_running(sumo)
         direct = getattr(sumo.libsumo, "_libsumo", None)  # without the wrapper's own call
@@ -124,6 +125,7 @@ class ScenarioWalkers:
                 if name in self.held:
                     self._lose(name)
         self._seen_until = now
+        self._put_back.clear()
         if self._leaving:
             self._see_off()
         self._handover.end_paces()
@@ -143,8 +145,8 @@ class ScenarioWalkers:
     def _see_off(self) -> None:
         """Whoever should have ended its walk in SUMO's step by itself and has not is made to."""
         person = self._sumo.person
-        for name, stages_left in self._leaving.items():
-            if person.getRemainingStages(name) > stages_left:
+        for name, (stages_left, begun) in self._leaving.items():
+            if person.getStage(name).depart == begun:  # still the same stage
                 if stages_left:
                     person.removeStage(name, 0)
                 else:
@@ -163,14 +165,15 @@ class ScenarioWalkers:
     def take(self, ids: Sequence[str]) -> list[Walker]:
         """Take over those of ``ids`` who walk right now; the others are passed over.
 
-        From now on they are held: they must be moved in every SUMO step.
+        So is who was handed back since SUMO's last step. From now on they are held: they must be
+        moved in every SUMO step.
         """
         walkers = map(self._take, ids)
         return [walker for walker in walkers if walker is not None]
 
     def _take(self, name: str) -> Walker | None:
         person = self._sumo.person
-        if name not in self._free:
+        if name not in self._free or name in self._put_back:  # whose speed is the jump's
             return None
         lane = person.getLaneID(name)
         if not lane:  # waiting; this call is cheaper than to ask for the stage
@@ -198,7 +201,10 @@ class ScenarioWalkers:
         )
         inside = lane.startswith(":")
         hideout = self._paths.lane(walker.edges[0]) if inside else lane
-        self._handover.park(name, hideout or lane)
+        try:
+            self._handover.park(name, hideout or lane)
+        except self._handover.refusals:
+            return None  # it stands beside its own walk, where SUMO cannot put it back either
         self._walks[name] = Walk(
             edges=walker.edges,
             arrival_position=arrival,
@@ -242,9 +248,12 @@ class ScenarioWalkers:
             elif not self._handover.walk_anew(name, walk, edge, foot):
                 return False
         except self._handover.refusals:
+            with contextlib.suppress(*self._handover.refusals):
+                self._handover.park(name, self._sumo.person.getLaneID(name))
             return False
         self._release(name, "handed_back")
         self._free[name] = None
+        self._put_back.add(name)
         return True
 
     def _on_walk(self, walk: Walk, x: float, y: float) -> tuple[int, Foot | None]:
@@ -262,7 +271,7 @@ class ScenarioWalkers:
         end = self._paths.lane(walk.edges[-1])
         with contextlib.suppress(*self._handover.refusals):  # else it is cut short after the step
             self._handover.finish(name, end or "", walk)
-        self._leaving[name] = walk.stages_left
+        self._leaving[name] = walk.stages_left, self._sumo.person.getStage(name).depart
         arrival = Arrival.CONTINUED if walk.stages_left else Arrival.ARRIVED
         self._release(name, arrival.value)
         return arrival

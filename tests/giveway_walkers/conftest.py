@@ -48,10 +48,10 @@ def look(tmp_path: Path, city: Callable[[str], Path]) -> Callable[..., Any]:
     """
 
     def run(name: str, network: str, plans: str, step_length: float = 0.5, **arguments: Any) -> Any:
-        routes = tmp_path / "plans.rou.xml"
-        routes.write_text(f"<routes>{plans}</routes>")
+        routes = tmp_path / "plans.add.xml"
+        routes.write_text(f"<additional>{plans}</additional>")
         request = {
-            "command": ["-n", str(city(network)), "-r", str(routes), "--seed", "1"]
+            "command": ["-n", str(city(network)), "-a", str(routes), "--seed", "1"]
             + ["--step-length", str(step_length), "--tripinfo-output", str(tmp_path / "trips.xml")]
         } | arguments
         result = subprocess.run(

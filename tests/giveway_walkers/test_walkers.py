@@ -268,3 +268,14 @@ def test_a_roaming_zone_loses_nobody(
     for i in range(persons):
         tags = [t for k, t in enumerate(plan_of[f"p{i}"]) if plan_of[f"p{i}"][k - 1 : k] != [t]]
         assert tags == (["walk", "stop", "walk"] if i % 3 == 0 else ["walk"])
+
+
+def test_a_trip_that_sumo_splits_into_several_stages_is_begun_at_its_beginning(look: Look) -> None:
+    plan = '<walk edges="A1B1" arrivalPos="60"/><personTrip from="A1B1" to="C2C3" modes="public"/>'
+    bus = """<busStop id="near" lane="B1C1_1" startPos="20" endPos="40"/>
+        <busStop id="far" lane="C2C3_1" startPos="20" endPos="40"/>
+        <flow id="bus" line="1" begin="0" end="600" period="60" from="B1C1" to="C2C3">
+            <stop busStop="near" duration="10" until="30"/>
+            <stop busStop="far" duration="10" until="60"/></flow>"""
+    seen = look("arrive", "signals", bus + person(plan), time=5.0, seconds=5.0)
+    assert seen["again"]["stages_left"] >= 1  # walks to the bus, and has more to do then

@@ -132,6 +132,19 @@ def test_where_two_blocks_touch_each_corner_is_its_own():
         )
 
 
+@pytest.mark.parametrize("swap", [False, True])
+def test_where_two_sharp_blocks_touch_no_place_is_on_the_wrong_side(swap):
+    west, east = [(0, 0), (-4, -1), (-4, 1)], [(0, 0), (4, 3), (3, 0)]
+    houses = [east, west] if swap else [west, east]
+    walls = Walls.create(np.concatenate([ring(house) for house in houses]))  # clockwise
+    points = np.random.default_rng(2).uniform(-1.0, 1.0, (500, 2))
+    outside = [-signed_distance(points, house) for house in houses]
+    expected = np.where(
+        np.minimum(*outside) > 0.0, np.minimum(*outside), -np.abs(outside).min(axis=0)
+    )
+    np.testing.assert_allclose(walls.nearest(points)[0], expected, atol=1e-9)
+
+
 def test_small_gaps_at_a_corner_are_closed():
     exact, loose = [(-9, 0, 0, 0), (0, 0, 0, -9)], [(-9, 0, -0.004, 0), (0, -0.004, 0, -9)]
     points = np.array([(0.3, 0.3), (-0.2, -0.5), (0.0, 0.5), (-0.4, -0.1)])
