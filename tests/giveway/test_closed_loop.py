@@ -147,7 +147,9 @@ def test_sumos_step_length_does_not_touch_the_result(run_once: Run, mpc_run: Run
 def test_fmi_2_and_fmi_3_drive_alike(run_once: Run, mpc_run: RunResult) -> None:
     other = run_once(controller="mpc", seed=SEED, vehicle={"fmu": "fmi3"})
     assert np.array_equal(other.ego_track.position, mpc_run.ego_track.position)
-    assert other.manifest["vehicles"]["ego"]["sha256"] != mpc_run.manifest["vehicles"]["ego"]["sha256"]
+    assert (
+        other.manifest["vehicles"]["ego"]["sha256"] != mpc_run.manifest["vehicles"]["ego"]["sha256"]
+    )
 
 
 def test_an_empty_plaza_takes_ten_seconds_by_mpc() -> None:

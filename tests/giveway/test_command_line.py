@@ -124,7 +124,7 @@ def test_an_unwritable_results_folder_is_named(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_ctrl_c_keeps_the_rows_and_exits_130(tmp_path: Path) -> None:
-    words = ["--pedestrians", "2000", "--spawn-area", "20,-200,120,-10", "--out", "r"]
+    words = ["--pedestrians", "6000", "--spawn-area", "20,-200,120,-10", "--out", "r"]
     words += ["--ego-travel-distance", "70", "--no-pictures"]
     words += ["--regulation-reference-speed", "0.2"]  # it takes its time
     process = subprocess.Popen(

@@ -12,9 +12,7 @@ AXIS = EgoPath.through([(-20, 0), (100, 0)])
 
 
 def test_the_same_seed_draws_the_same_crowd_and_another_seed_another() -> None:
-    first, again, other = (
-        spawn(CrowdConfig(pedestrians=30), AXIS, seed) for seed in (1, 1, 2)
-    )
+    first, again, other = (spawn(CrowdConfig(pedestrians=30), AXIS, seed) for seed in (1, 1, 2))
     assert np.array_equal(first.position, again.position)
     assert np.array_equal(first.desired_speed, again.desired_speed)
     assert not np.array_equal(first.position, other.position)
