@@ -233,6 +233,6 @@ def _result(
             error=None if error is None else str(error),
         ),
         sumo_messages=parts.sumo.messages,
-        lanes=tuple(parts.sumo.lanes.areas()),
+        road=parts.sumo.lanes.areas(),
         remarks=parts.all_remarks,
     )

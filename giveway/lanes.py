@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 CHANGE_LENGTH = 30.0  # [m] over which a vehicle changes to the next lane
+_WALKINGAREA = re.compile(r"^:.*_w\d+_0$")  # SUMO's names; their shape is the outline itself
 _SAMPLE = 1.0  # [m] between the points of a lane change
 
 
@@ -204,11 +206,16 @@ class Lanes:
             after, samples / length
         )
 
-    def areas(self) -> list[tuple[Array, float]]:
-        """Centre line (k, 2) [m] and width [m] of every lane outside of junctions."""
-        lane = self._sumo.lane
-        names = [name for name in lane.getIDList() if not name.startswith(":")]
-        return [(np.array(lane.getShape(name)), float(lane.getWidth(name))) for name in names]
+    def areas(self) -> tuple[Array, ...]:
+        """Closed outlines (k, 2) [m] of what there is to drive and walk on, junctions included."""
+        outlines = []
+        for name in self._sumo.lane.getIDList():
+            shape = self.shape(name)
+            if _WALKINGAREA.search(name):
+                outlines.append(np.concatenate([shape, shape[:1]]))
+            elif len(shape) > 1:
+                outlines.append(lane_area(shape, float(self._sumo.lane.getWidth(name))))
+        return tuple(outlines)
 
 
 def _length(points: Array) -> float:
@@ -221,3 +228,17 @@ def _at(points: Array, shares: Array) -> Array:
     x = np.interp(shares * along[-1], along, points[:, 0])
     y = np.interp(shares * along[-1], along, points[:, 1])
     return np.column_stack([x, y])
+
+
+def lane_area(centre_line: Array, width: float) -> Array:
+    """The closed outline (2k + 1, 2) [m] of a lane.
+
+    Args:
+        centre_line: (k, 2) [m], k >= 2.
+        width: [m].
+    """
+    along = np.gradient(centre_line, axis=0)
+    length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-12)
+    left = np.column_stack([-along[:, 1], along[:, 0]]) / length[:, None] * (width / 2)
+    outline = np.concatenate([centre_line + left, (centre_line - left)[::-1]])
+    return np.concatenate([outline, outline[:1]])

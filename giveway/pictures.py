@@ -1,4 +1,4 @@
-"""The two pictures of a run, and how a lane's centre line becomes an area to draw."""
+"""The two pictures of a run, and the one of the vehicle's influence."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.figures import influence_figure, save_figure, state_figure, top_view_figure
+from giveway.results import MARKS
 from pedestrian_model import Vehicles, vehicle_influence
 
 if TYPE_CHECKING:
@@ -26,13 +27,12 @@ _CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
 
 
 def save_run_pictures(result: RunResult, folder: Path) -> None:
-    """Write ``state.png`` and ``top_view.png`` of the first ego; several have an id in the name.
+    """Write ``state.png`` and ``top_view.png`` of the first ego, ``state_2.png`` of the second.
 
     Raises:
         OSError: a file cannot be written.
     """
-    for number, ego in enumerate(result.egos):
-        mark = "" if number == 0 else f"_{number + 1}"
+    for ego, mark in zip(result.egos, MARKS, strict=False):
         save_figure(state_picture(result, ego), folder / f"state{mark}.png")
         save_figure(top_view_picture(result, ego), folder / f"top_view{mark}.png")
 
@@ -55,7 +55,7 @@ def top_view_picture(result: RunResult, ego: EgoResult) -> Figure:
         ego.shape,
         ego.body_radius,
         background=result.background_track,
-        road=[lane_area(line, width) for line, width in result.lanes],
+        road=result.road,
         title=_title(result, ego),
     )
 
@@ -79,17 +79,3 @@ def influence_picture(
         return vehicle_influence(points, np.zeros_like(points), vehicle, parameters)[0]
 
     return influence_figure(influence, speeds=speeds, shape=shape, centre=_CENTRE)
-
-
-def lane_area(centre_line: Array, width: float) -> Array:
-    """The closed outline (2k + 1, 2) [m] of a lane.
-
-    Args:
-        centre_line: (k, 2) [m], k >= 2.
-        width: [m].
-    """
-    along = np.gradient(centre_line, axis=0)
-    length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-12)
-    left = np.column_stack([-along[:, 1], along[:, 0]]) / length[:, None] * (width / 2)
-    outline = np.concatenate([centre_line + left, (centre_line - left)[::-1]])
-    return np.concatenate([outline, outline[:1]])

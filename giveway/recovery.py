@@ -91,6 +91,6 @@ def _result_of(
             error=str(error),
         ),
         sumo_messages="\n".join(part for part in (verdict.last_words, verdict.traceback) if part),
-        lanes=(),
+        road=(),
         remarks=(),
     )

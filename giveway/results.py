@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from giveway.schema import Column
 
 SUMO_FOLDER = "sumo"
+MARKS = ("", *(f"_{number}" for number in range(2, 100)))
+"""Ends of the names of pictures: of the first ego, the second one, ..."""
 TABLES = ("ego", "trajectories", "pedestrians", "summary", "timing")
 FILES = frozenset(
     {
@@ -31,8 +33,7 @@ FILES = frozenset(
         "manifest.json",
         "datapackage.json",
         "sumo.log",
-        "state.png",
-        "top_view.png",
+        *(f"{name}{mark}.png" for name in ("state", "top_view") for mark in MARKS),
         SUMO_FOLDER,
     }
 )

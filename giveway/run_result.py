@@ -92,7 +92,7 @@ class RunResult:
         elapsed: wall clock of the loop [s].
         manifest: versions, hashes, seeds, the pedestrians' ledger.
         sumo_messages: what SUMO printed.
-        lanes: centre line (k, 2) [m] and width [m] of the network's lanes.
+        road: outlines (k, 2) [m] of the network's lanes, crossings and walkingareas.
         remarks: what is not as the scenario has it, or as one may expect.
     """
 
@@ -108,7 +108,7 @@ class RunResult:
     elapsed: float
     manifest: dict[str, Any]
     sumo_messages: str
-    lanes: tuple[tuple[Array, float], ...]
+    road: tuple[Array, ...]
     remarks: tuple[str, ...]
 
     @property

@@ -6,7 +6,7 @@ the left and the PID on the right.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -19,6 +19,7 @@ from giveway.figures.style import (
     GREEN,
     GREY,
     ORANGE,
+    PURPLE,
     SKY_BLUE,
     VERMILION,
     quiet_grid,
@@ -32,8 +33,11 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
+VEHICLE: dict[str, Any] = {"color": GREY, "linewidth": 1.2, "label": "distance to vehicle"}
+RED_LIGHT: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "label": "distance to red light"}
 SHADES = {"mpc": (SKY_BLUE, 0.14), "pid": (ORANGE, 0.28)}  # colour, opacity of a phase
 NAMES = {"mpc": "MPC acts", "pid": "PID acts"}
+OTHERS_SHOWN = 40.0  # [m] of the distance to a vehicle or a light is shown at least
 SINGLE_INSTANT = 0.5  # [s] shown to either side of a run of one instant
 
 
@@ -135,6 +139,10 @@ def _draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: 
     around = np.concatenate(([False], somebody, [False]))
     alone = somebody & ~around[:-2] & ~around[2:]
     axes.plot(ego.time[alone], gap[alone], ".", color=GREEN, markersize=4, zorder=3)
+    for distance, manner in ((ego.vehicle_gap, VEHICLE), (ego.stop_gap, RED_LIGHT)):
+        if np.isfinite(distance).any():
+            there = np.where(np.isfinite(distance), distance, np.nan)
+            axes.plot(ego.time, there, zorder=2.5, **manner)
 
 
 def _draw_force(axes: Axes, ego: EgoTrack) -> None:
@@ -156,7 +164,9 @@ def _scale(grid: np.ndarray, egos: Sequence[EgoTrack], distance: float) -> None:
     margin = SINGLE_INSTANT if end == starts else 0.0
     fastest = max(max(ego.speed.max(), ego.reference_speed.max()) for ego in egos)
     gaps = np.concatenate([ego.gap[np.isfinite(ego.gap)] for ego in egos])
-    nearest, farthest = gaps.min(initial=0.0), gaps.max(initial=distance)
+    others = any(np.isfinite((ego.vehicle_gap, ego.stop_gap)).any() for ego in egos)
+    nearest = gaps.min(initial=0.0)
+    farthest = gaps.max(initial=max(distance, OTHERS_SHOWN) if others else distance)
     weakest = min(min(0.0, ego.force.min()) for ego in egos) / 1000.0
     strongest = max(max(0.0, ego.force.max()) for ego in egos) / 1000.0
     room = 0.08 * max(strongest - weakest, 0.1)
@@ -187,6 +197,9 @@ def _legend(egos: Sequence[EgoTrack]) -> list[Artist]:
         Line2D([], [], color=GREEN, label="gap"),
         Line2D([], [], color=VERMILION, linewidth=1.2, label="force"),
     ]
+    for name, manner in (("vehicle_gap", VEHICLE), ("stop_gap", RED_LIGHT)):
+        if any(np.isfinite(getattr(ego, name)).any() for ego in egos):
+            handles.append(Line2D([], [], **manner))
     for name, (colour, opacity) in SHADES.items():
         if name in acted:
             handles.append(Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name]))

@@ -55,6 +55,12 @@ class _Box(NamedTuple):
         """Height over width."""
         return (self.top - self.bottom) / (self.right - self.left)
 
+    def touches(self, points: NDArray[np.float64]) -> bool:
+        """Whether the points' own box meets this one."""
+        low, high = points.min(axis=0), points.max(axis=0)
+        beside = high[0] < self.left or low[0] > self.right
+        return bool(not (beside or high[1] < self.bottom or low[1] > self.top))
+
     def apply(self, axes: Axes) -> None:
         axes.set(xlim=(self.left, self.right), ylim=(self.bottom, self.top), aspect="equal")
 
@@ -98,6 +104,7 @@ def top_view_figure(
 
     figure, overview, panels = _arrange(whole, part, len(steps))
     colours = Normalize(ego.time[0], max(ego.time[-1], ego.time[0] + 1e-9))
+    road = [line for line in road or () if whole.touches(line)]
     _draw_road(overview, road)
     lines = _draw_trajectories(overview, ego, crowd, colours)
     for k in steps:
@@ -180,8 +187,8 @@ def _arrange(whole: _Box, part: _Box, count: int) -> tuple[Figure, Axes, list[Ax
     return figure, overview, keep_panels(grid, count)
 
 
-def _draw_road(axes: Axes, road: Road | None) -> None:
-    for line in road or ():
+def _draw_road(axes: Axes, road: Road) -> None:
+    for line in road:
         if len(line) > 2 and np.array_equal(line[0], line[-1]):
             axes.add_patch(Polygon(line, facecolor=LIGHT_GREY, edgecolor="white", zorder=0))
         else:

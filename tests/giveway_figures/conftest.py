@@ -48,8 +48,11 @@ def drive_through_crowd(pedestrians: int, seed: int, controller: str, goal: floa
         k += 1
     numbers = np.array([row[:10] for row in egos], dtype=float).T
     acting = np.array([row[10] for row in egos])
+    nothing = np.full(acting.size, np.inf)
     ego = EgoTrack(
         *numbers,
+        vehicle_gap=nothing,
+        stop_gap=nothing,
         acting=acting,
         reason=np.where(acting == "mpc", "optimal", "infeasible"),
         solver_status=np.full(acting.size, ""),

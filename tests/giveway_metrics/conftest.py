@@ -41,6 +41,8 @@ def make_ego(
         "force": full(0.0),
         "gap": full(np.inf),
         "reference_speed": full(4.0),
+        "vehicle_gap": full(np.inf),
+        "stop_gap": full(np.inf),
         "acting": np.full(count, "mpc"),
         "reason": np.full(count, "optimal"),
         "solver_status": np.full(count, "solved"),
