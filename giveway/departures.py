@@ -10,6 +10,7 @@ from giveway.ego import Ego
 from giveway.ego_path import EgoPath
 from giveway.errors import ConfigError, ScenarioError
 from giveway.lights import Lights
+from giveway.scenario_files import undeclared
 from giveway.tracks import VehicleShape
 
 if TYPE_CHECKING:
@@ -39,7 +40,8 @@ class Departures:
         time_step: [s] of the co-simulation.
 
     Raises:
-        ScenarioError, ConfigError: an ego to be inserted has no way.
+        ScenarioError, ConfigError: an ego to be inserted has no way, or no file declares one that
+            is to be taken over.
     """
 
     def __init__(
@@ -49,10 +51,20 @@ class Departures:
         self._session = session
         self._config_file = config_file
         self._time_step = time_step
+        for driver in drivers:
+            if driver.taken_over:
+                self._require_declared(driver.id)
         self._departed: dict[str, None] = dict.fromkeys(session.vehicles.present())
         self._ways = {
             driver.id: self._way_of_inserted(driver) for driver in drivers if not driver.taken_over
         }
+
+    def _require_declared(self, name: str) -> None:
+        """A vehicle that no file declares need not be waited for."""
+        hint = undeclared(name, self._session.start.read)
+        if hint is not None:
+            msg = f"--ego {name}: no such vehicle in the routes of {self._config_file}; {hint}"
+            raise ScenarioError(msg)
 
     @property
     def names(self) -> list[str]:

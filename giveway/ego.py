@@ -139,6 +139,7 @@ class Ego:
         self._span = driver.horizon * time_step  # [s]
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
         self._force = 0.0
+        self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
         self._heed_lights = config.regulation.traffic_lights
 
@@ -150,7 +151,9 @@ class Ego:
     @property
     def pose(self) -> Pose:
         """Where the front bumper's centre is, and the direction of the body."""
-        return self.path.pose(self.front, self.shape.length)
+        if self._pose is None:
+            self._pose = self.path.pose(self.front, self.shape.length)
+        return self._pose
 
     @property
     def arrived(self) -> bool:
@@ -252,6 +255,7 @@ class Ego:
 
     def advance(self) -> None:
         """Step the FMU with the force decided on."""
+        self._pose = None
         self.vehicle.step(self._force)
 
     def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:

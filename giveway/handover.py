@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from giveway.footpaths import Foot
 
 _WALKING = 2  # SUMO's stage type
-_NOWHERE = -1000.0  # [m] on its lane: where a held person is in SUMO's books
+NOWHERE = -1000.0  # [m] on its lane: where a held person is in SUMO's books
 _RUN_UP = 0.5  # [m] before the place where a person is put on its last edge
 
 
@@ -62,7 +62,7 @@ class Handover:
 
     def park(self, name: str, lane: str) -> None:
         """Put a person out of everybody's way, in the books of a lane of its walk."""
-        self._person.moveTo(name, lane, _NOWHERE)
+        self._person.moveTo(name, lane, NOWHERE)
 
     def walk_on(self, name: str, walk: Walk, step: int, foot: Foot) -> None:
         """Let a person walk on from ``foot``, which lies on edge ``step`` of its walk."""

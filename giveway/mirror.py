@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,6 +24,7 @@ Array = NDArray[np.float64]
 
 _INFLUENCE_RANGE = 10.0  # [m] from a vehicle's contour: the influence is exp(-26) of the strongest
 _NOSE = 1.5  # [s] the contour's nose is no longer than this times the speed
+_NONE = np.empty(0, dtype=np.int64)
 _STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
 
 
@@ -58,13 +58,14 @@ class Mirror:
         self._horizon = horizon
         self._span = (substeps + horizon) * time_step  # [s]
         self._egos = 0
+        self._driven: list[Ego] = []
         self._angles = np.zeros(0)
         self._row = np.zeros(0)
         self.background = NO_VEHICLES
         self._allocate((), 0)
 
     def _allocate(self, egos: Sequence[Ego], others: int) -> None:
-        self._egos = len(egos)
+        self._egos, self._driven = len(egos), list(egos)
         self.poses = np.zeros((self._horizon, self._egos + others, 7))
         self.poses[:, :, 4:] = 1.0  # a body of some size, until the row is filled
         for row, ego in enumerate(egos):
@@ -85,16 +86,13 @@ class Mirror:
             VehicleError: SUMO has a vehicle at no finite place.
         """
         self.background = background = self._session.vehicles.background()
-        for name, x, y, speed in zip(
-            background.ids, background.x, background.y, background.speed, strict=True
-        ):
-            if not math.isfinite(x + y + speed):
-                msg = f"vehicle '{name}' at {self._session.time:g} s: SUMO has it at ({x}, {y}) "
-                msg += f"with {speed} m/s; expected finite numbers; check its route and type"
-                raise VehicleError(msg)
-        places = np.array([ego.pose[:2] for ego in egos]).reshape(-1, 2)
-        near = _relevant(background, people, places, self._span)
-        self._allocate(egos, len(near))
+        near = _NONE
+        if background.ids:
+            self._require_finite(background)
+            places = np.array([ego.pose[:2] for ego in egos]).reshape(-1, 2)
+            near = _relevant(background, people, places, self._span)
+        if self.poses.shape[1] != len(egos) + len(near) or self._driven != egos:
+            self._allocate(egos, len(near))
         if len(near):
             now = self.poses[0, self._egos :]
             half_length = background.length[near] / 2
@@ -105,6 +103,15 @@ class Mirror:
             now[:, 4] = now[:, 5] = half_length
             now[:, 6] = background.width[near]
             extrapolate(self.poses, self._egos, self._time_step)
+
+    def _require_finite(self, vehicles: BackgroundVehicles) -> None:
+        bad = ~np.isfinite(vehicles.x + vehicles.y + vehicles.speed)
+        if bad.any():
+            i = int(np.argmax(bad))
+            place, speed = f"({vehicles.x[i]}, {vehicles.y[i]})", vehicles.speed[i]
+            msg = f"vehicle '{vehicles.ids[i]}' at {self._session.time:g} s: SUMO has it at "
+            msg += f"{place} with {speed} m/s; expected finite numbers; check its route and type"
+            raise VehicleError(msg)
 
     def place(self, egos: Sequence[Ego]) -> None:
         """Fill the egos' rows from where they are now."""
@@ -150,8 +157,6 @@ def _relevant(
     vehicles: BackgroundVehicles, people: Array, egos: Array, ahead: float
 ) -> NDArray[np.int64]:
     """Indices of the vehicles that matter to anybody within ``ahead`` [s]."""
-    if not vehicles.ids:
-        return np.empty(0, dtype=np.int64)
     speed = np.abs(vehicles.speed)
     reach = _INFLUENCE_RANGE + vehicles.length + vehicles.width + (_NOSE + ahead) * speed
     matters = np.zeros(len(vehicles.ids), dtype=np.bool_)

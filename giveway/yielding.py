@@ -63,6 +63,8 @@ class Yielding:
             crowd: the pedestrians now.
         """
         limits = self._limits(cars, crowd) if cars.ids and len(crowd) else {}
+        if not limits and not self._limited:
+            return
         present = set(cars.ids)
         for name in sorted(self._limited - limits.keys()):
             if name in present:

@@ -6,6 +6,7 @@ that writes nothing beside the scenario.
 
 from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, ScenarioFiles, read_scenario
 from giveway.scenario_files.starting import Start, StartOptions, prepare_start
+from giveway.scenario_files.vehicle_ids import undeclared
 
 __all__ = [
     "STRIPING",
@@ -15,4 +16,5 @@ __all__ = [
     "StartOptions",
     "prepare_start",
     "read_scenario",
+    "undeclared",
 ]

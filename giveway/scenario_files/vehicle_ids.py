@@ -1,0 +1,66 @@
+"""Which vehicles a scenario's files declare: a vehicle that nobody declared will never depart."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from html import unescape
+from typing import TYPE_CHECKING
+
+from giveway.scenario_files.reading import opened
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from pathlib import Path
+
+_CHUNK = 1 << 22  # bytes
+_DECLARATION = re.compile(rb"<(vehicle|trip|flow)\s[^>]*?\bid\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_CALIBRATOR = b"<calibrator"  # inserts vehicles of names of its own
+_COMPARED = 5_000  # declared names, for a guess at what was meant
+
+
+def undeclared(name: str, files: Iterable[Path]) -> str | None:
+    """What to say if no vehicle ``name`` is declared in ``files``; None if one is, or may be.
+
+    Args:
+        name: SUMO's id of a vehicle; one of a flow is the flow's id, a point and a number.
+        files: everything that SUMO reads, compressed or not.
+    """
+    flow, _, number = name.rpartition(".")
+    known: dict[str, None] = {}
+    try:
+        for kind, declared in _declarations(files):
+            if kind == _CALIBRATOR or declared == name:
+                return None
+            if kind == b"flow" and declared == flow and number.isdecimal():
+                return None
+            if len(known) < _COMPARED:
+                known[declared + ".0" if kind == b"flow" else declared] = None
+    except (OSError, EOFError):
+        return None  # SUMO will say what is wrong with the file
+    close = difflib.get_close_matches(name, known, n=1)
+    shown = ", ".join(list(known)[:3])
+    if close:
+        return f"did you mean '{close[0]}'?"
+    return f"name one like {shown}" if shown else "it has no vehicles; insert one with --ego-route"
+
+
+def _declarations(files: Iterable[Path]) -> Iterator[tuple[bytes, str]]:
+    """Kind and id of every vehicle, trip and flow; a calibrator is told by its kind alone."""
+    for file in files:
+        with opened(file) as stream:
+            rest = b""
+            while chunk := stream.read(_CHUNK):
+                text = rest + chunk
+                cut = text.rfind(b"<")  # an element may go on in the next chunk
+                whole, rest = (text[:cut], text[cut:]) if cut > 0 else (b"", text)
+                yield from _in(whole)
+            yield from _in(rest)
+
+
+def _in(text: bytes) -> Iterator[tuple[bytes, str]]:
+    if _CALIBRATOR in text:
+        yield _CALIBRATOR, ""
+    for match in _DECLARATION.finditer(text):
+        name = match[2] if match[2] is not None else match[3]
+        yield match[1], unescape(name.decode("utf-8", "replace"))
