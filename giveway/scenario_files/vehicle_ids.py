@@ -30,7 +30,7 @@ def undeclared(name: str, files: Iterable[Path]) -> str | None:
     known: dict[str, None] = {}
     try:
         for kind, declared in _declarations(files):
-            if kind == _CALIBRATOR or declared == name:
+            if kind == _CALIBRATOR or (kind != b"flow" and declared == name):
                 return None
             if kind == b"flow" and declared == flow and number.isdecimal():
                 return None
