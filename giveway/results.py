@@ -92,6 +92,7 @@ def take_folder(folder: Path, *, force: bool) -> bool:
 
 def release_folder(folder: Path) -> None:
     """Take the folder of a run that could not begin away again."""
+    shutil.rmtree(folder / SUMO_FOLDER, ignore_errors=True)
     with contextlib.suppress(OSError):
         (folder / "manifest.json").unlink()
         folder.rmdir()

@@ -59,26 +59,23 @@ def places(gates: Array, side: float) -> Array:
     return gates[:, 0:2] + side * gates[:, 2:4]
 
 
-def passages(gates: Array, points: Array, side: float, start: tuple[float, float]) -> Array:
-    """Unit direction and half width [m] (k, 3) of each gate around somebody on ``side``.
+def passages(gates: Array, start: tuple[float, float]) -> Array:
+    """Unit direction and half width [m] (k, 3) of each gate around its middle.
 
-    The half width reaches to the farther end of the gate and a body's radius beyond it: who has
-    been pushed to the other side of the way has passed all the same. Where one comes to a gate
-    from behind its line, as round a corner to a kerb, the direction is that in which one comes:
-    otherwise the gate would be passed before one is there.
+    The half width is the usable one and a body's radius beyond it: the whole way, and nothing
+    beside it. Where one comes to a gate from behind its line, as round a corner to a kerb, the
+    direction is that in which one comes: otherwise the gate would be passed before one is there.
 
     Args:
         gates: (k, 7).
-        points: (k, 2) [m] where one walks through them, as :func:`places` says.
-        side: [-1, 1].
         start: where one comes from [m].
     """
     rows = np.empty((len(gates), 3))
     rows[:, :2] = gates[:, 4:6]
-    rows[:, 2] = np.hypot(gates[:, 2], gates[:, 3]) * (1.0 + abs(side)) + BODY_RADIUS
-    steps = points.copy()
+    rows[:, 2] = np.hypot(gates[:, 2], gates[:, 3]) + BODY_RADIUS
+    steps = gates[:, :2].copy()
     steps[0] -= start
-    steps[1:] -= points[:-1]
+    steps[1:] -= gates[:-1, :2]
     lengths = np.hypot(steps[:, 0], steps[:, 1])
     ahead = steps[:, 0] * rows[:, 0] + steps[:, 1] * rows[:, 1]
     askew = (ahead < _ASKEW * lengths) & (lengths > _THERE)

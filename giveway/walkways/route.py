@@ -84,7 +84,7 @@ class Router:
         begin = self._from_junction if lane.startswith(":") else self._from_lane
         best = min(begin(walk, place, position, arrival), key=lambda way: (way.gaps, way.length))
         side = min(1.0, max(-1.0, best.side if side is None else side))
-        return _finished(np.concatenate(best.gates(side)), side, position, gaps + best.gaps)
+        return _finished(np.concatenate(best.gates(side)), position, gaps + best.gaps)
 
     def _known(self, edges: Iterable[str]) -> tuple[list[str], int]:
         """The edges that can be walked, without repetitions, and how many others there were."""
@@ -162,15 +162,14 @@ class Router:
             yield _Way(gaps + (not start.connected), length, start.side, gates)
 
 
-def _finished(rows: Array, side: float, position: Place, gaps: int) -> WalkRoute:
-    points = g.places(rows, side)
+def _finished(rows: Array, position: Place, gaps: int) -> WalkRoute:
+    points = rows[:, :2].copy()
     if len(points) > 1:
         apart = np.abs(np.diff(points, axis=0)).max(axis=1) > _TOGETHER
         # Of several in one place the one with a signal stays, else the last.
         keep = np.append(apart, True) | (rows[:, 6] >= 0)
         rows, points = rows[keep], points[keep]
-    passages = g.passages(rows, points, side, position)
-    return WalkRoute(points, passages, g.signals(rows), gaps)
+    return WalkRoute(points, g.passages(rows, position), g.signals(rows), gaps)
 
 
 def _stay(position: Place, gaps: int) -> WalkRoute:
