@@ -1,8 +1,9 @@
 """Gates: the lines across a way, one after the other, that people walk through side by side.
 
-A gate spans the usable width of the way at one place. Everybody crosses it at their own side, a
-number from -1 (right end) to +1 (left end of the usable width, seen in walking direction), which
-they keep for the whole way: a crowd then uses the whole width and does not queue for one point.
+A gate spans the usable width of the way at one place. Everybody crosses it where they come to it,
+so that a crowd uses the whole width and does not queue for one point. People who walk on the same
+side, a number from -1 (right end) to +1 (left end of the usable width, seen in walking direction),
+go round the same corners.
 
 Gates are rows of one array, so that the way of one person is a single concatenation of pieces
 that many share. The columns are the middle x, y [m]; the spread x, y [m] from the middle to the

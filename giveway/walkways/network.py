@@ -89,8 +89,8 @@ class WalkNetwork:
             lane: SUMO's id of the present lane, maybe a walkingarea's or crossing's.
             arrival_position: the end of the walk on the last edge, in SUMO's metres; a negative
                 one counts from the edge's end.
-            offset_side: the side of the way to keep to, from -1 (right end of its usable width)
-                to 1 (left); None for the one where the person is now.
+            offset_side: the side of the way, from -1 (right end of its usable width) to 1 (left),
+                that decides round which corners one goes; None for where the person is now.
         """
         return self._router.route(edges, position, lane, arrival_position, offset_side)
 

@@ -33,7 +33,7 @@ class WalkRoute:
     Attributes:
         waypoints: (k, 2) [m], the present place left out.
         passages: (k, 3) unit direction in which a way-point's line is crossed, and how far [m]
-            beside the point one may cross it and still have passed.
+            beside the point, the way's middle, one may cross it and have passed.
         signals: (k,) index into ``WalkNetwork.signals`` where one waits for green, else -1.
         gaps: how many times the network knows no way on and the route goes straight.
     """

@@ -9,10 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
+import shapely
 import sumo
 
-from giveway.walkways import WalkNetwork
+from giveway.walkways import WalkNetwork, WalkRoute
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -52,6 +54,20 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Built]:
         return done[name]
 
     return build
+
+
+@pytest.fixture(scope="session")
+def walked() -> Callable[[WalkRoute, tuple[float, float]], shapely.LineString]:
+    """The way of somebody alone: from line to line, each time to the nearest point of it."""
+
+    def trace(route: WalkRoute, start: tuple[float, float]) -> shapely.LineString:
+        places = [np.array(start)]
+        for point, (d_x, d_y, half) in zip(route.waypoints, route.passages, strict=True):
+            left, room = np.array([-d_y, d_x]), max(half - 0.27, 0.0)
+            places.append(point + np.clip((places[-1] - point) @ left, -room, room) * left)
+        return shapely.LineString(places)
+
+    return trace
 
 
 @pytest.fixture(scope="session")
