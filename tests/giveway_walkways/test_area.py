@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from giveway.walkways import WalkRoute
+
 NAMES = ["grid", "spider", "random", "bare"]
 
 
