@@ -118,6 +118,12 @@ class Mirror:
         for row, ego in enumerate(egos):
             ego.corridor.fill_poses(self.poses, row, ego.front, ego.vehicle.speed)
 
+    def drop(self, row: int) -> None:
+        """Take the ego in ``row`` out of the vehicles, between two of SUMO's steps or not."""
+        self._egos -= 1
+        self.poses = np.ascontiguousarray(np.delete(self.poses, row, axis=1))
+        self.vehicles = Vehicles(self.poses[0])
+
     def carry_on(self) -> None:
         """Move SUMO's vehicles on by one control step, since SUMO itself does not step yet."""
         if self.poses.shape[1] > self._egos:

@@ -255,11 +255,10 @@ class Loop:
         """Egos that have driven their distance leave the road."""
         for ego in [ego for ego in self._egos if ego.arrived]:
             self.endings[ego.id] = Ending.COMPLETED
+            self._mirror.drop(self._egos.index(ego))
             self._egos.remove(ego)
             if self._egos or self._parts.departures.waiting:
                 self._parts.sumo.vehicles.dismiss(ego.id)
-                self._mirror.read(self._egos, self._population.crowd.position)
-                self._mirror.place(self._egos)
 
     def _advance(self) -> None:
         parts, mirror = self._parts, self._mirror
