@@ -63,11 +63,6 @@ class Corridor:
         """(N,) what :meth:`closest_predicted` gives when nobody is ever in front."""
         return self._nobody
 
-    def _window(self, front: float) -> tuple[int, int]:
-        """The first and last segment of the path that lie within sight."""
-        stations = self.path.stations
-        return segment_at(stations, front - _BEHIND), segment_at(stations, front + SIGHT)
-
     def closest_now(self, positions: Array, front: float) -> tuple[float, bool]:
         """Station of the closest pedestrian in front [m], and whether a prediction is needed.
 
@@ -76,14 +71,8 @@ class Corridor:
         change no faster than people walk) is left behind by more than that.
         """
         path = self.path
-        closest, reachable = closest_in_front(
-            path.vertices,
-            path.stations,
-            *self._window(front),
-            positions,
-            front,
-            self.half_width,
-            self._reach,
+        closest, reachable = closest_in_sight(
+            path.vertices, path.stations, positions, front, self.half_width, self._reach
         )
         return closest, reachable
 
@@ -99,7 +88,6 @@ class Corridor:
         closest_ahead(
             path.vertices,
             path.stations,
-            *self._window(front),
             positions,
             front,
             speed * self.time_step,
@@ -124,7 +112,6 @@ class Corridor:
             path.vertices,
             path.stations,
             path.headings,
-            *self._window(front),
             poses,
             own,
             front,
@@ -229,11 +216,29 @@ def closest_in_front(
 
 
 @kernel
+def window(stations: Array, front: float) -> tuple[int, int]:
+    """The first and last segment of the path that lie within sight."""
+    return segment_at(stations, front - _BEHIND), segment_at(stations, front + SIGHT)
+
+
+@kernel
+def closest_in_sight(
+    vertices: Array,
+    stations: Array,
+    positions: Array,
+    front: float,
+    half_width: float,
+    reach: float,
+) -> tuple[float, bool]:
+    """As :func:`closest_in_front`, on the path within sight."""
+    first, last = window(stations, front)
+    return closest_in_front(vertices, stations, first, last, positions, front, half_width, reach)
+
+
+@kernel
 def closest_ahead(
     vertices: Array,
     stations: Array,
-    first: int,
-    last: int,
     positions: Array,
     front: float,
     advance: float,
@@ -241,6 +246,7 @@ def closest_ahead(
     closest: Array,
 ) -> None:
     """Fill ``closest[i]`` for the predicted ``positions[i]`` at step i + 1."""
+    first, last = window(stations, front)
     for i in range(positions.shape[0]):
         at = front + (i + 1) * advance
         closest[i], _ = closest_in_front(
@@ -280,8 +286,6 @@ def vehicles_in_front(
     vertices: Array,
     stations: Array,
     headings: Array,
-    first: int,
-    last: int,
     poses: Array,
     own: int,
     front: float,
@@ -296,6 +300,7 @@ def vehicles_in_front(
     one to go straight on: so a car ahead in a bend stays ahead, and one from the side comes.
     """
     N = ahead.shape[0]
+    first, last = window(stations, front)
     ahead[:] = np.inf
     nearest, its_speed = np.inf, 0.0
     x_0, y_0, _ = body_pose(vertices, stations, headings, front, 0.0)

@@ -111,6 +111,8 @@ class Departures:
 
     def due(self, step: int) -> list[Ego]:
         """The egos that enter the road now, at the control step ``step``."""
+        if not self.waiting:
+            return []
         ready = [driver for driver in self.waiting if self._is_due(driver)]
         self.waiting = [driver for driver in self.waiting if driver not in ready]
         return [self._enter(driver, step) for driver in ready]

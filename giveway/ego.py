@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -78,8 +78,7 @@ class Driver:
         return self.config.mpc.horizon if self.config.controller == "mpc" else 1
 
 
-@dataclass(frozen=True)
-class Seen:
+class Seen(NamedTuple):
     """What the ego reacts to at one instant."""
 
     person: float  # station [m] of the closest pedestrian in front; inf: nobody

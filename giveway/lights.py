@@ -25,6 +25,9 @@ class Lights:
         lights: in the order of the way.
         comfortable: deceleration [m/s^2] that is demanded at yellow.
         hardest: deceleration [m/s^2] that the vehicle is capable of.
+
+    Attributes:
+        systems: SUMO's ids of the traffic lights on the way.
     """
 
     def __init__(self, lights: Sequence[Light], *, comfortable: float, hardest: float) -> None:
@@ -34,11 +37,7 @@ class Lights:
         self._colours = ["g"] * len(lights)
         self._passing = [False] * len(lights)  # decided at yellow
         self._next = 0
-
-    @property
-    def systems(self) -> frozenset[str]:
-        """SUMO's ids of the traffic lights on the way."""
-        return frozenset(light.system for light in self._lights)
+        self.systems = frozenset(light.system for light in self._lights)
 
     def update(self, states: Mapping[str, str], front: float, speed: float) -> None:
         """Take note of the lights' states.

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from giveway.traffic import BackgroundVehicles
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 EGO_NUMBERS = 12  # of an EgoRow, the pose's three among them
 
@@ -99,10 +100,10 @@ class Recorder:
             row.iterations,
         )
 
-    def crowd(self, present: NDArray[np.int64], position: Array, velocity: Array) -> None:
-        """Record the pedestrians ``present`` at the present control instant."""
-        block = self._crowd.block(len(present))
-        fill_block(self._steps - 1, present, position, velocity, block)
+    def crowd(self, present: Indices, position: Array, velocity: Array, chosen: Indices) -> None:
+        """Record those of the pedestrians ``present`` whose rows are ``chosen``, as of now."""
+        block = self._crowd.block(len(chosen))
+        fill_block(self._steps - 1, present, position, velocity, chosen, block)
 
     def background(
         self, time: float, vehicles: BackgroundVehicles, wanted: NDArray[np.int64]
@@ -217,13 +218,14 @@ class Tables:
 
 @kernel
 def fill_block(
-    step: int, present: NDArray[np.int64], position: Array, velocity: Array, block: Array
+    step: int, present: Indices, position: Array, velocity: Array, chosen: Indices, block: Array
 ) -> None:
     """Fill the crowd's rows of one step."""
-    for j in range(len(present)):
+    for j in range(len(chosen)):
+        i = chosen[j]
         block[j, 0] = step
-        block[j, 1] = present[j]
-        block[j, 2] = position[j, 0]
-        block[j, 3] = position[j, 1]
-        block[j, 4] = velocity[j, 0]
-        block[j, 5] = velocity[j, 1]
+        block[j, 1] = present[i]
+        block[j, 2] = position[i, 0]
+        block[j, 3] = position[i, 1]
+        block[j, 4] = velocity[i, 0]
+        block[j, 5] = velocity[i, 1]

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from giveway.recorder import Recorder
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 
 class Ending(enum.StrEnum):
@@ -94,7 +95,10 @@ class Loop:
         self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
         self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
         self._far_background = -self._far_steps
+        self._near = parts.config.record.near
         self._named = 0
+        self._fronts = np.empty((0, 2))
+        self._chosen = np.empty(0, dtype=np.int64)
 
     def run(self, watcher: Watcher | None, interrupted: Callable[[], bool]) -> Ending:
         """Step until every ego is done, a limit or an interrupt.
@@ -134,8 +138,10 @@ class Loop:
         limit = np.inf if parts.config.time_limit is None else parts.config.time_limit
         last_step = min(limit, parts.sumo.end - self._start) / self._time_step - 1e-6
         while True:
+            self._began = perf_counter()
             if self._k % parts.substeps == 0:
                 self._read_sumo()
+            self._read_at = perf_counter()
             acting = self._control()
             if watcher is not None:
                 watcher(self._progress(acting))
@@ -182,13 +188,16 @@ class Loop:
 
     def _places(self) -> Array:
         """(e, 2) [m] the egos' front bumpers."""
-        return np.array([ego.pose[:2] for ego in self._egos]).reshape(-1, 2)
+        if len(self._fronts) != len(self._egos):
+            self._fronts = np.empty((len(self._egos), 2))
+        for row, ego in enumerate(self._egos):
+            self._fronts[row, 0], self._fronts[row, 1], _ = ego.pose
+        return self._fronts
 
     # --- steps 2 and 3 ------------------------------------------------------------------------
 
     def _control(self) -> str:
         """Decide on every ego's force, and record the instant."""
-        began = perf_counter()
         time = self._start + self._k * self._time_step
         self._beat.step(self._k, time)
         self._beat.beat(Phase.CONTROLLING)
@@ -210,7 +219,7 @@ class Loop:
             acting = acting or decision.acting
         self._record_crowd()
         recorder.journal.commit()
-        self._began, self._predicting, self._controlling = began, predicting, controlling
+        self._predicting, self._controlling = predicting, controlling
         return acting
 
     def _record_crowd(self) -> None:
@@ -219,33 +228,26 @@ class Loop:
         if len(population.ids) > self._named:
             self._recorder.name_pedestrians(population.ids[self._named :])
             self._named = len(population.ids)
-        present, crowd = population.present, population.crowd
-        if self._k % self._far_steps:
-            near = self._near(crowd.position)
-            if near is not None:
-                chosen = np.flatnonzero(near)
-                self._recorder.crowd(
-                    present[chosen], crowd.position[chosen], crowd.velocity[chosen]
-                )
-                return
-        self._recorder.crowd(present, crowd.position, crowd.velocity)
+        crowd = population.crowd
+        within = self._near if self._k % self._far_steps else np.inf
+        chosen = self._choose(crowd.position, within)
+        self._recorder.crowd(population.present, crowd.position, crowd.velocity, chosen)
 
-    def _near(self, places: Array) -> NDArray[np.bool_] | None:
-        """Which of ``places`` are near an ego; None: all."""
-        near = np.empty(len(places), dtype=np.bool_)
-        count = mark_near(places, self._places(), self._parts.config.record.near, near)
-        return None if count == len(places) else near
+    def _choose(self, places: Array, within: float) -> Indices:
+        """Which of ``places`` are ``within`` so many metres of an ego; with infinity, all."""
+        if len(places) > len(self._chosen):
+            self._chosen = np.empty(2 * len(places), dtype=np.int64)
+        count = choose_near(places, self._places(), within, self._chosen)
+        return self._chosen[:count]
 
     def _record_background(self) -> None:
         background = self._mirror.background
         if not background.ids:
             return
-        wanted: NDArray[np.int64] = np.arange(len(background.ids))
+        within = self._near
         if self._k - self._far_background >= self._far_steps:
-            self._far_background = self._k
-        else:
-            near = self._near(np.column_stack([background.x, background.y]))
-            wanted = wanted if near is None else np.flatnonzero(near)
+            self._far_background, within = self._k, np.inf
+        wanted = self._choose(np.column_stack([background.x, background.y]), within)
         time = self._start + self._k * self._time_step
         self._recorder.background(time, background, wanted)
 
@@ -283,7 +285,7 @@ class Loop:
             self._controlling,
             vehicle_at - recorded_at,
             crowd_at - vehicle_at,
-            ended - crowd_at,
+            ended - crowd_at + self._read_at - self._began,
             ended - self._began,
         )
 
@@ -295,7 +297,7 @@ class Loop:
         surroundings = parts.surroundings
         parts.crowd_model.advance(population.crowd, self._mirror.vehicles, surroundings)
         there = parts.arrived(population.crowd)
-        if not there.any():
+        if not np.count_nonzero(there):
             return
         names = population.release(there)  # they leave SUMO with its next step
         ours = names if parts.exchange is None else parts.exchange.arrive(names)
@@ -304,14 +306,15 @@ class Loop:
 
 
 @kernel
-def mark_near(places: Array, egos: Array, distance: float, near: NDArray[np.bool_]) -> int:
-    """Mark the places within ``distance`` [m] of an ego; how many there are."""
+def choose_near(places: Array, egos: Array, distance: float, chosen: Indices) -> int:
+    """Gather who is within ``distance`` [m] of an ego, everybody if that is infinite."""
     count = 0
     for i in range(len(places)):
-        near[i] = False
+        near = np.isinf(distance)
         for j in range(len(egos)):
             d_x, d_y = places[i, 0] - egos[j, 0], places[i, 1] - egos[j, 1]
-            if d_x * d_x + d_y * d_y <= distance * distance:
-                near[i] = True
-        count += near[i]
+            near |= d_x * d_x + d_y * d_y <= distance * distance
+        if near:
+            chosen[count] = i
+            count += 1
     return count
