@@ -53,14 +53,14 @@ class Exchange:
         )
 
     def update(self, egos: Array) -> None:
-        """Once after each SUMO step: lights, then who leaves, then who joins.
+        """Once after each SUMO step: who leaves, who joins, then the lights.
 
         Args:
             egos: (e, 2) [m] centres of the egos.
         """
-        self._read_lights()
         self._hand_back(egos)
         self._take_over(egos)
+        self._read_lights()  # for those who have just joined, too: some wait at a red one
 
     def _read_lights(self) -> None:
         """A crossing whose light is not green is closed."""
