@@ -105,7 +105,7 @@ def run_layers(
     taken = folder is not None and take_folder(folder, force=force)
     rows = Journal(journal)
     where = None if folder is None else str(folder.absolute())
-    wanted = {"results": where, "parquet": parquet, "pictures": pictures}
+    wanted = {"results": where, "taken": taken, "parquet": parquet, "pictures": pictures}
     rows.write_meta({"config": dump_toml(config), **wanted})
     native_log = None if journal is None else journal / STDERR_FILE
     with DeferredInterrupt() as interrupt:  # writing is not to be torn either

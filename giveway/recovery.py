@@ -48,13 +48,15 @@ def recover(journal: Path, verdict: Verdict) -> CrashError:
         f"{config.scenario}' looks for the cause"
     )
     error = CrashError(report)
+    if not contents.commits:
+        if contents.meta["taken"]:
+            release_folder(Path(folder))
+        return error
     error.result = result = _result_of(config, scenario, contents, error, verdict)
     if folder is not None:
-        wanted = {name: contents.meta[name] for name in ("parquet", "pictures")}
-        if len(result.time):
-            keep(result, Path(folder), taken=False, **wanted)
-        else:
-            release_folder(Path(folder))
+        wanted = {name: contents.meta[name] for name in ("parquet", "pictures", "taken")}
+        keep(result, Path(folder), **wanted)
+        error.args = (f"{report}; rows up to then are in {folder}",)
     return error
 
 

@@ -17,13 +17,8 @@ def run_isolated() -> int:
     """
     with journal_folder() as journal:
         verdict = supervise(own_command(), journal)
-        if verdict.interrupted and verdict.code:
-            return verdict.code if verdict.code == INTERRUPTED else INTERRUPTED
         if not verdict.crashed:
             return verdict.code
         from giveway.recovery import recover
 
-        error = recover(journal, verdict)
-        kept = error.result
-        rows = 0 if kept is None else len(kept.time)
-        return fail(f"{error}; {rows} instants up to then are kept", 1)
+        return fail(str(recover(journal, verdict)), INTERRUPTED if verdict.interrupted else 1)
