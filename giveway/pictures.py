@@ -6,7 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.figures import influence_figure, save_figure, state_figure, top_view_figure
+from giveway.figures import (
+    crowd_view_figure,
+    influence_figure,
+    save_figure,
+    state_figure,
+    top_view_figure,
+)
 from giveway.results import MARKS
 from pedestrian_model import Vehicles, vehicle_influence
 
@@ -27,7 +33,9 @@ _CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
 
 
 def save_run_pictures(result: RunResult, folder: Path) -> None:
-    """Write ``state.png`` and ``top_view.png`` of the first ego, ``state_2.png`` of the second.
+    """Write ``state.png`` and ``top_view.png`` of the first ego, ``state_2.png`` of the second ...
+
+    Without an ego there are only the trajectories.
 
     Raises:
         OSError: a file cannot be written.
@@ -35,6 +43,8 @@ def save_run_pictures(result: RunResult, folder: Path) -> None:
     for ego, mark in zip(result.egos, MARKS, strict=False):
         save_figure(state_picture(result, ego), folder / f"state{mark}.png")
         save_figure(top_view_picture(result, ego), folder / f"top_view{mark}.png")
+    if not result.egos and result.crowd_track.x.size:
+        save_figure(crowd_picture(result), folder / "top_view.png")
 
 
 def state_picture(result: RunResult, ego: EgoResult) -> Figure:
@@ -57,6 +67,17 @@ def top_view_picture(result: RunResult, ego: EgoResult) -> Figure:
         background=result.background_track,
         road=result.road,
         title=_title(result, ego),
+    )
+
+
+def crowd_picture(result: RunResult) -> Figure:
+    """The trajectories of a run without an ego."""
+    people = len(result.crowd_track.ids)
+    return crowd_view_figure(
+        result.time,
+        result.crowd_track,
+        road=result.road,
+        title=f"{result.scenario.name}, {people} pedestrians, seed {result.config.seed}",
     )
 
 

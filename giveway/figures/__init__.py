@@ -3,6 +3,12 @@
 from giveway.figures.influence import influence_figure
 from giveway.figures.state import state_figure
 from giveway.figures.style import save_figure
-from giveway.figures.top_view import top_view_figure
+from giveway.figures.top_view import crowd_view_figure, top_view_figure
 
-__all__ = ["influence_figure", "save_figure", "state_figure", "top_view_figure"]
+__all__ = [
+    "crowd_view_figure",
+    "influence_figure",
+    "save_figure",
+    "state_figure",
+    "top_view_figure",
+]

@@ -31,6 +31,9 @@ SNAPSHOTS = 6
 ENCOUNTER = 10.0  # [m] snapshots are of the time in which somebody is this close to the ego
 MARGIN = 2.0  # [m] around all trajectories
 SURROUNDINGS = 8.0  # [m] shown around the ego's places in the snapshots
+LARGEST_PART = 70.0  # [m] of a side that all snapshots share; on longer drives the view goes along
+VIEW = (50.0, 32.0)  # [m] width and height of a view that goes along
+SLENDEREST = 2.2  # the overview is at most so much taller than wide, and twice so much wider
 TICK = 1.0  # [s] of walking is the length of a pedestrian's velocity tick
 NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # of the ego: parts of length and width
 SEGMENTS = 150  # at most, per trajectory
@@ -49,6 +52,25 @@ class _Box(NamedTuple):
         left, bottom = points.min(axis=0) - margin
         right, top = points.max(axis=0) + margin
         return cls(float(left), float(bottom), float(right), float(top))
+
+    @classmethod
+    def centred(cls, middle: NDArray[np.float64], size: tuple[float, float]) -> _Box:
+        half = np.array(size) / 2.0
+        return cls(*(middle - half).tolist(), *(middle + half).tolist())
+
+    def less_slender(self) -> _Box:
+        """The same view, widened where it is too slender to be drawn beside or above others."""
+        width, height = self.right - self.left, self.top - self.bottom
+        more_x = max(0.0, height / SLENDEREST - width) / 2.0
+        more_y = max(0.0, width / (2.0 * SLENDEREST) - height) / 2.0
+        return _Box(
+            self.left - more_x, self.bottom - more_y, self.right + more_x, self.top + more_y
+        )
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height [m]."""
+        return self.right - self.left, self.top - self.bottom
 
     @property
     def aspect(self) -> float:
@@ -100,13 +122,18 @@ def top_view_figure(
     corners = np.array([rectangle(ego, k, shape) for k in range(ego.time.size)])
     walked = np.column_stack((crowd.x, crowd.y))
     whole = _Box.around(np.concatenate((corners.reshape(-1, 2), walked)), MARGIN)
+    whole = whole.less_slender()
     part = _Box.around(corners[steps].reshape(-1, 2), SURROUNDINGS)
+    parts = [part] * len(steps)
+    if max(part.size) > LARGEST_PART:
+        parts = [_Box.centred(corners[k].mean(axis=0), VIEW) for k in steps]
 
-    figure, overview, panels = _arrange(whole, part, len(steps))
-    colours = Normalize(ego.time[0], max(ego.time[-1], ego.time[0] + 1e-9))
+    figure, overview, panels = _arrange(whole, parts)
+    colours = _colours(ego.time)
     road = [line for line in road or () if whole.touches(line)]
     _draw_road(overview, road)
-    lines = _draw_trajectories(overview, ego, crowd, colours)
+    lines = _draw_walks(overview, ego.time, crowd, colours)
+    _draw_drive(overview, ego, colours)
     for k in steps:
         colour = lines.cmap(colours(ego.time[k]))
         overview.add_patch(Polygon(corners[k], fill=False, edgecolor=colour, linewidth=1.4))
@@ -114,11 +141,11 @@ def top_view_figure(
     overview.set(
         xlabel="x [m]",
         ylabel="y [m]",
-        title="Trajectories, begun at the circles; the ego at the snapshots",
+        title="Trajectories, begun at the circles;\nthe ego at the snapshots",
     )
     figure.colorbar(lines, ax=overview, label="Time [s]", shrink=0.8, aspect=30)
-    for axes, k in zip(panels, steps, strict=True):
-        _draw_road(axes, road)
+    for axes, k, part in zip(panels, steps, parts, strict=True):
+        _draw_road(axes, [line for line in road if part.touches(line)])
         if background is not None:
             _draw_background(axes, float(ego.time[k]), background)
         _draw_scene(axes, k, corners[k], crowd, body_radius)
@@ -126,6 +153,40 @@ def top_view_figure(
         axes.set_title(f"t = {ego.time[k]:.2f} s", fontsize=9)
     figure.suptitle(title)
     return figure
+
+
+@styled
+def crowd_view_figure(
+    time: NDArray[np.float64], crowd: CrowdTrack, *, road: Road | None = None, title: str = ""
+) -> Figure:
+    """The trajectories of a run without an ego, coloured by time, to scale.
+
+    Args:
+        time: (T,) [s] the control instants.
+        crowd: the crowd's track.
+        road: areas and lines to draw underneath.
+        title: of the figure.
+
+    Raises:
+        ValueError: nobody was recorded.
+    """
+    if not crowd.x.size:
+        raise ValueError("crowd view: nobody was recorded; pass a track of at least one record")
+    whole = _Box.around(np.column_stack((crowd.x, crowd.y)), SURROUNDINGS).less_slender()
+    height = min(max(7.5 * whole.aspect, 4.0), 9.0)
+    figure = Figure(layout="constrained", figsize=(height / whole.aspect + 1.6, height + 0.8))
+    axes = figure.subplots()
+    _draw_road(axes, [line for line in road or () if whole.touches(line)])
+    lines = _draw_walks(axes, time, crowd, _colours(time))
+    whole.apply(axes)
+    axes.set(xlabel="x [m]", ylabel="y [m]", title="Trajectories, begun at the circles")
+    figure.colorbar(lines, ax=axes, label="Time [s]", shrink=0.8, aspect=30)
+    figure.suptitle(title)
+    return figure
+
+
+def _colours(time: NDArray[np.float64]) -> Normalize:
+    return Normalize(time[0], max(time[-1], time[0] + 1e-9))
 
 
 def rectangle(ego: EgoTrack, k: int, shape: VehicleShape) -> NDArray[np.float64]:
@@ -160,17 +221,19 @@ def _nearest_steps(ego: EgoTrack, times: Sequence[float]) -> NDArray[np.int64]:
     return np.array([np.abs(ego.time - time).argmin() for time in times], dtype=np.int64)
 
 
-def _arrange(whole: _Box, part: _Box, count: int) -> tuple[Figure, Axes, list[Axes]]:
+def _arrange(whole: _Box, parts: Sequence[_Box]) -> tuple[Figure, Axes, list[Axes]]:
     """A tall overview stands beside the snapshots, a flat one above them."""
-    columns = min(count, 2)
-    rows = -(-count // columns)
+    part, count = parts[0], len(parts)
+    together = all(each == part for each in parts)
     beside = whole.aspect > 0.6
+    columns = min(count, 2 if beside or together else 3)
+    rows = -(-count // columns)
     snapshots_width = 6.6 if beside else 9.5  # [in]
-    snapshots_height = rows * (snapshots_width / 2 * part.aspect + 0.3) + 0.4
+    snapshots_height = rows * (snapshots_width / max(columns, 2) * part.aspect + 0.3) + 0.4
     figure = Figure(layout="constrained")
     if beside:
         height = min(max(snapshots_height, 4.5), 9.0)
-        overview_width = height / whole.aspect + 1.0
+        overview_width = max(height / whole.aspect + 1.0, 3.8)
         figure.set_size_inches(overview_width + snapshots_width, height + 0.4)
         left, right = figure.subfigures(
             1, 2, squeeze=False, width_ratios=(overview_width, snapshots_width)
@@ -183,7 +246,7 @@ def _arrange(whole: _Box, part: _Box, count: int) -> tuple[Figure, Axes, list[Ax
         ).flat
     overview = left.subplots()
     right.suptitle(f"Snapshots; a tick is {TICK:g} s of walking", fontsize=10)
-    grid = right.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    grid = right.subplots(rows, columns, sharex=together, sharey=together, squeeze=False)
     return figure, overview, keep_panels(grid, count)
 
 
@@ -211,13 +274,13 @@ def _draw_background(axes: Axes, time: float, background: BackgroundTrack) -> No
         )
 
 
-def _draw_trajectories(
-    axes: Axes, ego: EgoTrack, crowd: CrowdTrack, colours: Normalize
+def _draw_walks(
+    axes: Axes, time: NDArray[np.float64], crowd: CrowdTrack, colours: Normalize
 ) -> LineCollection:
     """Paths as short lines, each in the colour of its time; circles mark where they begin."""
     groups = PedestrianGroups(crowd)
     places = np.column_stack((crowd.x, crowd.y))[groups.order]
-    times = ego.time[crowd.step[groups.order]]
+    times = time[crowd.step[groups.order]]
     segments, ages = [np.empty((0, 2, 2))], [np.empty(0)]
     for first, last in zip(groups.first, groups.last, strict=True):
         kept = _thinned(int(first), int(last))
@@ -230,7 +293,11 @@ def _draw_trajectories(
     axes.add_collection(lines, autolim=False)
     start = places[groups.first]
     axes.scatter(start[:, 0], start[:, 1], s=6, facecolors="none", edgecolors=BLACK, linewidths=0.5)
+    return lines
 
+
+def _draw_drive(axes: Axes, ego: EgoTrack, colours: Normalize) -> None:
+    """The ego's way in the colours of time."""
     kept = _thinned(0, ego.time.size - 1)
     front = np.column_stack((ego.front_x, ego.front_y))[kept]
     driven = LineCollection(
@@ -238,7 +305,6 @@ def _draw_trajectories(
         norm=colours, cmap=TIME_COLOURS, linewidths=3.0, capstyle="round", label="ego",
     )  # fmt: skip
     axes.add_collection(driven, autolim=False)
-    return lines
 
 
 def _thinned(first: int, last: int) -> NDArray[np.int64]:

@@ -10,8 +10,8 @@ import pytest
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import Polygon
 
-from giveway.figures import top_view_figure
-from giveway.figures.top_view import rectangle
+from giveway.figures import crowd_view_figure, top_view_figure
+from giveway.figures.top_view import SLENDEREST, VIEW, rectangle
 from giveway.tracks import BackgroundTrack, CrowdTrack, VehicleShape
 
 CAR = VehicleShape(length=5.0, width=2.0)
@@ -168,3 +168,36 @@ def test_other_vehicles_are_drawn_where_they_are_by_then(run):
     )
     assert at_0.get_xy()[:4].tolist() == [[30, 5], [26, 5], [26, 3], [30, 3]]
     assert at_1.get_xy()[:4].tolist() == [[32, 5], [28, 5], [28, 3], [32, 3]]
+
+
+def test_on_a_long_drive_the_snapshots_go_along_with_the_ego(run):
+    ego, _ = run(0, 1, "mpc", 400.0)
+    figure = top_view_figure(ego, nobody(), CAR, R)
+    overview, snapshots = panels(figure)
+    for axes in snapshots:
+        assert np.diff(axes.get_xlim())[0] == pytest.approx(VIEW[0])
+        assert np.diff(axes.get_ylim())[0] == pytest.approx(VIEW[1])
+        car = drawn(axes, Polygon, "ego").get_xy()[:-1].mean(axis=0)
+        np.testing.assert_allclose(car, (np.mean(axes.get_xlim()), np.mean(axes.get_ylim())))
+    height, width = np.diff(overview.get_ylim())[0], np.diff(overview.get_xlim())[0]
+    assert height / width == pytest.approx(0.5 / SLENDEREST)  # not a mere line
+
+
+def test_roads_out_of_the_view_are_not_drawn(run):
+    ego, crowd = run(5, 1, "mpc")
+    near = np.array([(0, -2), (50, -2), (50, 2), (0, 2), (0, -2)], dtype=float)
+    figure = top_view_figure(ego, crowd, CAR, R, road=[near, near + 1000.0])
+    overview, _ = panels(figure)
+    roads = [patch for patch in overview.patches if len(patch.get_xy()) == len(near)]
+    assert sum(np.array_equal(road.get_xy(), near) for road in roads) == 1
+    assert not any(np.array_equal(road.get_xy(), near + 1000.0) for road in roads)
+
+
+def test_without_an_ego_the_walks_are_drawn(run):
+    ego, crowd = run(7, 1, "mpc")
+    axes, _ = panels(crowd_view_figure(ego.time, crowd, title="seven"))
+    lines = drawn(axes, LineCollection, "pedestrians")
+    assert len(lines.get_segments()) > 7
+    assert lines.get_array().max() <= ego.time[-1]
+    with pytest.raises(ValueError, match="nobody was recorded"):
+        crowd_view_figure(ego.time, nobody())
