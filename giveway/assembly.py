@@ -25,8 +25,8 @@ from giveway.ego import Driver
 from giveway.errors import ConfigError, ControlError, CrowdError, ScenarioError, VehicleError
 from giveway.exchange import Exchange
 from giveway.population import Population
-from giveway.scenario_files import StartOptions, read_scenario
-from giveway.spawn import Spawned, spawn
+from giveway.scenario_files import StartOptions, free_prefix, read_scenario
+from giveway.spawn import PREFIX, Spawned, spawn
 from giveway.sumo import SumoSession
 from giveway.sumo_command import all_types, inserted_type
 from giveway.tracks import VehicleShape
@@ -243,7 +243,8 @@ def _population(
     """The pedestrians that giveway adds."""
     if not config.crowd.pedestrians:
         return Population()
-    spawned = spawn(config.crowd, departures.first_path, config.seed)
+    prefix = free_prefix(PREFIX, (file for file in sumo.start.read if file != net_file))
+    spawned = spawn(config.crowd, departures.first_path, config.seed, prefix)
     for name in departures.names:
         if name in spawned.ids:
             msg = f"--ego-id '{name}': a pedestrian has this id; choose another"

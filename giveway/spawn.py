@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 _REDRAWS = 1_000
 _ATTEMPTS_PER_PERSON = 2_000  # rejection sampling up to a third of the densest packing
 
+PREFIX = "ped"  # of the ids of the pedestrians that giveway adds
+
 
 @dataclass(frozen=True)
 class Spawned:
@@ -31,7 +33,7 @@ class Spawned:
     desired_speed: Array  # (n,) [m/s]
 
 
-def spawn(config: CrowdConfig, path: EgoPath | None, seed: int) -> Spawned:
+def spawn(config: CrowdConfig, path: EgoPath | None, seed: int, prefix: str = PREFIX) -> Spawned:
     """Draw ``config.pedestrians`` people, uniformly in the spawn area, none closer than allowed.
 
     With ``two_sided`` every second one stands on, and walks to, the mirror image about the ego's
@@ -42,6 +44,7 @@ def spawn(config: CrowdConfig, path: EgoPath | None, seed: int) -> Spawned:
         config: how many, where, where to, how fast.
         path: the ego's, for ``two_sided``; None where no ego is inserted.
         seed: of the draw.
+        prefix: of their ids; a number follows.
 
     Raises:
         CrowdError: the area is too small for so many people at this spacing, or there is no ego
@@ -60,7 +63,7 @@ def spawn(config: CrowdConfig, path: EgoPath | None, seed: int) -> Spawned:
     if axis is not None:
         unmirrored = _mirror(position[1::2], axis)
         destination[1::2] = _mirror(unmirrored + np.asarray(config.walk), axis)
-    ids = tuple(f"ped{i}" for i in range(config.pedestrians))
+    ids = tuple(f"{prefix}{i}" for i in range(config.pedestrians))
     return Spawned(ids, position, destination, desired_speed)
 
 

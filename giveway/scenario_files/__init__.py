@@ -5,6 +5,7 @@ that writes nothing beside the scenario.
 """
 
 from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, ScenarioFiles, read_scenario
+from giveway.scenario_files.person_ids import free_prefix
 from giveway.scenario_files.starting import Start, StartOptions, prepare_start
 from giveway.scenario_files.vehicle_ids import undeclared
 
@@ -14,6 +15,7 @@ __all__ = [
     "ScenarioFiles",
     "Start",
     "StartOptions",
+    "free_prefix",
     "prepare_start",
     "read_scenario",
     "undeclared",

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+_CHUNK = 1 << 22  # bytes
 _GZIP = b"\x1f\x8b"  # the magic number: SUMO looks at the content too, not at the name
 
 
@@ -29,3 +30,20 @@ def opened(path: Path) -> Iterator[IO[bytes]]:
             return
         with gzip.open(raw) as stream:
             yield cast("IO[bytes]", stream)
+
+
+def pieces(path: Path) -> Iterator[bytes]:
+    """The file's content in large pieces that begin and end between two tags.
+
+    Raises:
+        OSError: it cannot be read.
+        EOFError: its compressed content is cut off.
+    """
+    with opened(path) as stream:
+        rest = b""
+        while chunk := stream.read(_CHUNK):
+            text = rest + chunk
+            cut = text.rfind(b"<")  # an element may go on in the next chunk
+            whole, rest = (text[:cut], text[cut:]) if cut > 0 else (b"", text)
+            yield whole
+        yield rest

@@ -7,13 +7,12 @@ import re
 from html import unescape
 from typing import TYPE_CHECKING
 
-from giveway.scenario_files.reading import opened
+from giveway.scenario_files.reading import pieces
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-_CHUNK = 1 << 22  # bytes
 _DECLARATION = re.compile(rb"<(vehicle|trip|flow)\s[^>]*?\bid\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 _CALIBRATOR = b"<calibrator"  # inserts vehicles of names of its own
 _COMPARED = 5_000  # declared names, for a guess at what was meant
@@ -48,14 +47,8 @@ def undeclared(name: str, files: Iterable[Path]) -> str | None:
 def _declarations(files: Iterable[Path]) -> Iterator[tuple[bytes, str]]:
     """Kind and id of every vehicle, trip and flow; a calibrator is told by its kind alone."""
     for file in files:
-        with opened(file) as stream:
-            rest = b""
-            while chunk := stream.read(_CHUNK):
-                text = rest + chunk
-                cut = text.rfind(b"<")  # an element may go on in the next chunk
-                whole, rest = (text[:cut], text[cut:]) if cut > 0 else (b"", text)
-                yield from _in(whole)
-            yield from _in(rest)
+        for text in pieces(file):
+            yield from _in(text)
 
 
 def _in(text: bytes) -> Iterator[tuple[bytes, str]]:

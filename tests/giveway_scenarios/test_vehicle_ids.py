@@ -50,7 +50,7 @@ def test_a_declaration_may_lie_across_two_chunks(
     file = tmp_path / "routes.xml"
     file.write_bytes(ROUTES)
     for size in (1, 7, 64):
-        monkeypatch.setattr("giveway.scenario_files.vehicle_ids._CHUNK", size)
+        monkeypatch.setattr("giveway.scenario_files.reading._CHUNK", size)
         assert undeclared("north.1", [file]) is None
         assert undeclared("zzz", [file]) is not None
 

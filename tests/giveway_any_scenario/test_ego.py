@@ -1,0 +1,243 @@
+"""The ego: where it is taken over or inserted, its way, its headings, other vehicles in front."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+import shapely
+
+import giveway
+from giveway.simulation import Ending
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from giveway import RunResult
+
+Drive = Callable[..., tuple["RunResult", Any]] if TYPE_CHECKING else Any
+NOBODY = {"crowd": {"zone": "none"}}
+ROUND_THE_BLOCK = ("B1C1", "C1C2", "C2B2", "B2B1", "B1C1", "C1D1")  # east, north, west, south
+
+
+def headings_from_track(track: Any, length: float) -> np.ndarray:
+    """Direction from where the front was ``length`` [m] ago to where it is; nan at first."""
+    s = track.position
+    before = s - length
+    x, y = np.interp(before, s, track.front_x), np.interp(before, s, track.front_y)
+    heading = np.arctan2(track.front_y - y, track.front_x - x)
+    return np.where(before >= 0.0, heading, np.nan)
+
+
+def difference(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return np.abs((a - b + np.pi) % (2 * np.pi) - np.pi)
+
+
+# --- taken over --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("step", [1, 0.1, 0.05])
+def test_a_vehicle_that_departs_is_taken_over_where_it_is_and_as_fast_as_it_is(
+    drive: Drive, city: Callable[[float], Path], step: float
+) -> None:
+    result, look = drive(city(step), ego={"take_over": ("car10",)}, time_limit=5.0, **NOBODY)
+    track, first = result.ego_track, look.times.index(result.time[0])
+    x, y, angle, speed, length, width = look.cars[first]["car10"]  # as SUMO had it
+    assert "car10" not in look.cars[first - 1]
+    assert (track.front_x[0], track.front_y[0]) == pytest.approx((x, y), abs=1e-6)
+    assert math.degrees(math.pi / 2 - track.heading[0]) % 360 == pytest.approx(angle, abs=1e-6)
+    assert track.speed[0] == speed
+    assert (result.shape.length, result.shape.width) == (length, width)
+    assert track.position[0] == 0.0
+    moved = np.hypot(np.diff(track.front_x), np.diff(track.front_y))
+    assert moved.max() <= track.speed.max() * result.manifest["time_step"] + 1e-9
+
+
+def test_sumo_has_the_ego_where_we_have_it(crowded: tuple[RunResult, Any]) -> None:
+    result, look = crowded
+    track = result.ego_track
+    for k in range(0, len(track.time), 20):
+        i = int(np.argmin(np.abs(np.array(look.times) - track.time[k])))
+        x, y, angle, *_ = look.cars[i]["car10"]
+        assert math.dist((x, y), (track.front_x[k], track.front_y[k])) < 1e-6
+        ours = math.degrees(math.pi / 2 - track.heading[k])
+        assert abs((angle - ours + 180) % 360 - 180) < 1e-6
+
+
+def test_metres_driven_are_metres_of_lane(drive: Drive, city: Callable[[float], Path]) -> None:
+    ego = {"route": ("A1B1", "B1C1", "C1D1"), "initial_speed": 10.0}
+    regulation = {"reference_speed": 12.0, "traffic_lights": False, "vehicles": False}
+    result, look = drive(city(0.1), ego=ego, regulation=regulation, time_limit=12.0, **NOBODY)
+    track = result.ego_track
+    lanes = [shapely.LineString(shape) for shape in look.lanes.values()]
+    tree = shapely.STRtree(lanes)
+    points = shapely.points(np.column_stack([track.front_x, track.front_y]))
+    measured = 0
+    assert track.position[-1] > 100.0
+    for k in range(len(points) - 1):
+        for i in tree.query(points[k], "dwithin", 1e-6):
+            if shapely.dwithin(lanes[i], points[k + 1], 1e-6):
+                along = lanes[i].project(points[k + 1]) - lanes[i].project(points[k])
+                driven = track.position[k + 1] - track.position[k]
+                assert along == pytest.approx(driven, abs=1e-6)
+                measured += 1
+                break
+    assert measured > 0.9 * len(points)  # the rest is steps over the end of a lane
+
+
+def test_the_ego_looks_where_it_drives_on_roads_of_every_direction(
+    drive: Drive, city: Callable[[float], Path]
+) -> None:
+    result, _ = drive(
+        city(0.1),
+        ego={"route": ROUND_THE_BLOCK, "initial_speed": 8.0, "travel_distance": 430.0},
+        regulation={"reference_speed": 12.0, "traffic_lights": False, "vehicles": False},
+        **NOBODY,
+    )
+    track = result.ego_track
+    assert result.ending is Ending.COMPLETED
+    expected = headings_from_track(track, result.shape.length)
+    assert np.nanmax(difference(track.heading, expected)) < 0.02
+    seen = {round(math.degrees(h)) % 360 for h in track.heading}
+    assert {0, 90, 180, 270} <= seen
+    towards = np.arctan2(np.diff(track.front_y), np.diff(track.front_x))
+    straight = difference(expected[1:], expected[:-1]) < 1e-9
+    assert straight.sum() > 100
+    assert difference(track.heading[:-1], towards)[straight].max() < 1e-6
+    at_the_end = np.array([track.front_x[-1], track.front_y[-1]])  # B1 and B1C1 a second time
+    before = np.column_stack([track.front_x, track.front_y])[track.position < 200.0]
+    assert np.hypot(*(before - at_the_end).T).min() < 4.0
+
+
+def test_diagonals_bends_and_another_network_without_anything_for_pedestrians(
+    drive: Drive,
+    scenario: Callable[..., Path],
+    call_sumo: Callable[..., str],
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "n.nod.xml").write_text(
+        '<nodes><node id="a" x="0" y="0"/><node id="b" x="-80" y="-60"/>'
+        '<node id="c" x="-80" y="60"/><node id="d" x="0" y="100"/></nodes>'
+    )
+    (tmp_path / "e.edg.xml").write_text(
+        '<edges><edge id="ab" from="a" to="b"/><edge id="bc" from="b" to="c" '
+        'shape="-80,-60 -100,-40 -110,0 -100,40 -80,60"/><edge id="cd" from="c" to="d"/></edges>'
+    )
+    net = tmp_path / "bent.net.xml"
+    call_sumo("netconvert", "-n", "n.nod.xml", "-e", "e.edg.xml", "-o", net, cwd=tmp_path)
+    config = scenario("", net=net)
+    ego = {"route": ("ab", "bc", "cd"), "depart_position": 7.0}
+    result, _ = drive(config, ego=ego, regulation={"reference_speed": 10.0})
+    track = result.ego_track
+    assert result.ending is Ending.COMPLETED
+    expected = headings_from_track(track, result.shape.length)
+    assert np.nanmax(difference(track.heading, expected)) < 0.03
+    degrees = np.degrees(track.heading) % 360
+    assert degrees[0] == pytest.approx(216.87, abs=0.01)  # (-4, -3)
+    assert degrees[-1] == pytest.approx(26.57, abs=0.01)  # (2, 1)
+    assert any("neither sidewalks nor walkingareas" in remark for remark in result.remarks)
+
+
+def test_a_left_turn_begins_on_the_left_lane(drive: Drive, city: Callable[[float], Path]) -> None:
+    ego = {"route": ("A1B1", "B1B2"), "lane": 1, "travel_distance": 120.0}
+    regulation = {"traffic_lights": False, "vehicles": False}
+    result, look = drive(city(0.1), ego=ego, regulation=regulation, **NOBODY)
+    track = result.ego_track
+    on_edge = track.front_x < look.lanes["A1B1_1"][-1, 0]
+    y = track.front_y[on_edge]
+    assert y[0] == pytest.approx(look.lanes["A1B1_1"][0, 1])
+    assert y[-1] == pytest.approx(look.lanes["A1B1_2"][0, 1], abs=0.01)
+    assert (np.diff(y) >= -1e-9).all()  # one smooth change, to the left
+    assert np.abs(np.diff(y)).max() < 0.05
+
+
+CLASSES = """
+    <vType id="coach" vClass="bus" length="12"/> <vType id="lorry" vClass="truck" length="9"/>
+    <vType id="bike" vClass="bicycle" maxSpeed="6"/> <vType id="any"/>
+    <trip id="bus" type="coach" depart="0" from="A0B0" to="C0D0"/>
+    <trip id="truck" type="lorry" depart="1" from="A1B1" to="C1C2"/>
+    <trip id="bicycle" type="bike" depart="2" from="A2B2" to="C2D2"/>
+    <flow id="flow" type="any" begin="3" end="100" period="2" from="A3B3" to="C3C2"/>
+"""
+
+
+@pytest.mark.parametrize("options", ["", '<lateral-resolution value="0.8"/>'])
+def test_several_egos_of_all_kinds_each_with_its_own_driver(
+    drive: Drive, scenario: Callable[..., Path], options: str
+) -> None:
+    config = scenario(CLASSES, options)
+    result, look = drive(
+        config,
+        crowd={"zone": "none"},
+        time_limit=12.0,
+        egos=(
+            {"ego": {"take_over": "bus"}, "vehicle": {"mass": 12000.0}, "controller": "pid"},
+            {"ego": {"take_over": "truck"}, "vehicle": {"fmu": "fmi3"}},
+            {"ego": {"take_over": "bicycle"}, "regulation": {"reference_speed": 5.0}},
+            {"ego": {"take_over": "flow.3"}},
+            {"ego": {"id": "own", "route": ["D0C0", "C0B0"], "depart_time": 4.0}},
+        ),
+    )
+    egos = {ego.id: ego for ego in result.egos}
+    assert list(egos) == ["bus", "truck", "bicycle", "own", "flow.3"]  # as they departed
+    assert (egos["bus"].shape.length, egos["truck"].shape.length) == (12.0, 9.0)
+    assert egos["bicycle"].shape.width < 1.0
+    assert set(egos["bus"].track.acting) == {"pid"}
+    assert "mpc" in egos["truck"].track.acting
+    fmus = {name: entry["fmi_version"] for name, entry in result.manifest["vehicles"].items()}
+    assert fmus == {**dict.fromkeys(egos, "2.0"), "truck": "3.0"}
+    assert egos["own"].track.time[0] == pytest.approx(4.0)
+    for name, ego in egos.items():
+        jumps = np.hypot(np.diff(ego.track.front_x), np.diff(ego.track.front_y))
+        assert jumps.max() <= 0.05 * ego.track.speed.max() + 1e-9
+        assert not look.collided(name)
+    assert len(result.summary_table) == 5
+
+
+@pytest.mark.parametrize("speed", [4.0, 13.0])
+@pytest.mark.parametrize("leader", ["slow", "standing"])
+def test_the_ego_keeps_behind_the_vehicle_in_front(
+    drive: Drive, scenario: Callable[..., Path], speed: float, leader: str
+) -> None:
+    standing = '<stop edge="B0C0" endPos="60" duration="15"/>' if leader == "standing" else ""
+    config = scenario(
+        f"""<vType id="van" maxSpeed="3"/>
+        <vehicle id="leader" type="van" depart="0" departPos="30" departLane="1">
+            <route edges="A0B0 B0C0 C0D0"/>{standing}
+        </vehicle>"""
+    )
+    ego = {"route": ("A0B0", "B0C0"), "lane": 1, "depart_time": 1.0, "travel_distance": 120.0}
+    regulation = {"reference_speed": speed, "traffic_lights": False}
+    result, look = drive(config, ego=ego, regulation=regulation, time_limit=60.0, **NOBODY)
+    assert "leader" in look.cars[20]
+    assert not look.collided("ego")
+    gap = result.ego["vehicle_gap"]
+    assert 1.0 < gap.min() < 12.0  # it came near, and not too near
+    assert result.ego_track.speed[-1] < 5.0
+
+
+# --- who never departs --------------------------------------------------------------------------
+
+
+def test_an_unknown_ego_is_refused_with_a_hint(
+    city: Callable[[float], Path],
+) -> None:
+    with pytest.raises(giveway.GivewayError, match=r"--ego car1O.*did you mean 'car1"):
+        giveway.run({"scenario": str(city(1)), "ego": {"take_over": ("car1O",)}})
+
+
+def test_an_ego_that_never_finds_room_to_depart_is_reported(
+    scenario: Callable[..., Path],
+) -> None:
+    config = scenario(
+        """<vehicle id="block" depart="0" departPos="20"><route edges="A0B0"/>
+        <stop lane="A0B0_1" endPos="20" duration="500"/></vehicle>
+        <vehicle id="late" depart="2" departPos="18" departLane="1"><route edges="A0B0"/></vehicle>
+        """,
+        end=20,
+    )
+    with pytest.raises(giveway.GivewayError, match=r"--ego late: .*until 20 s"):
+        giveway.run({"scenario": str(config), "ego": {"take_over": ("late",)}})
