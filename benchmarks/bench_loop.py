@@ -42,10 +42,12 @@ def baseline(result: RunResult) -> float:
     ]
     with ExitStack() as stack:
         parts = assemble(result.config, result.scenario, stack)
+        vehicle = parts.drivers[0].vehicle
+        vehicle.start(position=0.0, speed=float(ego.speed[0]))
         move_ego, move_person = libsumo.vehicle.moveToXY, libsumo.person.moveToXY
         began = perf_counter()
         for (x, y), ids, rows, force in steps:
-            parts.vehicle.step(force)
+            vehicle.step(force)
             move_ego("ego", "", -1, x, y, 90.0, 2)
             for name, (p_x, p_y, p_angle) in zip(ids, rows, strict=True):
                 move_person(name, "", p_x, p_y, p_angle, 2, -1.0)
@@ -68,8 +70,9 @@ def main() -> None:
             ratios.append(result.elapsed / baseline(result))
         elapsed = statistics.median(r.elapsed for r in results)
         steps = len(results[0].ego_track.time) - 1
-        factor = steps * config.time_step / elapsed
-        print(f"{controller}, 30 pedestrians, {steps} steps of {config.time_step} s")
+        seconds = float(results[0].time[-1] - results[0].time[0])
+        factor = seconds / elapsed
+        print(f"{controller}, 30 pedestrians, {steps} steps of {seconds / steps:.2f} s")
         print(f"  loop / (SUMO moves and steps + FMU steps): {statistics.median(ratios):.2f}")
         print(f"  per step: {elapsed / steps * 1e6:.0f} us; real-time factor {factor:.0f}")
         for name in Timings.NAMES[:-1]:

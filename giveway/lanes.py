@@ -109,6 +109,10 @@ class Lanes:
             shape = self._shapes[lane] = np.array(self._sumo.lane.getShape(lane), dtype=np.float64)
         return shape
 
+    def length(self, lane: str) -> float:
+        """Length [m] of a lane's centre line."""
+        return _length(self.shape(lane))
+
     def _start_lanes(self, edge: str, lane: int | None, kind: str) -> list[int]:
         count = int(self._sumo.edge.getLaneNumber(edge))
         if lane is not None and lane >= count:

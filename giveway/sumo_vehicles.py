@@ -55,6 +55,15 @@ class SumoVehicles:
         self._call = call
         self._lanes = lanes
         self._shapes: dict[str, tuple[str, float, float]] = {}
+        # The wrapper's methods only pass their arguments on, which takes as long as the answer.
+        direct = getattr(sumo.libsumo, "_libsumo", None)
+        vehicle = sumo.vehicle
+        self._position = getattr(direct, "vehicle_getPosition", vehicle.getPosition)
+        self._angle = getattr(direct, "vehicle_getAngle", vehicle.getAngle)
+        self._speed = getattr(direct, "vehicle_getSpeed", vehicle.getSpeed)
+        self._lane_id = getattr(direct, "vehicle_getLaneID", vehicle.getLaneID)
+        self._lane_position = getattr(direct, "vehicle_getLanePosition", vehicle.getLanePosition)
+        self._route_id = getattr(direct, "vehicle_getRouteID", vehicle.getRouteID)
         self.egos: set[str] = set()  # driven by giveway
 
     # --- reading ------------------------------------------------------------------------------
@@ -77,20 +86,18 @@ class SumoVehicles:
             if name not in self._shapes:
                 size = vehicle.getLength(name), vehicle.getWidth(name)
                 self._shapes[name] = (vehicle.getTypeID(name), *size)
-        rows = np.array(
-            [
-                (
-                    *vehicle.getPosition(name),
-                    angle_to_heading(vehicle.getAngle(name)),
-                    vehicle.getSpeed(name),
-                    *self._shapes[name][1:],
-                )
-                for name in ids
-            ],
-            dtype=np.float64,
-        ).reshape(-1, 6)
-        types = tuple(self._shapes[name][0] for name in ids)
-        return BackgroundVehicles(ids, types, *np.ascontiguousarray(rows.T))
+        types, lengths, widths = zip(*map(self._shapes.__getitem__, ids), strict=True)
+        places = np.array(list(map(self._position, ids)), dtype=np.float64)
+        return BackgroundVehicles(
+            ids=ids,
+            types=types,
+            x=np.ascontiguousarray(places[:, 0]),
+            y=np.ascontiguousarray(places[:, 1]),
+            heading=np.radians(90.0 - np.array(list(map(self._angle, ids)))),
+            speed=np.array(list(map(self._speed, ids))),
+            length=np.array(lengths),
+            width=np.array(widths),
+        )
 
     def state(self, name: str) -> VehicleState:
         """One vehicle as SUMO has it now."""
@@ -116,28 +123,28 @@ class SumoVehicles:
         road = self._vehicle.getRoadID(name)
         return bool(road) and not road.startswith(":")
 
-    def path_ahead(self, name: str, distance: float) -> Array | None:
-        """(k, 2) [m] from the front bumper along the lanes to come; None: not on a lane."""
-        vehicle = self._vehicle
-        lane = vehicle.getLaneID(name)
-        if not lane:
-            return None
-        shape = self._lanes.shape(lane)
-        front = np.array(vehicle.getPosition(name))
-        steps = np.hypot(*np.diff(shape, axis=0).T)
-        share = vehicle.getLanePosition(name) / max(self._sumo.lane.getLength(lane), 1e-9)
-        along = np.concatenate([[0.0], np.cumsum(steps)])
-        points = [front, *shape[along > share * along[-1]]]
-        driven = (1.0 - share) * along[-1]
-        for link in vehicle.getNextLinks(name):
-            if driven > distance:
+    def whereabouts(self, name: str) -> tuple[str, str, float]:
+        """The vehicle's lane (empty: none), its route's id, and its position [m] on the lane."""
+        return self._lane_id(name), self._route_id(name), self._lane_position(name)
+
+    def lanes_ahead(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
+        """Its own ``lane`` and those that it comes to within at least ``distance`` [m]."""
+        lanes, known = [lane], 0.0
+        for link in self._vehicle.getNextLinks(name):
+            if known > distance:
                 break
-            for onwards in (link[4], link[0]):
-                if onwards:
-                    following = self._lanes.shape(onwards)
-                    points.extend(following)
-                    driven += float(np.hypot(*np.diff(following, axis=0).T).sum())
-        return np.array(points)
+            for onwards in filter(None, (link[4], link[0])):
+                lanes.append(onwards)
+                known += self._lanes.length(onwards)
+        return tuple(lanes)
+
+    def shape(self, lane: str) -> Array:
+        """(k, 2) [m] centre line of a lane."""
+        return self._lanes.shape(lane)
+
+    def lane_length(self, lane: str) -> float:
+        """SUMO's length of a lane [m], which need not be its centre line's."""
+        return float(self._sumo.lane.getLength(lane))
 
     def deceleration(self, name: str) -> float:
         """How hard the vehicle's driver brakes [m/s^2]."""

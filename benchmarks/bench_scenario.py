@@ -1,0 +1,346 @@
+"""The cost of a city full of walkers: each part of the loop, next to plain SUMO's own step.
+
+    python benchmarks/bench_scenario.py [--walkers N ...] [--profile | --hour]
+
+Grid cities of constant density are built on the spot: 100 m blocks with sidewalks, crossings,
+walkingareas and traffic lights, ten walkers and one car per street. All walkers are taken over
+(zone everywhere), an ego drives through by MPC. Plain SUMO runs the same scenario by itself
+afterwards, in the same process over the same simulated time. Building, loading, taking everybody
+over and warming up are not timed; those who depart, arrive and get stuck meanwhile are.
+"""
+
+from __future__ import annotations
+
+import argparse
+import cProfile
+import importlib.util
+import os
+import pstats
+import random
+import resource
+import subprocess
+import tempfile
+from collections import defaultdict
+from contextlib import ExitStack
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, NamedTuple
+from unittest import mock
+
+import libsumo
+import numpy as np
+
+from giveway.api import RunResult, simulate
+from giveway.configfile import Layer
+from giveway.exchange import Exchange
+from giveway.loading import load
+from giveway.mirror import Mirror
+from giveway.sumo import SumoSession
+from giveway.tracks import Timings
+from giveway.yielding import Yielding
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+BLOCK = 100.0  # [m]
+WALKERS_PER_STREET = 10
+WARM_UP = 5.0  # [s] simulated, from the first instant on
+WINDOW = 10.0  # [s] simulated, timed
+LAST = 100_000.0  # [s] nobody departs later
+WALK_LENGTH = (3, 30)  # streets
+TURNOVER = 1200.0  # [s] in which as many depart anew as there are
+SPLIT = {  # what the loop's own table lumps together as SUMO's
+    "sumo step": (libsumo, "simulationStep"),
+    "moves": (SumoSession, "mirror"),
+    "check": (SumoSession, "_check"),
+    "vehicles": (Mirror, "read"),
+    "exchange": (Exchange, "update"),
+    "yielding": (Yielding, "update"),
+}
+
+
+class Case(NamedTuple):
+    """One city and how it is run."""
+
+    walkers: int
+    step_length: float  # [s] SUMO's
+    walls: bool
+
+
+class City(NamedTuple):
+    """A scenario on disk."""
+
+    config_file: Path
+    ego_route: str
+    streets: int
+
+
+CASES = (
+    Case(100, 0.1, False),
+    Case(1_000, 0.1, False),
+    Case(3_000, 0.1, False),
+    Case(10_000, 0.1, False),
+    Case(100, 0.1, True),
+    Case(1_000, 0.1, True),
+    Case(3_000, 0.1, True),
+    Case(10_000, 0.1, True),
+    Case(3_000, 0.05, False),
+    Case(3_000, 1.0, False),
+)
+
+
+# --- the city -------------------------------------------------------------------------------------
+
+
+def build_city(folder: Path, walkers: int, turnover: float = TURNOVER) -> City:
+    """Build a city for so many walkers."""
+    side = 2
+    while 2 * side * (side - 1) * WALKERS_PER_STREET < walkers:
+        side += 1
+    netgenerate(folder / "city.net.xml", side)
+    draw = random.Random(walkers)
+    corners = {(i, j) for i in range(side) for j in range(side)}
+    streets = 2 * side * (side - 1)
+    lines = ['<vType id="walker" vClass="pedestrian" speedDev="0.15"/>']
+    for number, depart in enumerate(departures(walkers, turnover)):
+        route = stroll(draw, corners, draw.randint(*WALK_LENGTH))
+        lines.append(
+            f'<person id="p{number}" type="walker" depart="{depart:.2f}" departPos="random">'
+            f'<walk edges="{route}" arrivalPos="{draw.uniform(5.0, 60.0):.1f}"/></person>'
+        )
+        if depart == 0.0 and number % WALKERS_PER_STREET == 0:
+            lines.append(
+                f'<vehicle id="car{number}" depart="0" departPos="random_free" departLane="best">'
+                f'<route edges="{stroll(draw, corners, 200)}"/></vehicle>'
+            )
+    lines.sort(key=lambda line: float(line.partition('depart="')[2].partition('"')[0] or -1.0))
+    (folder / "city.rou.xml").write_text(
+        "\n".join(["<routes>", *lines, "</routes>"]), encoding="utf-8"
+    )
+    config_file = folder / "city.sumocfg"
+    config_file.write_text(
+        '<configuration><input><net-file value="city.net.xml"/>'
+        '<route-files value="city.rou.xml"/></input><time><step-length value="0.1"/></time>'
+        '<processing><pedestrian.model value="striping"/></processing></configuration>',
+        encoding="utf-8",
+    )
+    return City(config_file, stroll(draw, corners, 100).replace(" ", ","), streets)
+
+
+def netgenerate(network: Path, side: int) -> None:
+    """Write a grid of ``side`` times ``side`` signalled junctions."""
+    package = importlib.util.find_spec("sumo")
+    if package is None or package.origin is None:
+        raise SystemExit("no netgenerate: pip install 'giveway[build]'")
+    home = Path(package.origin).parent
+    command = [home / "bin" / "netgenerate", "--grid", f"--grid.number={side}"]
+    command += [f"--grid.length={BLOCK}", "--default.lanenumber=1", "--sidewalks.guess"]
+    command += ["--crossings.guess", "--walkingareas", "--default-junction-type=traffic_light"]
+    command += ["--default.speed=13.89", "--no-turnarounds", "-o", network]
+    environment = os.environ | {"SUMO_HOME": str(home)}
+    subprocess.run(list(map(str, command)), check=True, capture_output=True, env=environment)
+
+
+def departures(walkers: int, turnover: float) -> Iterator[float]:
+    """Everybody at once, then as many as arrive."""
+    yield from [0.0] * walkers
+    later, k = WARM_UP, 0
+    while (later := (k + 0.5) * turnover / walkers) < min(LAST, 3.0 * turnover):
+        yield later
+        k += 1
+
+
+def stroll(draw: random.Random, corners: set[tuple[int, int]], length: int) -> str:
+    """A random walk along ``length`` streets that never turns back unless it has to."""
+    here = draw.choice(sorted(corners))
+    before, edges = here, []
+    for _ in range(length):
+        i, j = here
+        around = [(i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)]
+        onwards = [corner for corner in around if corner in corners and corner != before]
+        before, here = here, draw.choice(onwards)
+        edges.append(f"{name(before)}{name(here)}")
+    return " ".join(edges)
+
+
+def name(corner: tuple[int, int]) -> str:
+    """As netgenerate calls it."""
+    return f"{chr(ord('A') + corner[0])}{corner[1]}"
+
+
+# --- runs -----------------------------------------------------------------------------------------
+
+
+class Stopwatch:
+    """Adds up the time spent in some functions, while a run lets it."""
+
+    def __init__(self, stack: ExitStack) -> None:
+        self.spent: dict[str, float] = defaultdict(float)
+        for label, (owner, attribute) in SPLIT.items():
+            timed = self._timed(label, getattr(owner, attribute))
+            stack.enter_context(mock.patch.object(owner, attribute, timed))
+
+    def _timed(self, label: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        def timed(*arguments: Any, **keywords: Any) -> Any:
+            began = perf_counter()
+            result = function(*arguments, **keywords)
+            self.spent[label] += perf_counter() - began
+            return result
+
+        return timed
+
+    def split(self, steps: int) -> dict[str, float]:
+        """Seconds per control step; moves without the step and the check that they enclose."""
+        spent = {label: self.spent[label] / steps for label in SPLIT}
+        spent["moves"] -= spent["sumo step"] + spent["check"]
+        return spent
+
+
+class Timed(NamedTuple):
+    """A run of giveway's, after its warm-up."""
+
+    result: RunResult
+    steps: int
+    per_step: float  # [s] mean
+    parts: dict[str, float]  # [s] per control step
+    split: dict[str, float]  # [s] per control step
+
+
+def run(city: City, case: Case, window: float, profile: cProfile.Profile | None = None) -> Timed:
+    """Run giveway on the city."""
+    settings: dict[str, Any] = {
+        "scenario": str(city.config_file),
+        "time_limit": WARM_UP + window,
+        "sumo": {"step_length": case.step_length},
+        "ego": {"route": city.ego_route.split(","), "depart_position": 6.0},
+        "crowd": {"zone": "everywhere", "walls": case.walls},
+    }
+    config, scenario = load([Layer("", settings)])
+    clock: list[float] = []
+    with ExitStack() as stack:
+        watch = Stopwatch(stack)
+
+        def watcher(progress: Any) -> None:
+            if progress.time >= WARM_UP - 1e-6:
+                if not clock:
+                    watch.spent.clear()
+                    if profile is not None:
+                        profile.enable()
+                clock.append(perf_counter())
+
+        result = simulate(config, scenario, watcher)
+    if profile is not None:
+        profile.disable()
+    if result.error is not None:
+        raise result.error
+    steps = len(clock) - 1
+    seconds = result.timings.seconds[-steps:]
+    parts = dict(zip(Timings.NAMES, seconds.mean(axis=0).tolist(), strict=True))
+    return Timed(result, steps, (clock[-1] - clock[0]) / steps, parts, watch.split(steps))
+
+
+def plain(city: City, case: Case, window: float) -> float:
+    """Seconds per simulated second that SUMO needs for the same time by itself."""
+    libsumo.start(
+        ["sumo", "-c", str(city.config_file), "--no-step-log", "--duration-log.disable"]
+        + ["--no-warnings", "--step-length", str(case.step_length)]
+    )
+    while libsumo.simulation.getTime() < WARM_UP - 1e-6:
+        libsumo.simulationStep()
+    steps = round(window / case.step_length)
+    began = perf_counter()
+    for _ in range(steps):
+        libsumo.simulationStep()
+    spent = perf_counter() - began
+    libsumo.close()
+    return spent / window
+
+
+# --- what is printed ------------------------------------------------------------------------------
+
+
+def report(case: Case, timed: Timed, alone: float) -> None:
+    """Three lines."""
+    h = float(median(np.diff(timed.result.time)))
+    walking = timed.result.manifest["pedestrians"]["walking"]
+    per_second = timed.per_step / h
+    us = {label: 1e6 * value for label, value in (timed.parts | timed.split).items()}
+    inside = sum(us[label] for label in timed.split)
+    print(
+        f"{walking:6} walkers, SUMO step {case.step_length:g} s, "
+        f"walls {'on' if case.walls else 'off':3}: "
+        f"{1e3 * timed.per_step:7.3f} ms per control step of {h:g} s; real-time factor "
+        f"{1.0 / per_second:6.1f}; {1e6 * timed.per_step / max(walking, 1):5.2f} us per walker; "
+        f"{per_second / alone:4.1f} x plain SUMO ({1e3 * alone:.1f} ms per simulated s)"
+    )
+    rest = us["total"] - sum(us[part] for part in Timings.NAMES[:-1])
+    print("    " + "  ".join(f"{part} {us[part]:.0f}" for part in Timings.NAMES[:-1]), end="")
+    print(f"  recording {rest:.0f}   [us per control step]")
+    print("    of sumo: " + "  ".join(f"{label} {us[label]:.0f}" for label in timed.split), end="")
+    print(f"  other {us['sumo'] - inside:.0f}", flush=True)
+
+
+def hour(folder: Path) -> None:
+    """One simulated hour with 1,000 walkers at SUMO's step of 1 s: memory and rows."""
+    city = build_city(folder, 1_000)
+    used: list[float] = []
+    case = Case(1_000, 1.0, False)
+    settings: dict[str, Any] = {
+        "scenario": str(city.config_file),
+        "time_limit": 3600.0,
+        "sumo": {"step_length": case.step_length},
+        "ego": {"none": True},
+        "crowd": {"zone": "everywhere"},
+    }
+    config, scenario = load([Layer("", settings)])
+
+    def watcher(progress: Any) -> None:
+        if len(used) <= progress.time / 300.0:
+            used.append(resident())
+
+    began = perf_counter()
+    result = simulate(config, scenario, watcher)
+    spent = perf_counter() - began
+    if result.error is not None:
+        raise result.error
+    rows = len(result.crowd_track.x)
+    print(f"{spent:.0f} s for 3600 s; {rows} crowd rows, {48e-6 * rows:.0f} MB of them")
+    print(f"    {len(result.background_track.x)} rows of cars; {result.manifest['pedestrians']}")
+    print("    resident MB every 5 min: " + " ".join(f"{mb:.0f}" for mb in used))
+    print(f"    peak {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")
+
+
+def resident() -> float:
+    """Megabytes of this process in memory."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--walkers", type=int, nargs="*", help="only cities of these sizes")
+    parser.add_argument("--window", type=float, default=WINDOW, help="simulated seconds timed")
+    parser.add_argument("--profile", action="store_true", help="where Python's time goes")
+    parser.add_argument("--hour", action="store_true", help="one simulated hour: memory")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as scratch:
+        if options.hour:
+            hour(Path(scratch))
+            return
+        cities: dict[int, City] = {}
+        run_cases = [c for c in CASES if not options.walkers or c.walkers in options.walkers]
+        for case in run_cases:
+            if case.walkers not in cities:
+                folder = Path(scratch) / str(case.walkers)
+                folder.mkdir()
+                cities[case.walkers] = build_city(folder, case.walkers)
+            profile = cProfile.Profile() if options.profile else None
+            timed = run(cities[case.walkers], case, options.window, profile)
+            report(case, timed, plain(cities[case.walkers], case, options.window))
+            if profile is not None:
+                pstats.Stats(profile).sort_stats("tottime").print_stats(30)
+
+
+if __name__ == "__main__":
+    main()
