@@ -12,6 +12,7 @@ from sumo_scenarios.errors import ScenarioError
 
 _ROOT = Path(__file__).parent
 _CONFIG_SUFFIX = ".sumocfg"
+_OLD_CONFIG_SUFFIX = ".cfg"  # name.sumo.cfg, as SUMO's users had it before
 _SETTINGS_SUFFIX = ".giveway.toml"
 
 
@@ -71,13 +72,14 @@ def _from_folder(folder: Path) -> Scenario:
 
 
 def _from_config(config_file: Path) -> Scenario:
-    if config_file.suffix != _CONFIG_SUFFIX:
+    if config_file.suffix not in {_CONFIG_SUFFIX, _OLD_CONFIG_SUFFIX}:
         msg = f"{config_file} is not a scenario: expected a {_CONFIG_SUFFIX} file or its folder"
         raise ScenarioError(msg)
-    settings_file = config_file.with_name(config_file.stem + _SETTINGS_SUFFIX)
+    name = config_file.stem.removesuffix(".sumo")
+    settings_file = config_file.with_name(name + _SETTINGS_SUFFIX)
     has_settings = settings_file.is_file()
     return Scenario(
-        name=config_file.stem,
+        name=name,
         folder=config_file.parent,
         config_file=config_file,
         settings_file=settings_file if has_settings else None,

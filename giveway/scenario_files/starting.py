@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from giveway.scenario_files.configuration import ScenarioFiles
 
 _VALIDATION: Final = ("xml-validation", "xml-validation.net", "xml-validation.routes")
+_WINDOW_ONLY: Final = ("osg-view",)  # known to a SUMO built with OpenSceneGraph only
 _SAVING_STATES: Final = ("save-state.times", "save-state.period")
 
 
@@ -132,7 +134,7 @@ class _Preparation:
         self._options |= {"no-step-log": "true", "duration-log.disable": "true"}
         self._options |= extra
         own_seed = self._scenario.seed
-        command = ["sumo", "-c", str(self._scenario.config_file)]
+        command = ["sumo", "-c", str(self._config_file())]
         for name, value in self._options.items():
             command += [f"--{name}", value]
         return Start(
@@ -143,6 +145,24 @@ class _Preparation:
             self._copies.read,
             int(self._options.get("seed", SUMO_SEED if own_seed is None else own_seed)),
         )
+
+    def _config_file(self) -> Path:
+        """The scenario's .sumocfg, or a copy without what only some of SUMO's windows know."""
+        own = self._scenario.options
+        unknown = [name for name in _WINDOW_ONLY if name in own]
+        if not unknown:
+            return self._scenario.config_file
+        placed: dict[str, list[str]] = {}
+        for name, path in self._scenario.inputs:
+            placed.setdefault(name, []).append(str(path))
+        kept = {name: value for name, value in own.items() if name not in unknown}
+        root = ET.Element("configuration")
+        for name, value in kept.items():
+            ET.SubElement(root, name, value=",".join(placed.get(name, [value])))
+        copy = self._scratch / self._scenario.config_file.name
+        ET.ElementTree(root).write(copy, encoding="utf-8", xml_declaration=True)
+        self._remarks.append(f"{', '.join(unknown)}: left out; there is no window")
+        return copy
 
     def _inputs(self, types: str, more: str) -> None:
         """Our types first; every file that writes is replaced by its copy."""

@@ -202,3 +202,18 @@ def test_there_is_a_type_for_every_class_on_the_road(held: None) -> None:
         ScenarioError, match="vehicle class 'rail': an ego drives where people walk"
     ):
         ego_type("rail")
+
+
+def test_an_option_of_the_window_alone_does_not_stop_a_headless_run(
+    small: Callable[..., Path], tmp_path: Path
+) -> None:
+    scenario = read_scenario(small('<gui_only><osg-view value="true"/></gui_only>'))
+    start = prepare_start(scenario, StartOptions(interact=False), tmp_path)
+    assert any("osg-view" in remark for remark in start.remarks)
+    libsumo.start(list(start.command))
+    try:
+        libsumo.simulationStep()
+        assert libsumo.simulation.getTime() > 0.0
+        assert libsumo.edge.getIDList()
+    finally:
+        libsumo.close()

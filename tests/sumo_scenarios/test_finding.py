@@ -148,3 +148,10 @@ def test_broken_settings_are_named(my_folder: Path) -> None:
     assert "not valid TOML" in message(my_folder)
     settings.write_text("description = 7\n")
     assert message(my_folder) == f"{settings}: description = 7: expected a line of text"
+
+
+def test_the_older_name_of_a_configuration_is_known_too(my_folder: Path) -> None:
+    older = (my_folder / "evening.sumocfg").rename(my_folder / "evening.sumo.cfg")
+    found = find(older)
+    assert found.name == "evening"
+    assert found.settings_file == my_folder / "evening.giveway.toml"
