@@ -40,12 +40,20 @@ class Exchange:
     def __init__(
         self, sumo: Any, network: WalkNetwork, zone: Zone, population: Population, *, walls: bool
     ) -> None:
-        self._lights = sumo.trafficlight
+        direct = getattr(sumo.libsumo, "_libsumo", None)  # without the wrapper's own call
+        self._light = getattr(
+            direct,
+            "trafficlight_getRedYellowGreenState",
+            sumo.trafficlight.getRedYellowGreenState,
+        )
         self._network = network
         self._zone = zone
         self._population = population
         self._walkers = ScenarioWalkers(sumo, population.added)
-        self._systems = sorted({signal.tls for signal in network.signals})
+        self._states: dict[str, str] = {}
+        self._crossings: dict[str, list[tuple[int, int]]] = {}  # of each light: signal, movement
+        for number, signal in enumerate(network.signals):
+            self._crossings.setdefault(signal.tls, []).append((number, signal.link))
         self.unconnected = 0  # hops of routes that the network does not connect
         self.surroundings = Surroundings(
             walls=Walls.create(network.wall_segments()) if walls else None,
@@ -66,10 +74,13 @@ class Exchange:
         """A crossing whose light is not green is closed."""
         if not len(self._population):
             return
-        states = {name: self._lights.getRedYellowGreenState(name) for name in self._systems}
         closed = self.surroundings.closed
-        for i, signal in enumerate(self._network.signals):
-            closed[i] = states[signal.tls][signal.link] in _CLOSED
+        for system, crossings in self._crossings.items():
+            state = self._light(system)
+            if state != self._states.get(system):  # which is seldom
+                self._states[system] = state
+                for number, link in crossings:
+                    closed[number] = state[link] in _CLOSED
 
     def _take_over(self, egos: Array) -> None:
         if self._zone.nowhere:

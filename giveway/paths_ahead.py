@@ -42,7 +42,7 @@ class _Known(NamedTuple):
 
 
 class Ways(NamedTuple):
-    """Polylines of lanes in one pool; way w is ``points[start[w]:start[w + 1]]``."""
+    """Polylines of lanes in one pool that grows; way w is ``points[start[w]:start[w + 1]]``."""
 
     points: Array  # (total, 2) [m]
     along: Array  # (total,) [m] from the first lane's beginning; only known on that lane
@@ -51,19 +51,33 @@ class Ways(NamedTuple):
     nominal: Array  # (w,) [m] SUMO's length of the first lane
 
 
+_EMPTY: tuple[tuple[tuple[int, ...], type], ...] = (
+    ((1, 2), np.float64),
+    ((1,), np.float64),
+    ((1,), np.int64),
+    ((1,), np.int64),
+    ((1,), np.float64),
+)
+
+
 class PathsAhead:
     """The lanes ahead of SUMO's cars.
 
     Args:
         vehicles: SUMO's.
+
+    Attributes:
+        ways: all so far, with room for more.
     """
+
+    ways: Ways
 
     def __init__(self, vehicles: SumoVehicles) -> None:
         self._vehicles = vehicles
         self._known: dict[str, _Known] = {}
         self._numbers: dict[tuple[str, ...], int] = {}
-        self._ways: list[tuple[Array, Array, int, float]] = []
-        self._pool: Ways | None = None
+        self.ways = Ways(*(np.zeros(shape, kind) for shape, kind in _EMPTY))
+        self._points = 0
 
     def of(self, names: Sequence[str], sights: Sequence[float]) -> tuple[Indices, Array]:
         """For each car the number of its way, -1 if it is on no lane, and how far along it is [m].
@@ -88,37 +102,39 @@ class PathsAhead:
             kept = self._known.keys() & set(present)
             self._known = {name: self._known[name] for name in kept}
 
-    @property
-    def ways(self) -> Ways:
-        """All ways so far, for the kernels."""
-        if self._pool is None:
-            points, along, first, nominal = zip(*self._ways, strict=True)
-            counts = [len(part) for part in points]
-            self._pool = Ways(
-                np.concatenate(points),
-                np.concatenate(along),
-                np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-                np.array(first, dtype=np.int64),
-                np.array(nominal),
-            )
-        return self._pool
-
     def _find(self, name: str, lane: str, route: str, sight: float) -> _Known:
         reach = max(_LEAST_REACH, _REACH * sight)
         if not lane:
             return _Known(lane, route, math.inf, -1)
         lanes = self._vehicles.lanes_ahead(name, lane, reach)
         if lanes not in self._numbers:
-            self._numbers[lanes] = len(self._ways)
-            shapes = [self._vehicles.shape(each) for each in lanes]
-            steps = np.hypot(*np.diff(shapes[0], axis=0).T)
-            points = np.concatenate(shapes)
-            along = np.full(len(points), np.inf)
-            along[: len(shapes[0])] = np.concatenate([[0.0], np.cumsum(steps)])
-            nominal = max(self._vehicles.lane_length(lane), 1e-9)
-            self._ways.append((points, along, len(shapes[0]), nominal))
-            self._pool = None
+            self._append([self._vehicles.shape(each) for each in lanes], lane)
+            self._numbers[lanes] = len(self._numbers)
         return _Known(lane, route, reach, self._numbers[lanes])
+
+    def _append(self, shapes: list[Array], lane: str) -> None:
+        """A new way, of lanes of these ``shapes``; ``lane`` is the first."""
+        w, begin = len(self._numbers), self._points
+        end = self._points = begin + sum(map(len, shapes))
+        for name in ("points", "along"):
+            self._reserve(name, end)
+        for name in ("start", "first", "nominal"):
+            self._reserve(name, w + 2)
+        ways, first = self.ways, begin + len(shapes[0])
+        ways.points[begin:end] = np.concatenate(shapes)
+        ways.along[begin:end] = np.inf
+        ways.along[begin] = 0.0
+        ways.along[begin + 1 : first] = np.cumsum(np.hypot(*np.diff(shapes[0], axis=0).T))
+        ways.start[w + 1] = end
+        ways.first[w] = first - begin
+        ways.nominal[w] = max(self._vehicles.lane_length(lane), 1e-9)
+
+    def _reserve(self, name: str, rows: int) -> None:
+        array = getattr(self.ways, name)
+        if rows > len(array):
+            more = np.zeros((max(rows, 2 * len(array)), *array.shape[1:]), array.dtype)
+            more[: len(array)] = array
+            self.ways = self.ways._replace(**{name: more})
 
 
 @kernel

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +22,7 @@ class Population:
         ids: everybody who ever was in the crowd; the tables refer to them by index.
         crowd: the state of those who are in it now.
         present: (n,) index into ``ids`` of each of them.
+        names: the ids of each of them.
         added: ids of those that giveway added; the others are the scenario's own.
     """
 
@@ -28,19 +30,13 @@ class Population:
         self.ids: list[str] = list(ids)
         self.crowd = Crowd.empty() if crowd is None else crowd
         self.present = np.arange(len(self.ids))
+        self.names = list(ids)
         self.added = frozenset(ids)
         self._index = {name: i for i, name in enumerate(self.ids)}
         self._counts = {"taken_over": 0, "handed_back": 0, "arrived": 0, "continued": 0}
 
     def __len__(self) -> int:
         return len(self.present)
-
-    @property
-    def names(self) -> list[str]:
-        """The ids of those in the crowd, in its order."""
-        if len(self.present) == len(self.ids):
-            return self.ids
-        return [self.ids[i] for i in self.present]
 
     @property
     def ledger(self) -> dict[str, int]:
@@ -51,18 +47,21 @@ class Population:
     def take_in(self, names: Iterable[str], crowd: Crowd) -> None:
         """Add walkers of the scenario; who comes back keeps the index."""
         indices = []
+        names = list(names)
         for name in names:
             if name not in self._index:
                 self._index[name] = len(self.ids)
                 self.ids.append(name)
             indices.append(self._index[name])
         self.present = np.concatenate([self.present, np.array(indices, dtype=np.int64)])
+        self.names += names
         self.crowd = self.crowd.concatenate(crowd) if len(self.crowd) else crowd
         self._counts["taken_over"] += len(indices)
 
     def release(self, gone: NDArray[np.bool_]) -> list[str]:
         """Drop those where ``gone`` (n,) is true from the crowd; their ids."""
-        names = [self.ids[i] for i in self.present[gone]]
+        names = [self.names[i] for i in np.flatnonzero(gone)]
+        self.names = list(itertools.compress(self.names, (~gone).tolist()))
         self.crowd = self.crowd.select(~gone)
         self.present = self.present[~gone]
         return names
