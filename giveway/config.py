@@ -1,270 +1,32 @@
-"""The configuration of a run: every option once, with its unit, bounds, default and source.
+"""The configuration of a run: everything that shapes it, and what each of its egos gets of it.
 
 The TOML file, the command line's flags and the Python API are all derived from these classes.
-Defaults are the reproduction of Yang & Özgüner 2019 (arXiv 1907.05178), their table 1, read as
-docs/reproduction.md explains.
 """
 
 from __future__ import annotations
 
-import shlex
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    JsonValue,
-    ValidationError,
-    model_validator,
+from pydantic import Field, ValidationError, model_validator
+
+from giveway.sections import (
+    CrowdConfig,
+    EgoConfig,
+    MpcConfig,
+    PidConfig,
+    RecordConfig,
+    RegulationConfig,
+    Section,
+    SumoConfig,
+    TrafficConfig,
+    VehicleConfig,
+    option,
 )
 
 ControllerName = Literal["mpc", "pid"]
 
-
-def option(
-    default: Any, unit: str | None, description: str, *, flag: str | None = None, **bounds: Any
-) -> Any:
-    """A documented option: its unit, what it means, its flag where the derived one is clumsy."""
-    extra: dict[str, JsonValue] = {"unit": unit, "flag": flag}
-    return Field(default, description=description, json_schema_extra=extra, **bounds)
-
-
-def _split(value: Any) -> Any:
-    """A comma-separated flag value as the list that a TOML file would hold."""
-    return [part.strip() for part in value.split(",")] if isinstance(value, str) else value
-
-
-def _words(value: Any) -> Any:
-    """Options for SUMO, written as in a shell."""
-    return shlex.split(value) if isinstance(value, str) else value
-
-
-def _seed(value: Any) -> Any:
-    return int(value) if isinstance(value, str) and value.isdecimal() else value
-
-
-Rectangle = Annotated[tuple[float, float, float, float], BeforeValidator(_split)]
-Displacement = Annotated[tuple[float, float], BeforeValidator(_split)]
-NameList = Annotated[tuple[str, ...], BeforeValidator(_split)]
-OptionList = Annotated[tuple[str, ...], BeforeValidator(_words)]
-SumoSeed = Annotated[
-    Annotated[int, Field(ge=0, le=2**31 - 1)] | Literal["scenario", "run"], BeforeValidator(_seed)
-]
-
 EGO_TABLES = ("controller", "ego", "vehicle", "regulation", "mpc", "pid")
 """What may differ from ego to ego."""
-
-
-_FARTHEST = 1e7  # [m] beyond it a millimetre is lost in rounding
-
-
-class Section(BaseModel):
-    """A table of the configuration: frozen, finite numbers only, unknown keys refused."""
-
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True
-    )
-
-
-class EgoConfig(Section):
-    """The ego: a vehicle of the scenario, or one that giveway inserts; and how far it drives."""
-
-    take_over: NameList = option(
-        (),
-        None,
-        "ids of the scenario's vehicles to drive from their departure on, comma-separated",
-        flag="--ego",
-    )
-    none: bool = option(False, None, "drive no vehicle at all", flag="--no-ego")
-    id: str = option("ego", None, "SUMO id of an inserted ego", min_length=1)
-    route: NameList = option((), None, "edges that an inserted ego drives along, comma-separated")
-    lane: int | None = option(
-        None,
-        None,
-        "index of its departure lane, 0 is the rightmost; none: the first for cars",
-        ge=0,
-    )
-    depart_time: float = option(
-        0.0, "s", "simulation time at which it enters; at begin if that is later", ge=0, le=1e7
-    )
-    depart_position: float = option(
-        0.0, "m", "its front bumper's place on the first edge at departure", ge=0, le=1e6
-    )
-    initial_speed: float | None = option(
-        None, "m/s", "speed at departure; none: 4 m/s, or SUMO's when taken over", ge=0, le=70
-    )
-    travel_distance: float | None = option(
-        None, "m", "its goal is this far along its way; none: the end of its route", gt=0, le=1e6
-    )
-
-
-class VehicleConfig(Section):
-    """The vehicle FMU, its body, and the plant parameters that the MPC shares with it."""
-
-    fmu: str = option(
-        "fmi2", None, "vehicle FMU: 'fmi2' or 'fmi3' (bundled), or a path", flag="--vehicle"
-    )
-    mass: float = option(1000.0, "kg", "M of M s'' + alpha s' = u", gt=0, le=1e6)
-    friction: float = option(100.0, "N.s/m", "alpha of M s'' + alpha s' = u", ge=0, le=1e6)
-    exact: bool = option(False, None, "exact discretisation instead of the paper's forward Euler")
-    length: float | None = option(
-        None, "m", "body length; none: 5 m, or SUMO's when taken over", gt=0, le=50
-    )
-    width: float | None = option(
-        None, "m", "body width; none: 2 m, or SUMO's when taken over", gt=0, le=10
-    )
-
-
-class CrowdConfig(Section):
-    """The pedestrians that giveway adds: how many, where, where to and how fast."""
-
-    pedestrians: int = option(
-        0, "persons", "pedestrians to add", flag="--pedestrians", ge=0, le=20_000
-    )
-    spawn_area: Rectangle = option(
-        (23.3, -23.4, 33.2, -12.0),
-        "m",
-        "x_min,y_min,x_max,y_max of the rectangle they start in",
-        flag="--spawn-area",
-    )
-    walk: Displacement = option(
-        (0.0, 30.0), "m", "dx,dy from each one's start to the destination", flag="--walk"
-    )
-    two_sided: bool = option(
-        False, None, "every second pedestrian comes from the other side", flag="--two-sided"
-    )
-    desired_speed_mean: float = option(1.394, "m/s", "mean desired speed", gt=0, le=2.5)
-    desired_speed_sd: float = option(0.26, "m/s", "its standard deviation", ge=0, le=2)
-    desired_speed_min: float = option(0.5, "m/s", "its lower truncation", gt=0, le=2.5)
-    desired_speed_max: float = option(2.2, "m/s", "its upper truncation", gt=0, le=2.5)
-    minimum_spacing: float = option(0.5, "m", "no two start closer than this", ge=0, le=10)
-    host_edge: str = option(
-        "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"
-    )
-    preset: Literal["SIM", "TABLE2"] = option("SIM", None, "parameter set of the VCI model")
-    zone: str = option(
-        "50",
-        None,
-        "where the scenario's own walkers follow the VCI model: metres round each ego, "
-        "'everywhere', 'none', or a polygon 'x,y x,y x,y ...' [m]",
-        flag="--zone",
-    )
-    zone_margin: float = option(
-        5.0, "m", "they are handed back to SUMO this far outside the zone", ge=0, le=1e4
-    )
-    walls: bool = option(
-        False,
-        None,
-        "the edges of sidewalks, crossings and walkingareas hold people back",
-        flag="--walls",
-    )
-
-    @model_validator(mode="after")
-    def _ordered(self) -> CrowdConfig:
-        if max(map(abs, (*self.spawn_area, *self.walk))) > _FARTHEST:
-            msg = f"spawn_area and walk: expected numbers within +-{_FARTHEST:g} [m]"
-            raise ValueError(msg)
-        x_min, y_min, x_max, y_max = self.spawn_area
-        if not (x_min < x_max and y_min < y_max):
-            msg = "spawn_area: expected x_min < x_max and y_min < y_max [m]"
-            raise ValueError(msg)
-        if not self.desired_speed_min <= self.desired_speed_mean <= self.desired_speed_max:
-            msg = "desired_speed_mean: expected between desired_speed_min and _max [m/s]"
-            raise ValueError(msg)
-        return self
-
-
-class RegulationConfig(Section):
-    """What both controllers aim at, and who counts as being in front."""
-
-    reference_speed: float = option(4.0, "m/s", "desired speed v_r", gt=0, le=60)
-    safe_distance: float = option(
-        8.0, "m", "distance d_safe to keep to who is in front", ge=0, le=1e4
-    )
-    corridor_half_width: float | None = option(
-        None,
-        "m",
-        "in front: the body centre is this close to the ego's path; none: half its width + 0.25",
-        gt=0,
-        le=20,
-    )
-    gap_from: Literal["bumper", "centre"] = option(
-        "bumper", None, "where the distance to who is in front starts"
-    )
-    vehicles: bool = option(
-        True, None, "vehicles in front are obstacles too", flag="--respect-vehicles"
-    )
-    traffic_lights: bool = option(True, None, "the ego stops at red lights", flag="--obey-lights")
-    comfortable_deceleration: float = option(
-        2.0, "m/s^2", "of the approach to a red light or a slower vehicle", gt=0, le=10
-    )
-
-
-class MpcConfig(Section):
-    """The model predictive controller (Yang & Özgüner 2019, section 3, table 1)."""
-
-    horizon: int = option(15, "steps", "prediction horizon N", ge=2, le=200)
-    force_limit: float = option(8000.0, "N", "u_max, of the PID's output too", gt=0, le=1e6)
-    force_rate_limit: float = option(1000.0, "N/step", "du_max", gt=0, le=1e6)
-    speed_min: float = option(0.0, "m/s", "v_min", ge=0, le=60)
-    speed_max: float = option(20.0, "m/s", "v_max", gt=0, le=100)
-    solver: Literal["osqp", "daqp"] = option("osqp", None, "QP solver")
-
-
-class PidConfig(Section):
-    """The PID controller, fallback and rival (Yang & Özgüner 2019, section 3.4, table 1)."""
-
-    proportional_gain: float = option(
-        2400.0, "N.s/m", "K_p; the printed 300 contradicts the printed error", ge=0, le=1e6
-    )
-    integral_gain: float = option(10.0, "N/m", "K_i", ge=0, le=1e6)
-    derivative_gain: float = option(100.0, "N.s^2/m", "K_d", ge=0, le=1e6)
-    buffer_distance: float = option(
-        10.0, "m", "d_buffer over which the reference speed rises to v_r", gt=0, le=1e4
-    )
-
-
-class TrafficConfig(Section):
-    """What SUMO's own vehicles know of the pedestrians that giveway moves."""
-
-    yielding: bool = option(
-        True, None, "SUMO's vehicles brake for pedestrians in their way", flag="--yield"
-    )
-    yield_distance: float = option(
-        2.0, "m", "they want to stop this far before a pedestrian", ge=0, le=50
-    )
-
-
-class SumoConfig(Section):
-    """How SUMO is run, and which of its own outputs are wanted."""
-
-    step_length: float | None = option(
-        None, "s", "SUMO's step; none: the scenario's own", gt=0, le=60
-    )
-    seed: SumoSeed = option(
-        "scenario", None, "SUMO's seed: a number, 'scenario' (its own) or 'run' (the run's)"
-    )
-    end: float | None = option(None, "s", "SUMO's end; none: the scenario's own", gt=0, le=1e7)
-    fcd: bool = option(False, None, "write SUMO's floating car data", flag="--fcd")
-    tripinfo: bool = option(False, None, "write SUMO's trip information", flag="--tripinfo")
-    ssm: bool = option(False, None, "write SUMO's surrogate safety measures", flag="--ssm")
-    summary: bool = option(False, None, "write SUMO's summary of each step")
-    options: OptionList = option(
-        (), None, "more options for SUMO, like '--emission-output e.xml'", flag="--sumo-options"
-    )
-
-
-class RecordConfig(Section):
-    """How densely trajectories are recorded."""
-
-    near: float = option(
-        50.0, "m", "who is this near to an ego is recorded at every control step", ge=0, le=1e6
-    )
-    far_period: float = option(
-        1.0, "s", "everybody else is recorded once in this time", gt=0, le=1e6
-    )
 
 
 class RunConfig(Section):

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, get_args
 import tomlkit
 from pydantic import ValidationError
 
-from giveway.config import RunConfig, Section
+from giveway.config import RunConfig
 from giveway.errors import ConfigError
+from giveway.sections import Section
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from giveway.config import CrowdConfig
 from giveway.ego_path import EgoPath
 from giveway.errors import CrowdError
+from giveway.sections import CrowdConfig
 from giveway.spawn import spawn
 
 AXIS = EgoPath.through([(-20, 0), (100, 0)])
