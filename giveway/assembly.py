@@ -2,27 +2,15 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from controller import (
-    ControllerError,
-    LongitudinalModel,
-    Mpc,
-    MpcParameters,
-    Pid,
-    PidParameters,
-    Regulator,
-)
-from fmus import FmuError, VehicleFmu, bundled_fmu, describe
 from giveway.departures import BODY, Departures
-from giveway.ego import Driver
-from giveway.errors import ConfigError, ControlError, CrowdError, ScenarioError, VehicleError
+from giveway.drivers import make_driver, make_regulator
+from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.exchange import Exchange
 from giveway.population import Population
 from giveway.scenario_files import StartOptions, free_prefix, read_scenario
@@ -39,7 +27,6 @@ from pedestrian_model import (
     Crowd,
     CrowdModel,
     PedestrianModelError,
-    Predictor,
     Surroundings,
     arrived,
 )
@@ -47,13 +34,14 @@ from pedestrian_model import (
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from contextlib import ExitStack
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
     from giveway.config import RunConfig
+    from giveway.ego import Driver
     from sumo_scenarios import Scenario
 
-_BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
 ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
 LONGEST_STEP = 0.05  # [s] of the co-simulation: the paper's, and what the crowd is stable at
 
@@ -124,7 +112,7 @@ def assemble(
     _require_distinct(egos)
     step_length = config.sumo.step_length or files.step_length
     time_step = _time_step(config.time_step, step_length)
-    regulators = [_regulator(ego, time_step) for ego in egos]
+    regulators = [make_regulator(ego, time_step) for ego in egos]
     walkers = not zone.nowhere and not (zone.follows_egos and not egos)
     moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
     sumo = stack.enter_context(
@@ -139,7 +127,7 @@ def assemble(
         zone.require_overlap(network.boundary)
         remarks += _remarks_on(network, files.net_file)
     drivers = tuple(
-        _driver(ego, regulator, time_step, stack)
+        make_driver(ego, regulator, time_step, stack)
         for ego, regulator in zip(egos, regulators, strict=True)
     )
     departures = Departures(drivers, sumo, scenario.config_file, time_step)
@@ -222,17 +210,6 @@ def _remarks_on(network: WalkNetwork, net_file: Path) -> list[str]:
     ]
 
 
-def _driver(config: RunConfig, regulator: Regulator, time_step: float, stack: ExitStack) -> Driver:
-    parameters = PRESETS[config.crowd.preset]
-    vehicle = _vehicle(config, time_step, stack)
-    predictor = None
-    if config.controller == "mpc":
-        predictor = Predictor(parameters, time_step, config.mpc.horizon)
-    return Driver(
-        config, vehicle, _description(vehicle), regulator, predictor, parameters.max_speed
-    )
-
-
 def _population(
     config: RunConfig,
     departures: Departures,
@@ -267,46 +244,6 @@ def _host(config: RunConfig, network: WalkNetwork, net_file: Path) -> str:
     return lane.edge
 
 
-def _regulator(config: RunConfig, time_step: float) -> Regulator:
-    regulation = config.regulation
-    try:
-        pid = Pid(
-            PidParameters(
-                K_p=config.pid.proportional_gain,
-                K_i=config.pid.integral_gain,
-                K_d=config.pid.derivative_gain,
-                reference_speed=regulation.reference_speed,
-                safe_distance=regulation.safe_distance,
-                buffer_distance=config.pid.buffer_distance,
-                force_limit=config.mpc.force_limit,
-            ),
-            time_step,
-        )
-        if config.controller == "pid":
-            return Regulator(None, pid)
-        model = LongitudinalModel(
-            mass=config.vehicle.mass,
-            friction=config.vehicle.friction,
-            time_step=time_step,
-        )
-        mpc = Mpc(
-            model,
-            MpcParameters(
-                horizon=config.mpc.horizon,
-                reference_speed=regulation.reference_speed,
-                safe_distance=regulation.safe_distance,
-                speed_min=config.mpc.speed_min,
-                speed_max=config.mpc.speed_max,
-                force_limit=config.mpc.force_limit,
-                force_rate_limit=config.mpc.force_rate_limit,
-                solver=config.mpc.solver,
-            ),
-        )
-    except ControllerError as error:
-        raise ControlError(str(error)) from error
-    return Regulator(mpc, pid)
-
-
 def _crowd(spawned: Spawned) -> Crowd:
     """Everybody already walks: at the desired speed, towards the destination."""
     way = spawned.destination - spawned.position
@@ -320,22 +257,6 @@ def _crowd(spawned: Spawned) -> Crowd:
         )
     except PedestrianModelError as error:
         raise CrowdError(f"pedestrians cannot be placed: {error}") from error
-
-
-def _vehicle(config: RunConfig, time_step: float, stack: ExitStack) -> VehicleFmu:
-    settings = config.vehicle
-    bundled = _BUNDLED.get(settings.fmu)
-    path = Path(settings.fmu) if bundled is None else bundled_fmu(bundled)
-    start_values = {"M": settings.mass, "alpha": settings.friction, "exact": settings.exact}
-    try:
-        return stack.enter_context(VehicleFmu(path, step_size=time_step, start_values=start_values))
-    except FmuError as error:
-        raise VehicleError(str(error)) from error
-
-
-def _description(vehicle: VehicleFmu) -> dict[str, object]:
-    """What the manifest says of the FMU."""
-    return dataclasses.asdict(describe(vehicle.path))
 
 
 def _time_step(wanted: float | None, step_length: float) -> float:
