@@ -29,6 +29,15 @@ _BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
 
 
 def make_regulator(config: RunConfig, time_step: float) -> Regulator:
+    """The controller of one ego.
+
+    Args:
+        config: of this ego alone.
+        time_step: of the co-simulation [s].
+
+    Raises:
+        ControlError: its parameters contradict each other, or its solver is missing.
+    """
     regulation = config.regulation
     try:
         pid = Pid(
@@ -71,6 +80,17 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator:
 def make_driver(
     config: RunConfig, regulator: Regulator, time_step: float, stack: ExitStack
 ) -> Driver:
+    """One ego's FMU, loaded, with its controller.
+
+    Args:
+        config: of this ego alone.
+        regulator: its controller.
+        time_step: of the co-simulation [s].
+        stack: closes the FMU.
+
+    Raises:
+        VehicleError: the FMU cannot be loaded.
+    """
     parameters = PRESETS[config.crowd.preset]
     vehicle = _vehicle(config, time_step, stack)
     predictor = None
