@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-HANDED_BACK_WITHIN = 20.0  # [m] of a lane for pedestrians
+HANDED_BACK_WITHIN = 3.0  # [m] of the middle of a lane for pedestrians, or SUMO makes them jump
 _CLOSED = frozenset("rRyYus")  # states of a crossing's light at which nobody sets out
 
 
@@ -115,7 +115,7 @@ class Exchange:
         )
 
     def _hand_back(self, egos: Array) -> None:
-        """Those outside go back if a walkway is near; the others walk on as ours."""
+        """Those outside go back if they are on a lane; the others walk on as ours until they are."""
         population = self._population
         if self._zone.everywhere or not self._walkers.held:
             return
