@@ -115,7 +115,7 @@ class Exchange:
         )
 
     def _hand_back(self, egos: Array) -> None:
-        """Those outside go back if they are on a lane; the others walk on as ours until they are."""
+        """Those outside go back once they are on a lane; until then they walk on as ours."""
         population = self._population
         if self._zone.everywhere or not self._walkers.held:
             return
