@@ -90,6 +90,7 @@ class SumoSession:
         person = self._sumo.person
         self._move_person = getattr(direct, "person_moveToXY", person.moveToXY)
         self._person_position = getattr(direct, "person_getPosition", person.getPosition)
+        self._moves_pending = False
         self.lanes = Lanes(self._sumo, self._config_file)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())
@@ -212,6 +213,7 @@ class SumoSession:
         """
         if self._on_the_kerb and self._sumo.simulation.getTime() > self._added_at:
             self._clear_the_kerb()
+        self._moves_pending = bool(egos or ids)
         try:
             with self._stderr:
                 for name, pose in egos:
@@ -222,6 +224,7 @@ class SumoSession:
                 )
                 collections.deque(moves, maxlen=0)  # the fastest loop that Python has
                 self._sumo.simulationStep()
+                self._moves_pending = False
         except Exception as error:
             raise self._failure(error) from error
         self._check(egos, ids, list(zip(x, y, strict=True)))
@@ -268,8 +271,9 @@ class SumoSession:
             return
         SumoSession._running = False
         with self._stderr:
-            with contextlib.suppress(Exception):  # the simulation is being given up anyway
-                self._sumo.simulationStep()  # carries out pending moves, which close() would leak
+            if self._moves_pending:  # else a step more would be in SUMO's own outputs
+                with contextlib.suppress(Exception):  # the simulation is being given up anyway
+                    self._sumo.simulationStep()  # carries out the moves, which close() would leak
             self._sumo.close()
         self._stderr.close()
         with contextlib.suppress(OSError):

@@ -142,7 +142,12 @@ def scenario(tmp_path: Path, town: Path) -> Callable[..., Path]:
     """Write a scenario on the city's network: routes, options, begin, end and step length."""
 
     def write(
-        routes: str, options: str = "", *, net: Path | None = None, end: float = 200, step: float = 0.1
+        routes: str,
+        options: str = "",
+        *,
+        net: Path | None = None,
+        end: float = 200,
+        step: float = 0.1,
     ) -> Path:
         place = tmp_path / f"scenario{len(list(tmp_path.iterdir()))}"
         place.mkdir()
@@ -150,7 +155,7 @@ def scenario(tmp_path: Path, town: Path) -> Callable[..., Path]:
         config = place / "small.sumocfg"
         config.write_text(
             f"""<configuration>
-            <net-file value="{net or town / 'net.net.xml.gz'}"/><route-files value="all.rou.xml"/>
+            <net-file value="{net or town / "net.net.xml.gz"}"/><route-files value="all.rou.xml"/>
             <begin value="0"/><end value="{end}"/><step-length value="{step}"/>{options}
             </configuration>"""
         )
@@ -176,6 +181,7 @@ class Look:
         self.lanes: dict[str, np.ndarray] = {}
         self.widths: dict[str, float] = {}
         self.crossings: dict[str, tuple[str, int]] = {}
+        self.links: dict[tuple[str, str], tuple[str, int]] = {}  # from lane to lane
 
     def __call__(self, progress: Progress) -> None:
         now = libsumo.simulation.getTime()
@@ -198,33 +204,44 @@ class Look:
             self.widths[lane] = libsumo.lane.getWidth(lane)
         for system in libsumo.trafficlight.getIDList():
             for link, movements in enumerate(libsumo.trafficlight.getControlledLinks(system)):
-                for _, target, _ in movements:
+                for source, target, _ in movements:
+                    self.links[source, target] = system, link
                     if "_c" in target and target.startswith(":"):
                         self.crossings[target] = system, link
 
-    def entered(self, names: set[str], *, green: bool) -> int:
-        """How often one of ``names`` set out over a crossing at green, or at red.
+    def colour(self, source: str, target: str, time: float) -> str:
+        """The light's letter for going from lane to lane, as set before ``time`` [s]."""
+        system, link = self.links[source, target]
+        return self.states[int(np.searchsorted(self.times, time + 1e-6)) - 1][system][link]
+
+    def entered(self, names: set[str]) -> tuple[int, int]:
+        """How often one of ``names`` set out over a crossing at green, and at red.
 
         On it is who is 2 m away from both its ends and no farther than half its width from its
         middle; at red is who sets out when it has been red for 3 s.
         """
-        count = 0
+        rows = [(k, n) for k, people in enumerate(self.people) for n in people if n in names]
+        steps = np.array([k for k, _ in rows])
+        places = np.array([self.people[k][n] for k, n in rows])
+        counts = [0, 0]
         for crossing, (system, link) in self.crossings.items():
             line, half = shapely.LineString(self.lanes[crossing]), self.widths[crossing] / 2
-            last_green, before = -math.inf, None
-            for time, people, states in zip(self.times, self.people, self.states, strict=True):
-                if states[system][link] in "gG":
-                    last_green = time
-                ids = [n for n in people if n in names]
-                points = shapely.points(np.array([people[n] for n in ids]).reshape(-1, 2))
-                along = shapely.line_locate_point(line, points)
-                inside = (along > 2.0) & (along < line.length - 2.0)
-                inside &= shapely.distance(line, points) < half
-                on = {ids[i] for i in np.flatnonzero(inside)}
-                if before is not None:
-                    count += len(on - before) * ((time - last_green <= 3.0) is green)
-                before = on
-        return count
+            x_0, y_0, x_1, y_1 = line.buffer(half).bounds
+            near = (places > (x_0, y_0)).all(axis=1) & (places < (x_1, y_1)).all(axis=1)
+            points = shapely.points(places[near])
+            along = shapely.line_locate_point(line, points)
+            inside = (along > 2.0) & (along < line.length - 2.0)
+            inside &= shapely.distance(line, points) < half
+            on = {rows[i] for i in np.flatnonzero(near)[inside]}
+            red_for = np.zeros(len(self.times))
+            for k in range(1, len(self.times)):
+                lasts = self.times[k] - self.times[k - 1]
+                red = self.states[k][system][link] not in "gG"
+                red_for[k] = red_for[k - 1] + lasts if red else 0.0
+            for k, name in on:
+                if k > steps[0] and (k - 1, name) not in on:
+                    counts[int(red_for[k] > 3.0)] += 1
+        return counts[0], counts[1]
 
     def touched(self, names: set[str] | None = None, *, faster_than: float = 0.5) -> set[Any]:
         """(car, person) of all persons (or ``names``) whom a driving car's rectangle covers."""

@@ -136,9 +136,7 @@ def test_who_waits_rides_or_has_not_departed_is_left_alone(scenario: Callable[..
     assert (ledger["taken_over"], ledger["arrived"], ledger["continued"]) == (5, 4, 1)
 
 
-def test_who_is_handed_back_arrives_in_the_end(
-    drive: Drive, scenario: Callable[..., Path]
-) -> None:
+def test_who_is_handed_back_arrives_in_the_end(drive: Drive, scenario: Callable[..., Path]) -> None:
     people = "".join(
         f'<person id="p{i}" depart="{i}"><walk from="A1B1" to="{goal}"/></person>'
         for i, goal in enumerate(["C1D1", "B1B2", "C1C0", "B2C2", "B1A1", "B0B1"] * 3)
