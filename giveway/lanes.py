@@ -61,6 +61,8 @@ class Lanes:
         self._edges = frozenset(sumo.edge.getIDList())
         self._systems: dict[tuple[str, str], tuple[str, int]] | None = None
         self._shapes: dict[str, Array] = {}
+        self._lengths: dict[str, float] = {}
+        self._onwards: dict[tuple[str, str], tuple[str, ...]] = {}
 
     def along(
         self, edges: Sequence[str], lane: int | None, *, kind: str = "passenger", start: float = 0.0
@@ -111,7 +113,30 @@ class Lanes:
 
     def length(self, lane: str) -> float:
         """Length [m] of a lane's centre line."""
-        return _length(self.shape(lane))
+        length = self._lengths.get(lane)
+        if length is None:
+            length = self._lengths[lane] = _length(self.shape(lane))
+        return length
+
+    def onwards(self, lane: str, edge: str) -> tuple[str, ...]:
+        """The lanes right after ``lane``, of the junction or behind it, towards ``edge``."""
+        found = self._onwards.get((lane, edge))
+        if found is None:
+            links = self._sumo.lane.getLinks(lane)
+            leading = [link for link in links if self._sumo.lane.getEdgeID(link[0]) == edge]
+            found = self._onwards[lane, edge] = tuple(link[4] or link[0] for link in leading)
+        return found
+
+    def out_of_junction(self, lane: str) -> tuple[str, ...]:
+        """The lanes after one inside a junction, up to the first outside; none after others."""
+        lanes: list[str] = []
+        while lane.startswith(":"):
+            links = self._sumo.lane.getLinks(lane)
+            if not links:
+                break
+            lane = links[0][4] or links[0][0]
+            lanes.append(lane)
+        return tuple(lanes)
 
     def _start_lanes(self, edge: str, lane: int | None, kind: str) -> list[int]:
         count = int(self._sumo.edge.getLaneNumber(edge))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
+import libsumo
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,7 +13,10 @@ from hypothesis import strategies as st
 
 from giveway.corridor import closest_in_front
 from giveway.ego_path import EgoPath
+from giveway.lanes import Lanes
 from giveway.paths_ahead import Ways, gaps_ahead, sort_people
+from giveway.sumo_vehicles import SumoVehicles
+from sumo_scenarios import find
 
 HALF_WIDTH = 1.25
 
@@ -105,3 +110,27 @@ def test_everybody_is_in_exactly_one_bucket(count: int) -> None:
     assert sorted(grid[buckets + 1 :]) == list(range(count))
     assert (np.diff(grid[: buckets + 1]) >= 0).all()
     assert grid[buckets] == count
+
+
+def test_every_lane_ahead_begins_where_the_one_before_ends() -> None:
+    libsumo.start(["sumo", "-c", str(find("junction").config_file), "--no-step-log"])
+    try:
+        lanes = Lanes(libsumo, find("junction").config_file)
+        vehicles = SumoVehicles(libsumo, lambda function, *args: function(*args), lanes)
+        inside = 0
+        for _ in range(300):
+            libsumo.simulationStep()
+            for name in libsumo.vehicle.getIDList():
+                lane = libsumo.vehicle.getLaneID(name)
+                inside += lane.startswith(":")
+                for ahead in (
+                    vehicles.lanes_ahead(name, lane, 60.0),
+                    vehicles._by_its_plan(name, lane, 60.0),
+                ):
+                    assert ahead[0] == lane
+                    for before, after in itertools.pairwise(ahead):
+                        apart = math.dist(lanes.shape(before)[-1], lanes.shape(after)[0])
+                        assert apart < 0.05, (name, ahead)
+        assert inside  # cars on the junction itself have been among them
+    finally:
+        libsumo.close()
