@@ -71,8 +71,8 @@ class Parts:
         if not unconnected:
             return self.remarks
         more = (
-            f"walkers: {unconnected} times a route went on where the network has no walkway; the "
-            "straight line was taken"
+            f"walkers: {unconnected} hop(s) of their routes lead where the network has no walkway; "
+            "they take the straight line"
         )
         return (*self.remarks, more)
 

@@ -203,7 +203,11 @@ class SumoVehicles:
     def adopt(self, state: VehicleState, shape: VehicleShape) -> None:
         """Drive one of SUMO's own vehicles from now on, with the body ``shape``."""
         name = state.id
-        self._call(self._vehicle.setType, name, ego_type(state.kind))
+        try:
+            kind = ego_type(state.kind)
+        except ScenarioError as error:
+            raise ScenarioError(f"--ego {name}: {error}") from error
+        self._call(self._vehicle.setType, name, kind)
         self._call(self._vehicle.setLength, name, shape.length)
         self._call(self._vehicle.setWidth, name, shape.width)
         self.egos.add(name)

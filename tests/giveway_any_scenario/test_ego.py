@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,12 +14,11 @@ import giveway
 from giveway.simulation import Ending
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
     from giveway import RunResult
 
-Drive = Callable[..., tuple["RunResult", Any]] if TYPE_CHECKING else Any
+Drive = Callable[..., tuple[Any, Any]]  # the result of a run, and what was seen on the way
 NOBODY = {"crowd": {"zone": "none"}}
 ROUND_THE_BLOCK = ("B1C1", "C1C2", "C2B2", "B2B1", "B1C1", "C1D1")  # east, north, west, south
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import shutil
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -14,14 +15,11 @@ from giveway.simulation import Ending
 from sumo_scenarios import find
 
 if TYPE_CHECKING:
-    import subprocess
-    from collections.abc import Callable
     from pathlib import Path
 
-    from giveway import RunResult
 
-Drive = Callable[..., tuple["RunResult", Any]] if TYPE_CHECKING else Any
-Give = Callable[..., "subprocess.CompletedProcess[str]"] if TYPE_CHECKING else Any
+Drive = Callable[..., tuple[Any, Any]]  # the result of a run, and what was seen on the way
+Give = Callable[..., Any]  # a completed process
 _HEADER = re.compile(rb"<!-- generated on .*?-->", re.DOTALL)
 ALONE = ("--no-ego", "--zone", "none", "--pedestrians", "0", "--fcd", "--no-pictures", "-q")
 
@@ -143,7 +141,7 @@ def test_settings_for_teleports_are_kept(drive: Drive, scenario: Callable[..., P
     for seconds in (5, 100):
         options = f'<time-to-teleport value="{seconds}"/><lanechange.duration value="99"/>'
         config = scenario(block, options, end=40)
-        result, look = drive(config, ego={"none": True}, crowd={"zone": "none"})
+        result, _ = drive(config, ego={"none": True}, crowd={"zone": "none"})
         seen[seconds] = result.sumo_messages
     assert "Teleporting vehicle 'stuck'" in seen[5]
     assert "Teleporting" not in seen[100]
@@ -155,7 +153,7 @@ def test_the_seed_is_the_scenarios_unless_asked_for(
     plain = {"ego": {"none": True}, "crowd": {"zone": "none"}, "time_limit": 40.0}
     own, look = drive(city(0.1), **plain)
     same, again = drive(city(0.1), seed=99, **plain)
-    other, changed = drive(city(0.1), sumo={"seed": 7}, **plain)
+    _, changed = drive(city(0.1), sumo={"seed": 7}, **plain)
     assert own.manifest["sumo"]["seed"] == same.manifest["sumo"]["seed"]
     assert look.cars == again.cars
     assert look.cars != changed.cars

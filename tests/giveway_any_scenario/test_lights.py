@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,12 +11,10 @@ import pytest
 from sumo_scenarios import find
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
-    from giveway import RunResult
 
-Drive = Callable[..., tuple["RunResult", Any]] if TYPE_CHECKING else Any
+Drive = Callable[..., tuple[Any, Any]]  # the result of a run, and what was seen on the way
 
 
 def test_walkers_cross_at_green_and_wait_at_red(

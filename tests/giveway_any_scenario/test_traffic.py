@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -9,12 +10,11 @@ import pytest
 from sumo_scenarios import find
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
     from giveway import RunResult
 
-Drive = Callable[..., tuple["RunResult", Any]] if TYPE_CHECKING else Any
+Drive = Callable[..., tuple[Any, Any]]  # the result of a run, and what was seen on the way
 
 # Two streams of people over a crossing without lights, and a car every few seconds each way.
 NODES = """<nodes><node id="w" x="-150" y="0"/><node id="m" x="0" y="0" type="priority"/>
@@ -96,7 +96,7 @@ def test_in_the_city_nobody_drives_through_anybody(crowded: tuple[RunResult, Any
 
 
 def test_cars_follow_the_ego(drive: Drive) -> None:
-    result, look = drive(
+    _, look = drive(
         find("junction").config_file,
         ego={"depart_time": 0.0, "depart_position": 20.0, "initial_speed": 1.0},
         regulation={"reference_speed": 1.0, "traffic_lights": False},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import libsumo
@@ -14,13 +15,12 @@ import giveway
 from giveway.simulation import Ending
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
     from giveway import RunResult
     from giveway.walkways import WalkNetwork
 
-Drive = Callable[..., tuple["RunResult", Any]] if TYPE_CHECKING else Any
+Drive = Callable[..., tuple[Any, Any]]  # the result of a run, and what was seen on the way
 SQUARE = "60,60 240,60 240,240 60,240"
 NO_EGO = {"none": True}
 
