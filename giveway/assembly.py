@@ -67,14 +67,17 @@ class Parts:
     @property
     def all_remarks(self) -> tuple[str, ...]:
         """The remarks, with what has come up on the way."""
+        remarks = [
+            f"ego '{name}': its {count} stop(s) are left out; the vehicle FMU drives on"
+            for name, count in self.sumo.vehicles.dropped_stops.items()
+        ]
         unconnected = 0 if self.exchange is None else self.exchange.unconnected
-        if not unconnected:
-            return self.remarks
-        more = (
-            f"walkers: {unconnected} hop(s) of their routes lead where the network has no walkway; "
-            "they take the straight line"
-        )
-        return (*self.remarks, more)
+        if unconnected:
+            remarks.append(
+                f"walkers: {unconnected} hop(s) of their routes lead where the network has no "
+                "walkway; they take the straight line"
+            )
+        return (*self.remarks, *remarks)
 
     def arrived(self, crowd: Crowd) -> NDArray[np.bool_]:
         """(n,) who of ``crowd`` has reached the last way-point."""
@@ -110,7 +113,7 @@ def assemble(
     zone = Zone(config.crowd.zone, config.crowd.zone_margin)
     egos = config.each_ego()
     _require_distinct(egos)
-    step_length = config.sumo.step_length or files.step_length
+    step_length = _whole_milliseconds(config.sumo.step_length or files.step_length)
     time_step = _time_step(config.time_step, step_length)
     regulators = [make_regulator(ego, time_step) for ego in egos]
     walkers = not zone.nowhere and not (zone.follows_egos and not egos)
@@ -257,6 +260,11 @@ def _crowd(spawned: Spawned) -> Crowd:
         )
     except PedestrianModelError as error:
         raise CrowdError(f"pedestrians cannot be placed: {error}") from error
+
+
+def _whole_milliseconds(step_length: float) -> float:
+    """SUMO's step [s] as it keeps it: half a millisecond is rounded up."""
+    return math.floor(1000.0 * step_length + 0.5) / 1000.0
 
 
 def _time_step(wanted: float | None, step_length: float) -> float:

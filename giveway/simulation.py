@@ -151,11 +151,20 @@ class Loop:
             if self._k >= last_step:
                 over = limit / self._time_step - 1e-6 <= self._k
                 return Ending.TIME_LIMIT if over else Ending.SCENARIO_END
-            if not self._egos and parts.sumo.end == np.inf and not parts.sumo.expects_more:
+            if not self._egos and self._nobody_comes():
                 return Ending.SCENARIO_END
             if interrupted():
                 return Ending.INTERRUPTED
             self._advance()
+
+    def _nobody_comes(self) -> bool:
+        """Whether a scenario without an end has nobody left, and no ego is to be inserted."""
+        sumo, waiting = self._parts.sumo, self._parts.departures.waiting
+        return (
+            sumo.end == np.inf
+            and not sumo.expects_more
+            and all(driver.taken_over for driver in waiting)
+        )
 
     def _progress(self, acting: str) -> Progress:
         elapsed, people = self._k * self._time_step, len(self._population)

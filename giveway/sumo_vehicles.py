@@ -65,6 +65,7 @@ class SumoVehicles:
         self._lane_position = getattr(direct, "vehicle_getLanePosition", vehicle.getLanePosition)
         self._route_id = getattr(direct, "vehicle_getRouteID", vehicle.getRouteID)
         self.egos: set[str] = set()  # driven by giveway
+        self.dropped_stops: dict[str, int] = {}  # of egos that were taken over
 
     # --- reading ------------------------------------------------------------------------------
 
@@ -210,7 +211,18 @@ class SumoVehicles:
         self._call(self._vehicle.setType, name, kind)
         self._call(self._vehicle.setLength, name, shape.length)
         self._call(self._vehicle.setWidth, name, shape.width)
+        self._drop_stops(name)
         self.egos.add(name)
+
+    def _drop_stops(self, name: str) -> None:
+        """Its stops go: SUMO would park it beside the road while the FMU drives on."""
+        if self._vehicle.isStopped(name):
+            self._call(self._vehicle.resume, name)
+        stops = len(self._vehicle.getStops(name))
+        for _ in range(stops):
+            self._call(self._vehicle.replaceStop, name, 0, "")
+        if stops:
+            self.dropped_stops[name] = stops
 
     def dismiss(self, name: str) -> None:
         """Take an ego that has reached its goal off the road."""

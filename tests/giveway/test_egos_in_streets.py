@@ -1,0 +1,108 @@
+"""Egos in somebody else's streets: stops, odd steps, departures one after the other.
+
+A2--B2--C2    A grid of 3 x 3 junctions, 100 m apart, two lanes per direction.
+|   |   |     Edge A0B0 runs east from the south-western corner.
+A0--B0--C0
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+import sumo
+
+import giveway
+from giveway.simulation import Ending
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    Scenario = Callable[..., str]
+
+EASTWARDS = ["A0B0", "B0C0"]
+ROUTE = '<route edges="A0B0 B0C0"/>'
+NOBODY = {"crowd": {"zone": "none"}}
+
+
+@pytest.fixture(scope="module")
+def streets(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("streets")
+    home = Path(sumo.SUMO_HOME)
+    command = [home / "bin" / "netgenerate", "--grid", "--grid.number", "3"]
+    command += ["--grid.length", "100", "--default.lanenumber", "2", "-o", "net.net.xml"]
+    environment = os.environ | {"SUMO_HOME": str(home)}
+    subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
+    return folder
+
+
+@pytest.fixture
+def scenario(streets: Path, tmp_path: Path) -> Scenario:
+    """Write a scenario of these routes; its path."""
+
+    def write(routes: str, *, step: float = 1.0, end: float = 120.0) -> str:
+        config = tmp_path / "streets.sumocfg"
+        (tmp_path / "routes.rou.xml").write_text(f"<routes>{routes}</routes>")
+        config.write_text(
+            f"""<configuration>
+            <net-file value="{streets / "net.net.xml"}"/>
+            <route-files value="routes.rou.xml"/>
+            <end value="{end}"/> <step-length value="{step}"/>
+            </configuration>"""
+        )
+        return str(config)
+
+    return write
+
+
+@pytest.mark.parametrize(
+    "stop",
+    [
+        'lane="A0B0_1" endPos="40" duration="20"',
+        'lane="A0B0_1" endPos="40" duration="20" parking="true"',
+        'lane="A0B0_1" endPos="40" triggered="true"',
+        'lane="B0C0_1" endPos="40" duration="10" parking="true"',
+    ],
+)
+@pytest.mark.parametrize("departure", ["0", "stop"])
+def test_the_stops_of_a_vehicle_that_is_taken_over_are_left_out(
+    scenario: Scenario, stop: str, departure: str
+) -> None:
+    if departure == "stop" and "B0C0" in stop:
+        departure = "0"
+    car = f'<vehicle id="car" depart="0" departPos="{departure}">{ROUTE}<stop {stop}/></vehicle>'
+    result = giveway.run(
+        {"scenario": scenario(car), "ego": {"take_over": ("car",), "travel_distance": 120}} | NOBODY
+    )
+    assert result.completed
+    assert any("'car': its 1 stop(s) are left out" in remark for remark in result.remarks)
+    assert result.ego_track.speed[1:].min() > 0
+
+
+@pytest.mark.parametrize("step", [0.0333, 0.0335])
+def test_a_step_that_sumo_rounds_to_milliseconds_is_rounded_alike(
+    scenario: Scenario, step: float
+) -> None:
+    ego = {"route": EASTWARDS, "travel_distance": 5}
+    result = giveway.run({"scenario": scenario("", step=step), "ego": ego} | NOBODY)
+    assert result.completed
+    assert result.manifest["time_step"] == result.manifest["sumo"]["step_length"]
+
+
+def test_an_endless_scenario_waits_for_every_ego_that_is_to_be_inserted(
+    scenario: Scenario,
+) -> None:
+    egos = ({"ego": {"id": "first"}}, {"ego": {"id": "second", "depart_time": 40}})
+    result = giveway.run(
+        {
+            "scenario": scenario("", end=-1),
+            "ego": {"route": EASTWARDS, "travel_distance": 10},
+            "egos": egos,
+        }
+        | NOBODY
+    )
+    assert [ego.ending for ego in result.egos] == [Ending.COMPLETED] * 2
+    assert result.egos[1].track.time[0] == 40
