@@ -224,7 +224,8 @@ class Ego:
         origin = self.front + self._origin
         stop = seen.stop + self._origin + regulation.safe_distance
         gap = min(seen.person, seen.leader.station, stop) - origin
-        limit = self._speed_limit(seen)
+        free = seen.stop == math.inf == seen.leader.station
+        limit = math.inf if free else self._speed_limit(seen)
         observation = Observation(origin, self.vehicle.speed, gap, seen.ahead, limit)
         decision = self.driver.regulator.control(observation)
         if not math.isfinite(decision.force):

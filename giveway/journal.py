@@ -77,9 +77,15 @@ class JournalRows:
     def block(self, rows: int) -> Array:
         """A view of the next ``rows`` rows, to be filled before the next block or commit."""
         start, self._count = self._count, self._count + rows
-        while self._count > len(self._buffer):
-            self._hold(np.concatenate([self._buffer, np.empty_like(self._buffer)]))
+        if self._count > len(self._buffer):
+            more = np.empty((max(self._count, 2 * len(self._buffer)), self._buffer.shape[1]))
+            more[:start] = self._buffer[:start]  # memory beyond is not taken until it is filled
+            self._hold(more)
         return self._buffer[start : self._count]
+
+    def give_back(self, rows: int) -> None:
+        """Take back the last ``rows`` rows of the latest block, which have not been filled."""
+        self._count -= rows
 
     @property
     def filled(self) -> Array:

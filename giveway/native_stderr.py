@@ -28,6 +28,7 @@ class NativeStderr:
             self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the session
         else:
             self._log = path.open("w+b")
+        self._file_descriptor = self._log.fileno()
         try:
             self._saved = os.dup(2)
         except OSError:  # closed by whoever started us: what is printed there goes nowhere
@@ -36,7 +37,7 @@ class NativeStderr:
     def __enter__(self) -> None:
         if sys.stderr is not None:
             sys.stderr.flush()
-        os.dup2(self._log.fileno(), 2)
+        os.dup2(self._file_descriptor, 2)
 
     def __exit__(
         self,

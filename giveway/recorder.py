@@ -100,15 +100,30 @@ class Recorder:
             row.iterations,
         )
 
-    def crowd(self, present: Indices, position: Array, velocity: Array, chosen: Indices) -> None:
-        """Record those of the pedestrians ``present`` whose rows are ``chosen``, as of now."""
-        block = self._crowd.block(len(chosen))
-        fill_block(self._steps - 1, present, position, velocity, chosen, block)
+    def crowd(
+        self, present: Indices, position: Array, velocity: Array, egos: Array, within: float
+    ) -> None:
+        """Record the pedestrians ``present`` at the present control instant.
+
+        Args:
+            present: (n,) their indices.
+            position: (n, 2) [m].
+            velocity: (n, 2) [m/s].
+            egos: (e, 2) [m] where the egos are.
+            within: [m] of an ego, who is further away is left out; infinite: nobody is.
+        """
+        block = self._crowd.block(len(present))
+        filled = fill_near(self._steps - 1, present, position, velocity, egos, within, block)
+        self._crowd.give_back(len(present) - filled)
 
     def background(
-        self, time: float, vehicles: BackgroundVehicles, wanted: NDArray[np.int64]
+        self, time: float, vehicles: BackgroundVehicles, egos: Array, within: float
     ) -> None:
-        """Record those of SUMO's own vehicles at ``time`` [s] whose indices are ``wanted``."""
+        """Record SUMO's own vehicles at ``time`` [s], ``egos`` and ``within`` as for the crowd."""
+        near = np.full(len(vehicles.ids), np.isinf(within))
+        for x, y in egos:
+            near |= np.hypot(vehicles.x - x, vehicles.y - y) <= within
+        wanted = np.flatnonzero(near)
         if not len(wanted):
             return
         index = self._vehicles.index
@@ -191,15 +206,15 @@ class Tables:
     def crowd_track(self) -> CrowdTrack:
         """The crowd's rows as arrays."""
         rows = self._rows["crowd"]
-        rows = rows[rows[:, 0] < len(self.time)]
-        step, pedestrian, x, y, vx, vy = (np.ascontiguousarray(column) for column in rows.T)
+        rows = rows[: np.searchsorted(rows[:, 0], len(self.time))]  # no copy: it may be most of RAM
+        step, pedestrian, x, y, vx, vy = rows.T
         return CrowdTrack(
             step=step.astype(np.int64),
             pedestrian=pedestrian.astype(np.int64),
-            x=x,
-            y=y,
-            vx=vx,
-            vy=vy,
+            x=np.ascontiguousarray(x),
+            y=np.ascontiguousarray(y),
+            vx=np.ascontiguousarray(vx),
+            vy=np.ascontiguousarray(vy),
             ids=self._names["pedestrians"],
         )
 
@@ -217,15 +232,28 @@ class Tables:
 
 
 @kernel
-def fill_block(
-    step: int, present: Indices, position: Array, velocity: Array, chosen: Indices, block: Array
-) -> None:
-    """Fill the crowd's rows of one step."""
-    for j in range(len(chosen)):
-        i = chosen[j]
-        block[j, 0] = step
-        block[j, 1] = present[i]
-        block[j, 2] = position[i, 0]
-        block[j, 3] = position[i, 1]
-        block[j, 4] = velocity[i, 0]
-        block[j, 5] = velocity[i, 1]
+def fill_near(
+    step: int,
+    present: Indices,
+    position: Array,
+    velocity: Array,
+    egos: Array,
+    within: float,
+    block: Array,
+) -> int:
+    """Fill the crowd's rows of one step with those within reach of an ego; how many they are."""
+    count = 0
+    for i in range(len(present)):
+        near = np.isinf(within)
+        for j in range(len(egos)):
+            d_x, d_y = position[i, 0] - egos[j, 0], position[i, 1] - egos[j, 1]
+            near |= d_x * d_x + d_y * d_y <= within * within
+        if near:
+            block[count, 0] = step
+            block[count, 1] = present[i]
+            block[count, 2] = position[i, 0]
+            block[count, 3] = position[i, 1]
+            block[count, 4] = velocity[i, 0]
+            block[count, 5] = velocity[i, 1]
+            count += 1
+    return count

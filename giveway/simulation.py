@@ -29,7 +29,6 @@ from controller import ControllerError
 from fmus import FmuError
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.heartbeat import Phase
-from giveway.jit import kernel
 from giveway.mirror import Mirror
 from pedestrian_model import PedestrianModelError
 
@@ -39,7 +38,6 @@ if TYPE_CHECKING:
     from giveway.recorder import Recorder
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 
 class Ending(enum.StrEnum):
@@ -98,7 +96,6 @@ class Loop:
         self._near = parts.config.record.near
         self._named = 0
         self._fronts = np.empty((0, 2))
-        self._chosen = np.empty(0, dtype=np.int64)
 
     def run(self, watcher: Watcher | None, interrupted: Callable[[], bool]) -> Ending:
         """Step until every ego is done, a limit or an interrupt.
@@ -179,10 +176,11 @@ class Loop:
 
     def _read_sumo(self) -> None:
         parts = self._parts
-        arrivals = parts.departures.due(self._k)
-        self._egos += arrivals
-        for ego in arrivals:
-            self._recorder.drive(ego.id, ego.shape, ego.goal)
+        if parts.departures.waiting:
+            arrivals = parts.departures.due(self._k)
+            self._egos += arrivals
+            for ego in arrivals:
+                self._recorder.drive(ego.id, ego.shape, ego.goal)
         if parts.exchange is not None:
             parts.exchange.update(self._places())
         people = self._population.crowd.position
@@ -239,15 +237,9 @@ class Loop:
             self._named = len(population.ids)
         crowd = population.crowd
         within = self._near if self._k % self._far_steps else np.inf
-        chosen = self._choose(crowd.position, within)
-        self._recorder.crowd(population.present, crowd.position, crowd.velocity, chosen)
-
-    def _choose(self, places: Array, within: float) -> Indices:
-        """Which of ``places`` are ``within`` so many metres of an ego; with infinity, all."""
-        if len(places) > len(self._chosen):
-            self._chosen = np.empty(2 * len(places), dtype=np.int64)
-        count = choose_near(places, self._places(), within, self._chosen)
-        return self._chosen[:count]
+        self._recorder.crowd(
+            population.present, crowd.position, crowd.velocity, self._places(), within
+        )
 
     def _record_background(self) -> None:
         background = self._mirror.background
@@ -256,15 +248,16 @@ class Loop:
         within = self._near
         if self._k - self._far_background >= self._far_steps:
             self._far_background, within = self._k, np.inf
-        wanted = self._choose(np.column_stack([background.x, background.y]), within)
         time = self._start + self._k * self._time_step
-        self._recorder.background(time, background, wanted)
+        self._recorder.background(time, background, self._places(), within)
 
     # --- steps 4 and 5 ------------------------------------------------------------------------
 
     def _see_arrivals(self) -> None:
         """Egos that have driven their distance leave the road."""
-        for ego in [ego for ego in self._egos if ego.arrived]:
+        for ego in self._egos[:]:
+            if not ego.arrived:
+                continue
             self.endings[ego.id] = Ending.COMPLETED
             self._mirror.drop(self._egos.index(ego))
             self._egos.remove(ego)
@@ -301,7 +294,7 @@ class Loop:
     def _step_crowd(self) -> None:
         """Move the crowd under the vehicles at t_k; who has arrived leaves."""
         parts, population = self._parts, self._population
-        if not len(population):
+        if not len(population.present):
             return
         surroundings = parts.surroundings
         parts.crowd_model.advance(population.crowd, self._mirror.vehicles, surroundings)
@@ -312,18 +305,3 @@ class Loop:
         ours = names if parts.exchange is None else parts.exchange.arrive(names)
         parts.sumo.remove_persons(ours)
         population.count("arrived", len(ours))
-
-
-@kernel
-def choose_near(places: Array, egos: Array, distance: float, chosen: Indices) -> int:
-    """Gather who is within ``distance`` [m] of an ego, everybody if that is infinite."""
-    count = 0
-    for i in range(len(places)):
-        near = np.isinf(distance)
-        for j in range(len(egos)):
-            d_x, d_y = places[i, 0] - egos[j, 0], places[i, 1] - egos[j, 1]
-            near |= d_x * d_x + d_y * d_y <= distance * distance
-        if near:
-            chosen[count] = i
-            count += 1
-    return count

@@ -90,6 +90,9 @@ class SumoSession:
         person = self._sumo.person
         self._move_person = getattr(direct, "person_moveToXY", person.moveToXY)
         self._person_position = getattr(direct, "person_getPosition", person.getPosition)
+        vehicle = self._sumo.vehicle
+        self._move_vehicle = getattr(direct, "vehicle_moveToXY", vehicle.moveToXY)
+        self._vehicle_position = getattr(direct, "vehicle_getPosition", vehicle.getPosition)
         self._moves_pending = False
         self.lanes = Lanes(self._sumo, self._config_file)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
@@ -218,7 +221,7 @@ class SumoSession:
             with self._stderr:
                 for name, pose in egos:
                     angle = heading_to_angle(pose.heading)
-                    self._sumo.vehicle.moveToXY(name, "", -1, pose.x, pose.y, angle, _KEEP_ROUTE)
+                    self._move_vehicle(name, "", -1, pose.x, pose.y, angle, _KEEP_ROUTE)
                 moves = map(
                     self._move_person, ids, _NO_EDGE, x, y, angles, _EXACTLY, _WITHOUT_MATCHING
                 )
@@ -237,7 +240,7 @@ class SumoSession:
     ) -> None:
         try:
             for name, pose in egos:
-                there = self._sumo.vehicle.getPosition(name)
+                there = self._vehicle_position(name)
                 if there != pose[:2]:
                     _compare("vehicle", name, there, pose, self.time)
             mirrored = list(map(self._person_position, ids))

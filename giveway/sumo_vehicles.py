@@ -58,6 +58,7 @@ class SumoVehicles:
         # The wrapper's methods only pass their arguments on, which takes as long as the answer.
         direct = getattr(sumo.libsumo, "_libsumo", None)
         vehicle = sumo.vehicle
+        self._id_list = getattr(direct, "vehicle_getIDList", vehicle.getIDList)
         self._position = getattr(direct, "vehicle_getPosition", vehicle.getPosition)
         self._angle = getattr(direct, "vehicle_getAngle", vehicle.getAngle)
         self._speed = getattr(direct, "vehicle_getSpeed", vehicle.getSpeed)
@@ -80,9 +81,10 @@ class SumoVehicles:
     def background(self) -> BackgroundVehicles:
         """Every vehicle of the scenario except the egos, as of SUMO's clock."""
         vehicle = self._vehicle
-        ids = tuple(sorted(name for name in vehicle.getIDList() if name not in self.egos))
-        if not ids:
+        everybody = self._id_list()
+        if self.egos.issuperset(everybody):
             return NO_VEHICLES
+        ids = tuple(sorted(name for name in everybody if name not in self.egos))
         for name in ids:
             if name not in self._shapes:
                 size = vehicle.getLength(name), vehicle.getWidth(name)

@@ -56,6 +56,8 @@ class Yielding:
             cars: SUMO's own vehicles now.
             crowd: the pedestrians now.
         """
+        if not cars.ids and not self._limited:
+            return
         limits = self._limits(cars, crowd) if cars.ids and len(crowd) else {}
         before = self._limited
         if before and before.keys() - limits.keys():
