@@ -107,7 +107,7 @@ class SumoSession:
             with self._stderr:
                 self._sumo.start(list(self.start.command))
         except Exception as error:
-            reason = self.start.with_original_names(self._stderr.errors() or str(error))
+            reason = self._readable(self._stderr.errors() or str(error))
             self._stderr.close()
             msg = f"{self._config_file}: SUMO cannot load this scenario: {reason}"
             raise SumoError(msg) from error
@@ -265,8 +265,12 @@ class SumoSession:
     def _failure(self, error: Exception) -> SumoError:
         reasons = [part for part in (str(error).strip(), self._stderr.errors()) if part]
         reason = "; ".join(dict.fromkeys(reasons)) or type(error).__name__
-        reason = self.start.with_original_names(reason)
+        reason = self._readable(reason)
         return SumoError(f"{self._config_file}: SUMO failed at {self.time:.3f} s: {reason}")
+
+    def _readable(self, reason: str) -> str:
+        """SUMO's reason on one line, with the scenario's own files instead of our copies."""
+        return " ".join(self.start.with_original_names(reason).split())
 
     def close(self) -> None:
         """End the simulation; harmless when repeated."""

@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+import giveway
 
 CAR = '<trip id="car" depart="0" from="A0B0" to="C0D0"/>'
 Scenario = Callable[..., Path]
@@ -18,45 +17,52 @@ Refuse = Callable[..., str]
 
 
 @pytest.fixture
-def refused(give: Callable[..., Any], tmp_path: Path) -> Iterator[Refuse]:
-    """The one line on stderr of a run that must fail, leaving nothing behind."""
+def refused(tmp_path: Path) -> Refuse:
+    """The one line about a run that must fail, leaving nothing behind."""
 
-    def run(config: Path | str, *words: object, code: tuple[int, ...] = (1, 2)) -> str:
-        where = tmp_path / "here"
-        where.mkdir(exist_ok=True)
-        done = give("run", config, *words, "--out", "out", "-q", cwd=where)
-        assert done.returncode in code, done.stderr
-        lines = done.stderr.strip().splitlines()
-        assert len(lines) == 1, done.stderr
-        assert lines[0].startswith("error: ")
-        assert not list(where.iterdir())
-        return str(lines[0])
+    def run(config: Path, **settings: Any) -> str:
+        out = tmp_path / "out"
+        with pytest.raises(giveway.GivewayError) as failure:
+            giveway.run({"scenario": str(config), **settings}, results=out, pictures=False)
+        assert "\n" not in str(failure.value)
+        assert not out.exists()
+        return str(failure.value)
 
     return run
 
 
-def test_a_missing_route_file(scenario: Scenario, refused: Refuse) -> None:
+def ego(name: str) -> dict[str, Any]:
+    return {"ego": {"take_over": (name,)}}
+
+
+def test_on_the_command_line_it_is_one_line_too(
+    scenario: Scenario, give: Callable[..., Any], tmp_path: Path
+) -> None:
     config = scenario(CAR)
     (config.parent / "all.rou.xml").unlink()
-    line = refused(config, "--ego", "car")
+    here = tmp_path / "here"
+    here.mkdir()
+    done = give("run", config, "--ego", "car", "--out", "out", cwd=here)
+    assert done.returncode == 2
+    (line,) = done.stderr.strip().splitlines()
+    assert line.startswith("error: ")
     assert "small.sumocfg" in line
     assert "all.rou.xml" in line
+    assert not list(here.iterdir())
 
 
 def test_a_missing_network(scenario: Scenario, refused: Refuse, tmp_path: Path) -> None:
-    line = refused(scenario(CAR, net=tmp_path / "gone.net.xml"), "--ego", "car")
-    assert "gone.net.xml" in line
+    assert "gone.net.xml" in refused(scenario(CAR, net=tmp_path / "gone.net.xml"), **ego("car"))
 
 
 def test_a_route_file_that_is_cut_off(scenario: Scenario, refused: Refuse) -> None:
     config = scenario(CAR)
     (config.parent / "all.rou.xml").write_text(f"<routes>{CAR}<vehicle id=")
-    line = refused(config, "--ego", "car")
-    assert "all.rou.xml" in line
+    assert "all.rou.xml" in refused(config, **ego("car"))
 
 
 def test_a_scenario_that_does_not_exist(refused: Refuse, tmp_path: Path) -> None:
-    assert "nowhere.sumocfg" in refused(tmp_path / "nowhere.sumocfg", "--ego", "car")
+    assert "nowhere.sumocfg" in refused(tmp_path / "nowhere.sumocfg", **ego("car"))
 
 
 def test_no_ego_at_all(scenario: Scenario, refused: Refuse) -> None:
@@ -65,29 +71,34 @@ def test_no_ego_at_all(scenario: Scenario, refused: Refuse) -> None:
 
 
 def test_an_ego_that_never_departs(scenario: Scenario, refused: Refuse) -> None:
-    line = refused(scenario(CAR), "--ego", "caar")
+    line = refused(scenario(CAR), **ego("caar"))
     assert "small.sumocfg" in line
     assert "did you mean 'car'?" in line
     late = '<trip id="late" depart="500" from="A0B0" to="C0D0"/>'
-    line = refused(scenario(CAR + late, end=20), "--ego", "late")
+    line = refused(scenario(CAR + late, end=20), **ego("late"))
     assert "--ego late" in line
     assert "20 s" in line
 
 
 def test_an_ego_that_departs_after_the_end(scenario: Scenario, refused: Refuse) -> None:
-    line = refused(scenario(CAR, end=20), "--ego-route", "A0B0,B0C0", "--ego-depart-time", 30)
+    config = scenario(CAR, end=20)
+    line = refused(config, ego={"route": ("A0B0", "B0C0"), "depart_time": 30.0})
     assert "--ego-depart-time 30" in line
     assert "20 s" in line
 
 
 @pytest.mark.parametrize(
     ("route", "named"),
-    [("A0B0,nowhere", "'nowhere'"), ("A0B0,C2C3", "C2C3"), ("A0B0,B0C0,B0A0", "'B0C0'")],
+    [
+        ("A0B0,nowhere", "'nowhere'"),
+        ("A0B0,C2C3", "'C2C3'"),
+        ("A0B0,B0C0,B0A0", "'B0C0'"),
+    ],
 )
 def test_a_route_that_does_not_exist_or_connect(
     scenario: Scenario, refused: Refuse, route: str, named: str
 ) -> None:
-    assert named in refused(scenario(CAR), "--ego-route", route)
+    assert named in refused(scenario(CAR), ego={"route": route})
 
 
 @pytest.mark.parametrize(
@@ -101,7 +112,7 @@ def test_a_route_that_does_not_exist_or_connect(
     ],
 )
 def test_a_zone_that_is_none(scenario: Scenario, refused: Refuse, zone: str, named: str) -> None:
-    line = refused(scenario(CAR), "--ego", "car", f"--zone={zone}")
+    line = refused(scenario(CAR), crowd={"zone": zone}, **ego("car"))
     assert named in line
     assert f"--zone '{zone}'" in line
 
@@ -112,7 +123,7 @@ def test_a_vehicle_that_drives_where_nobody_walks(scenario: Scenario, refused: R
         '<route edges="A0B0"/></vehicle>',
         '<ignore-route-errors value="true"/>',
     )
-    line = refused(config, "--ego", "boat")
+    line = refused(config, **ego("boat"))
     assert "boat" in line
     assert "ship" in line
 
