@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 SIGHT = 100.0  # [m] along the path
-_BEHIND = 10.0  # [m] from there on nobody catches up with the front bumper within the horizon
-_OUTLINE = 1.0  # [m] between the points of a vehicle's outline that are looked at
+_BEHIND = 10.0  # [m] so far back, or as far as people walk in the horizon, they are looked for
+_OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
+_FINEST_OUTLINE = 0.1  # [m] and at least
 
 
 class Leader(NamedTuple):
@@ -92,6 +93,7 @@ class Corridor:
             front,
             speed * self.time_step,
             self.half_width,
+            self._reach,
             self._ahead,
         )
         return self._ahead
@@ -216,9 +218,9 @@ def closest_in_front(
 
 
 @kernel
-def window(stations: Array, front: float) -> tuple[int, int]:
-    """The first and last segment of the path that lie within sight."""
-    return segment_at(stations, front - _BEHIND), segment_at(stations, front + SIGHT)
+def window(stations: Array, front: float, behind: float) -> tuple[int, int]:
+    """The first and last segment of the path that lie within sight, from ``behind`` [m] on."""
+    return segment_at(stations, front - behind), segment_at(stations, front + SIGHT)
 
 
 @kernel
@@ -231,7 +233,7 @@ def closest_in_sight(
     reach: float,
 ) -> tuple[float, bool]:
     """As :func:`closest_in_front`, on the path within sight."""
-    first, last = window(stations, front)
+    first, last = window(stations, front, max(_BEHIND, reach))
     return closest_in_front(vertices, stations, first, last, positions, front, half_width, reach)
 
 
@@ -243,10 +245,11 @@ def closest_ahead(
     front: float,
     advance: float,
     half_width: float,
+    reach: float,
     closest: Array,
 ) -> None:
     """Fill ``closest[i]`` for the predicted ``positions[i]`` at step i + 1."""
-    first, last = window(stations, front)
+    first, last = window(stations, front, max(_BEHIND, reach))
     for i in range(positions.shape[0]):
         at = front + (i + 1) * advance
         closest[i], _ = closest_in_front(
@@ -267,11 +270,12 @@ def outline_in_front(
     """Station of the closest point of a vehicle's outline in front; inf: none is."""
     cos, sin = np.cos(vehicle[2]), np.sin(vehicle[2])
     rear, length, half = -vehicle[5], vehicle[4] + vehicle[5], vehicle[6] / 2.0
-    along = max(1, int(np.ceil(length / _OUTLINE)))
+    apart = max(_FINEST_OUTLINE, min(_OUTLINE, half_width))  # none slips through the corridor
+    along = max(1, int(np.ceil(length / apart)))
     closest = np.inf
     for i in range(along + 1):
         to_x = rear + length * i / along
-        across = max(1, int(np.ceil(2.0 * half / _OUTLINE))) if i in (0, along) else 1
+        across = max(1, int(np.ceil(2.0 * half / apart))) if i in (0, along) else 1
         for j in range(across + 1):
             to_y = -half + 2.0 * half * j / across
             x = vehicle[0] + cos * to_x - sin * to_y
@@ -297,10 +301,11 @@ def vehicles_in_front(
     """The closest vehicle now (station, speed along the path); fills ``ahead`` for 1 ... N.
 
     One that is in the corridor now is taken to follow the path at its present speed, any other
-    one to go straight on: so a car ahead in a bend stays ahead, and one from the side comes.
+    one to go straight on: so a car ahead in a bend stays ahead, and one from the side comes. One
+    that is in the corridor behind the front bumper stays behind: it does not drive through us.
     """
     N = ahead.shape[0]
-    first, last = window(stations, front)
+    first, last = window(stations, front, _BEHIND)
     ahead[:] = np.inf
     nearest, its_speed = np.inf, 0.0
     x_0, y_0, _ = body_pose(vertices, stations, headings, front, 0.0)
@@ -319,8 +324,13 @@ def vehicles_in_front(
             for k in range(N):
                 ahead[k] = min(ahead[k], station + (k + 1) * time_step * along)
             continue
-        if away > N * (advance + abs(vehicle[3]) * time_step) + size + half_width:
+        reach = N * (advance + abs(vehicle[3]) * time_step) + size + half_width
+        if away > reach:
             continue  # it cannot meet the ego within the horizon
+        rear = front - reach
+        begin = segment_at(stations, rear)
+        if outline_in_front(vertices, stations, begin, last, vehicle, rear, half_width) < np.inf:
+            continue
         for k in range(1, min(N, poses.shape[0] - 1) + 1):
             at = front + k * advance
             station = outline_in_front(vertices, stations, first, last, poses[k, j], at, half_width)
