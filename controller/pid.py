@@ -12,7 +12,8 @@ class Pid:
     """u = -(u_p + u_i + u_d) on the speed error e = v - v_ref, clipped to the force limit.
 
     The reference speed falls linearly with the gap: v_r clip((gap - d_safe) / d_buffer, 0, 1).
-    As printed, the output is not rate-limited and the integrator has no anti-windup.
+    As printed, the output is not rate-limited and the integrator has no anti-windup; only under
+    a limit of the speed, which the paper does not know, the integrator does not drive.
 
     Args:
         parameters: gains and distances.
@@ -61,6 +62,10 @@ class Pid:
         before = e if self._error is None else self._error
         u_p = p.K_p * e
         u_i = p.K_i * e * dt + self._integral
+        if limit <= self.reference_speed(gap):
+            # Ours, as the limit is: what has been wound up on the way to a higher speed would
+            # creep over the stop line, for minutes (K_p / K_i = 240 s).
+            u_i = max(u_i, 0.0)
         u_d = p.K_d * (e - before) / dt
         self._integral, self._error = u_i, e
         return min(max(-(u_p + u_i + u_d), -p.force_limit), p.force_limit)

@@ -168,3 +168,15 @@ def test_refuses_senseless_parameters(name, value):
 def test_refuses_a_senseless_time_step():
     with pytest.raises(ParameterError, match="time_step = 0"):
         Pid(time_step=0.0)
+
+
+def test_under_a_limit_of_zero_it_does_not_creep():
+    """What the integrator gathers on the way to 15 m/s drives nobody over a stop line."""
+    pid = Pid(PidParameters(reference_speed=15.0))
+    drive(pid, 0.0, 300)
+    speed, crept = 0.0, 0.0
+    for _ in range(2000):
+        u = pid.control(speed, math.inf, 0.0)
+        speed = max(0.0, MODEL.decay * speed + MODEL.speed_per_force * u)
+        crept += 0.05 * speed
+    assert crept == 0.0
