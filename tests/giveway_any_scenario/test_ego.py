@@ -241,3 +241,16 @@ def test_an_ego_that_never_finds_room_to_depart_is_reported(
     )
     with pytest.raises(giveway.GivewayError, match=r"--ego late: .*until 20 s"):
         giveway.run({"scenario": str(config), "ego": {"take_over": ("late",)}})
+
+
+@pytest.mark.xfail(reason="the ego foresees 0.75 s; across oncoming traffic it turns too late")
+def test_a_left_turn_gives_way_to_oncoming_traffic(
+    drive: Drive, scenario: Callable[..., Path]
+) -> None:
+    config = scenario(
+        '<flow id="on" begin="0" end="100" period="3" departLane="random" departSpeed="max">'
+        '<route edges="C1B1 B1A1"/></flow>'
+    )
+    ego = {"route": ("A1B1", "B1B2"), "depart_time": 5.0, "initial_speed": 4.0}
+    _, look = drive(config, ego=ego, time_limit=70.0, **NOBODY)
+    assert look.collided("ego") == set()
