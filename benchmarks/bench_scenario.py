@@ -13,12 +13,9 @@ from __future__ import annotations
 
 import argparse
 import cProfile
-import importlib.util
 import os
 import pstats
-import random
 import resource
-import subprocess
 import tempfile
 from collections import defaultdict
 from contextlib import ExitStack
@@ -30,6 +27,7 @@ from unittest import mock
 
 import libsumo
 import numpy as np
+from cities import City, build_city
 
 from giveway.api import RunResult, simulate
 from giveway.configfile import Layer
@@ -41,15 +39,10 @@ from giveway.tracks import Timings
 from giveway.yielding import Yielding
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
-BLOCK = 100.0  # [m]
-WALKERS_PER_STREET = 10
 WARM_UP = 5.0  # [s] simulated, from the first instant on
 WINDOW = 10.0  # [s] simulated, timed
-LAST = 100_000.0  # [s] nobody departs later
-WALK_LENGTH = (3, 30)  # streets
-TURNOVER = 1200.0  # [s] in which as many depart anew as there are
 SPLIT = {  # what the loop's own table lumps together as SUMO's
     "sumo step": (libsumo, "simulationStep"),
     "moves": (SumoSession, "mirror"),
@@ -68,14 +61,6 @@ class Case(NamedTuple):
     walls: bool
 
 
-class City(NamedTuple):
-    """A scenario on disk."""
-
-    config_file: Path
-    ego_route: str
-    streets: int
-
-
 CASES = (
     Case(100, 0.1, False),
     Case(1_000, 0.1, False),
@@ -88,85 +73,6 @@ CASES = (
     Case(3_000, 0.05, False),
     Case(3_000, 1.0, False),
 )
-
-
-# --- the city -------------------------------------------------------------------------------------
-
-
-def build_city(folder: Path, walkers: int, turnover: float = TURNOVER) -> City:
-    """Build a city for so many walkers."""
-    side = 2
-    while 2 * side * (side - 1) * WALKERS_PER_STREET < walkers:
-        side += 1
-    netgenerate(folder / "city.net.xml", side)
-    draw = random.Random(walkers)
-    corners = {(i, j) for i in range(side) for j in range(side)}
-    streets = 2 * side * (side - 1)
-    lines = ['<vType id="walker" vClass="pedestrian" speedDev="0.15"/>']
-    for number, depart in enumerate(departures(walkers, turnover)):
-        route = stroll(draw, corners, draw.randint(*WALK_LENGTH))
-        lines.append(
-            f'<person id="p{number}" type="walker" depart="{depart:.2f}" departPos="random">'
-            f'<walk edges="{route}" arrivalPos="{draw.uniform(5.0, 60.0):.1f}"/></person>'
-        )
-        if depart == 0.0 and number % WALKERS_PER_STREET == 0:
-            lines.append(
-                f'<vehicle id="car{number}" depart="0" departPos="random_free" departLane="best">'
-                f'<route edges="{stroll(draw, corners, 200)}"/></vehicle>'
-            )
-    lines.sort(key=lambda line: float(line.partition('depart="')[2].partition('"')[0] or -1.0))
-    (folder / "city.rou.xml").write_text(
-        "\n".join(["<routes>", *lines, "</routes>"]), encoding="utf-8"
-    )
-    config_file = folder / "city.sumocfg"
-    config_file.write_text(
-        '<configuration><input><net-file value="city.net.xml"/>'
-        '<route-files value="city.rou.xml"/></input><time><step-length value="0.1"/></time>'
-        '<processing><pedestrian.model value="striping"/></processing></configuration>',
-        encoding="utf-8",
-    )
-    return City(config_file, stroll(draw, corners, 100).replace(" ", ","), streets)
-
-
-def netgenerate(network: Path, side: int) -> None:
-    """Write a grid of ``side`` times ``side`` signalled junctions."""
-    package = importlib.util.find_spec("sumo")
-    if package is None or package.origin is None:
-        raise SystemExit("no netgenerate: pip install 'giveway[build]'")
-    home = Path(package.origin).parent
-    command = [home / "bin" / "netgenerate", "--grid", f"--grid.number={side}"]
-    command += [f"--grid.length={BLOCK}", "--default.lanenumber=1", "--sidewalks.guess"]
-    command += ["--crossings.guess", "--walkingareas", "--default-junction-type=traffic_light"]
-    command += ["--default.speed=13.89", "--no-turnarounds", "-o", network]
-    environment = os.environ | {"SUMO_HOME": str(home)}
-    subprocess.run(list(map(str, command)), check=True, capture_output=True, env=environment)
-
-
-def departures(walkers: int, turnover: float) -> Iterator[float]:
-    """Everybody at once, then as many as arrive."""
-    yield from [0.0] * walkers
-    later, k = WARM_UP, 0
-    while (later := (k + 0.5) * turnover / walkers) < min(LAST, 3.0 * turnover):
-        yield later
-        k += 1
-
-
-def stroll(draw: random.Random, corners: set[tuple[int, int]], length: int) -> str:
-    """A random walk along ``length`` streets that never turns back unless it has to."""
-    here = draw.choice(sorted(corners))
-    before, edges = here, []
-    for _ in range(length):
-        i, j = here
-        around = [(i + 1, j), (i - 1, j), (i, j + 1), (i, j - 1)]
-        onwards = [corner for corner in around if corner in corners and corner != before]
-        before, here = here, draw.choice(onwards)
-        edges.append(f"{name(before)}{name(here)}")
-    return " ".join(edges)
-
-
-def name(corner: tuple[int, int]) -> str:
-    """As netgenerate calls it."""
-    return f"{chr(ord('A') + corner[0])}{corner[1]}"
 
 
 # --- runs -----------------------------------------------------------------------------------------
