@@ -107,7 +107,7 @@ def run_layers(
     where = None if folder is None else str(folder.absolute())
     wanted = {"results": where, "taken": taken, "parquet": parquet, "pictures": pictures}
     rows.write_meta({"config": dump_toml(config), **wanted})
-    native_log = None if journal is None else journal / STDERR_FILE
+    native_log = None if journal is None or rows.failure else journal / STDERR_FILE
     with DeferredInterrupt() as interrupt:  # writing is not to be torn either
         try:
             outputs = None if folder is None else sumo_folder(folder)
@@ -208,6 +208,9 @@ def _result(
 ) -> RunResult:
     """What the loop has left behind."""
     tables = recorder.tables()
+    remarks = parts.all_remarks
+    if recorder.journal.failure:
+        remarks = (*remarks, recorder.journal.failure)
     return RunResult(
         config=parts.config,
         scenario=scenario,
@@ -228,11 +231,11 @@ def _result(
             traffic={} if parts.yielding is None else parts.yielding.report,
             sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
             time_step=parts.time_step,
-            remarks=parts.all_remarks,
+            remarks=remarks,
             ending=str(ending),
             error=None if error is None else str(error),
         ),
         sumo_messages=parts.sumo.messages,
         road=parts.sumo.lanes.areas(),
-        remarks=parts.all_remarks,
+        remarks=remarks,
     )

@@ -68,13 +68,18 @@ def _result_of(
     verdict: Verdict,
 ) -> RunResult:
     tables = Tables(contents.tables, contents.names)
+    endings = {
+        drive.id: Ending.COMPLETED
+        for drive in tables.drives()
+        if drive.track.position[-1] >= drive.goal  # it had left the road before the crash
+    }
     return RunResult(
         config=config,
         scenario=scenario,
         ending=Ending.CRASHED,
         error=error,
         time=tables.time,
-        egos=results_of_egos(config, tables, Ending.CRASHED, {}),
+        egos=results_of_egos(config, tables, Ending.CRASHED, endings),
         crowd_track=tables.crowd_track(),
         background_track=tables.background_track(),
         timings=tables.timings(),
