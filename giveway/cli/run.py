@@ -15,7 +15,9 @@ from giveway.configfile import Layer, read_toml
 from giveway.errors import GivewayError
 from giveway.loading import load
 from giveway.results import check_folder, require_parquet
+from giveway.scenario_files import read_scenario
 from giveway.simulation import Ending
+from giveway.zone import Zone
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -70,6 +72,8 @@ def run_command(
     check_folder(folder, force=outputs.force)
     if outputs.parquet:
         require_parquet()
+    read_scenario(found.config_file).require_inputs()
+    Zone(effective.crowd.zone, effective.crowd.zone_margin)
     from giveway.kernels import compile_kernels_once
 
     compile_kernels_once(console)
