@@ -208,7 +208,7 @@ def _result(
 ) -> RunResult:
     """What the loop has left behind."""
     tables = recorder.tables()
-    remarks = parts.all_remarks
+    remarks = (*parts.all_remarks, *loop.remarks)
     if recorder.journal.failure:
         remarks = (*remarks, recorder.journal.failure)
     return RunResult(

@@ -64,7 +64,7 @@ class Exchange:
         """Once after each SUMO step: who leaves, who joins, then the lights.
 
         Args:
-            egos: (e, 2) [m] centres of the egos.
+            egos: (e, 2) [m] the egos' front bumpers.
         """
         self._hand_back(egos)
         self._take_over(egos)

@@ -89,8 +89,8 @@ class Mirror:
         near = _NONE
         if background.ids:
             self._require_finite(background)
-            places = np.array([ego.pose[:2] for ego in egos]).reshape(-1, 2)
-            near = _relevant(background, people, places, self._span)
+            drives = [(*ego.pose[:2], ego.vehicle.speed) for ego in egos]
+            near = _relevant(background, people, drives, self._span)
         if self.poses.shape[1] != len(egos) + len(near) or self._driven != egos:
             self._allocate(egos, len(near))
         if len(near):
@@ -160,9 +160,19 @@ class Mirror:
 
 
 def _relevant(
-    vehicles: BackgroundVehicles, people: Array, egos: Array, ahead: float
+    vehicles: BackgroundVehicles,
+    people: Array,
+    egos: Sequence[tuple[float, float, float]],
+    ahead: float,
 ) -> NDArray[np.int64]:
-    """Indices of the vehicles that matter to anybody within ``ahead`` [s]."""
+    """Indices of the vehicles that matter to anybody within ``ahead`` [s].
+
+    Args:
+        vehicles: SUMO's.
+        people: (n, 2) [m].
+        egos: x, y [m] and speed [m/s] of each.
+        ahead: [s].
+    """
     speed = np.abs(vehicles.speed)
     reach = _INFLUENCE_RANGE + vehicles.length + vehicles.width + (_NOSE + ahead) * speed
     matters = np.zeros(len(vehicles.ids), dtype=np.bool_)
@@ -174,8 +184,9 @@ def _relevant(
             & (vehicles.y >= low[1] - reach)
             & (vehicles.y <= high[1] + reach)
         )
-    for x, y in egos:
-        matters |= np.hypot(vehicles.x - x, vehicles.y - y) <= SIGHT + reach
+    for x, y, own_speed in egos:
+        distance = np.hypot(vehicles.x - x, vehicles.y - y)
+        matters |= distance <= SIGHT + reach + ahead * own_speed
     return np.flatnonzero(matters)
 
 

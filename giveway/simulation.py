@@ -30,6 +30,7 @@ from fmus import FmuError
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.heartbeat import Phase
 from giveway.mirror import Mirror
+from giveway.standstill import Standstill
 from pedestrian_model import PedestrianModelError
 
 if TYPE_CHECKING:
@@ -76,9 +77,11 @@ class Loop:
 
     Attributes:
         endings: of each ego that has left the road or was on it when the run ended.
+        remarks: what the user should know of how it went.
     """
 
     endings: dict[str, Ending]
+    remarks: list[str]
 
     def __init__(self, parts: Parts, recorder: Recorder) -> None:
         self._parts = parts
@@ -90,6 +93,8 @@ class Loop:
         self._population = parts.population
         self._egos: list[Ego] = []
         self.endings = {}
+        self.remarks = []
+        self._standstill = Standstill()
         self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
         self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
         self._far_background = -self._far_steps
@@ -150,6 +155,10 @@ class Loop:
                 return Ending.TIME_LIMIT if over else Ending.SCENARIO_END
             if not self._egos and self._nobody_comes():
                 return Ending.SCENARIO_END
+            elapsed = self._k * self._time_step
+            if parts.sumo.end == np.inf and self._standstill.too_long(self._egos, elapsed):
+                self.remarks.append(self._standstill.remark)
+                return Ending.TIME_LIMIT
             if interrupted():
                 return Ending.INTERRUPTED
             self._advance()
@@ -186,7 +195,7 @@ class Loop:
         people = self._population.crowd.position
         self._mirror.read(self._egos, people)
         for ego in self._egos:
-            if ego.lights.systems:
+            if ego.lights:
                 states = parts.sumo.light_states(ego.lights.systems)
                 ego.lights.update(states, ego.front, ego.vehicle.speed)
         if parts.yielding is not None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.errors import ScenarioError
+from giveway.errors import ScenarioError, SumoError
 from giveway.sumo_command import ego_type, inserted_type
 from giveway.traffic import NO_VEHICLES, BackgroundVehicles, angle_to_heading
 
@@ -184,23 +184,26 @@ class SumoVehicles:
 
         The speed is the FMU's business: SUMO only hears as much of it as the lane permits.
         """
-        if ego_id in self._vehicle.getIDList():
+        route = f"giveway_route_{ego_id}"
+        self._call(self._sumo.route.add, route, list(edges))
+        try:
+            self._call(
+                self._vehicle.add,
+                ego_id,
+                route,
+                typeID=inserted_type(ego_id),
+                depart="now",
+                departPos=f"{position:.3f}",
+                departSpeed=f"{min(speed, self._sumo.lane.getMaxSpeed(f'{edges[0]}_{lane}')):.3f}",
+            )
+        except SumoError as error:
+            if "already exists" not in str(error):
+                raise
             msg = (
                 f"ego id '{ego_id}': the scenario already has this vehicle; choose another id, or "
                 f"take it over with --ego {ego_id}"
             )
-            raise ScenarioError(msg)
-        route = f"giveway_route_{ego_id}"
-        self._call(self._sumo.route.add, route, list(edges))
-        self._call(
-            self._vehicle.add,
-            ego_id,
-            route,
-            typeID=inserted_type(ego_id),
-            depart="now",
-            departPos=f"{position:.3f}",
-            departSpeed=f"{min(speed, self._sumo.lane.getMaxSpeed(f'{edges[0]}_{lane}')):.3f}",
-        )
+            raise ScenarioError(msg) from error
         self.egos.add(ego_id)
 
     def adopt(self, state: VehicleState, shape: VehicleShape) -> None:

@@ -85,7 +85,7 @@ class Zone:
 
         Args:
             points: (n, 2) [m].
-            egos: (e, 2) [m] centres of the egos.
+            egos: (e, 2) [m] the egos' front bumpers.
         """
         return self._inside(points, egos, self._radius or 0.0, self._inner)
 

@@ -16,6 +16,7 @@ import pytest
 import sumo
 
 import giveway
+from giveway.errors import ScenarioError
 from giveway.simulation import Ending
 
 if TYPE_CHECKING:
@@ -106,3 +107,22 @@ def test_an_endless_scenario_waits_for_every_ego_that_is_to_be_inserted(
     )
     assert [ego.ending for ego in result.egos] == [Ending.COMPLETED] * 2
     assert result.egos[1].track.time[0] == 40
+
+
+def test_a_scenario_without_an_end_ends_when_the_way_stays_blocked(
+    scenario: Scenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("giveway.standstill.LONGEST", 20.0)  # an hour, in earnest
+    stop = '<stop lane="A0B0_0" endPos="40" duration="1000000"/>'
+    broken_down = f'<vehicle id="broken" depart="0" departLane="0">{ROUTE}{stop}</vehicle>'
+    ego = {"route": EASTWARDS, "lane": 0, "depart_time": 30}
+    result = giveway.run({"scenario": scenario(broken_down, end=-1), "ego": ego} | NOBODY)
+    assert result.ending is Ending.TIME_LIMIT
+    assert result.ego_track.speed[-1] == 0
+    assert any("no ego moved for 20 s" in remark for remark in result.remarks)
+
+
+def test_an_ego_cannot_have_the_name_of_a_vehicle_yet_to_depart(scenario: Scenario) -> None:
+    car = f'<vehicle id="ego" depart="20">{ROUTE}</vehicle>'
+    with pytest.raises(ScenarioError, match=r"ego id 'ego': .*choose another id"):
+        giveway.run({"scenario": scenario(car), "ego": {"route": EASTWARDS}} | NOBODY)
