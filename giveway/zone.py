@@ -51,7 +51,7 @@ class Zone:
             self._radius = numbers[0]
         elif len(numbers) >= 6 and len(numbers) % 2 == 0 and np.isfinite(numbers).all():
             self._inner = _polygon(text, numbers)
-            self._outer = self._inner.buffer(margin)
+            self._outer = self._inner.union(self._inner.buffer(margin))  # which may be rounded away
             shapely.prepare((self._inner, self._outer))
         else:
             msg = f"--zone '{text}': {_EXPECTED}"

@@ -158,3 +158,52 @@ def test_whoever_stands_on_the_path_ahead_is_in_front(
     closest, reachable = path.closest_now(np.array([[x, y]]), station - 50.0)
     assert closest <= station + 1e-6
     assert reachable
+
+
+@st.composite
+def roads(draw: st.DrawFn) -> EgoPath:
+    """A road of 5 to 40 pieces of 0.5 to 10 m, each turned by 0.4 rad at most."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    pieces = draw(st.integers(5, 40))
+    heading = np.cumsum(rng.uniform(-0.4, 0.4, pieces))
+    length = rng.uniform(0.5, 10.0, pieces)
+    moves = length[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
+    return EgoPath.through(np.concatenate([np.zeros((1, 2)), np.cumsum(moves, axis=0)]))
+
+
+@given(roads(), st.floats(-0.1, 1.1), st.floats(0.1, 15.0))
+def test_front_and_rear_of_a_body_are_on_the_road(
+    path: EgoPath, where: float, length: float
+) -> None:
+    station = where * path.length
+    x, y, heading = path.pose(station, length)
+    assert (x, y) == path.pose(station)[:2]
+    x_r, y_r, _ = path.pose(station - length)
+    chord = math.hypot(x - x_r, y - y_r)
+    assert chord <= length + 1e-9
+    assert chord * math.cos(heading) == pytest.approx(x - x_r, abs=1e-6)
+    assert chord * math.sin(heading) == pytest.approx(y - y_r, abs=1e-6)
+
+
+@given(roads(), st.floats(0.0, 1.0), st.floats(0.0, 1.0))
+def test_nothing_jumps_along_a_road(path: EgoPath, where: float, step: float) -> None:
+    """Not the front, and a body's heading no faster than a point turns about the other end."""
+    station, length = where * path.length, 5.0
+    before, after = path.pose(station, length), path.pose(station + step, length)
+    assert math.hypot(after.x - before.x, after.y - before.y) <= step + 1e-9
+    turned = abs((after.heading - before.heading + math.pi) % (2 * math.pi) - math.pi)
+    rear = path.pose(station - length)
+    chord = math.hypot(before.x - rear.x, before.y - rear.y)
+    if chord > 3.0:
+        assert turned <= 2.0 * math.asin(min(1.0, 2.0 * step / chord)) + 1e-6
+
+
+@given(roads(), st.floats(0.0, 1.0), st.floats(-10.0, 10.0))
+def test_a_place_is_found_again_from_a_rough_station(
+    path: EgoPath, where: float, wrong: float
+) -> None:
+    station = where * path.length
+    x, y, _ = path.pose(station)
+    found, lateral = path.locate(x, y, near=station + wrong)
+    assert abs(lateral) < 1e-6
+    assert path.pose(found)[:2] == pytest.approx((x, y), abs=1e-6)

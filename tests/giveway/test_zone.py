@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from giveway.errors import ConfigError
 from giveway.zone import Zone
@@ -47,3 +49,17 @@ def test_a_polygon_outside_of_the_network_is_refused() -> None:
     with pytest.raises(ConfigError, match=r"outside of the network.*0,0 to 200,100"):
         zone.require_overlap((0.0, 0.0, 200.0, 100.0))
     Zone("50", margin=5.0).require_overlap((0.0, 0.0, 200.0, 100.0))
+
+
+@given(
+    st.sampled_from(["20", "-30,-10 25,-20 30,30 0,5 -20,40", "everywhere", "none"]),
+    st.floats(0.0, 50.0),
+    st.integers(0, 2**32 - 1),
+)
+def test_who_enters_is_kept_so_that_nobody_goes_to_and_fro(
+    text: str, margin: float, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    points, egos = rng.uniform(-80, 80, (50, 2)), rng.uniform(-80, 80, (rng.integers(0, 4), 2))
+    zone = Zone(text, margin)
+    assert (zone.keeps(points, egos) >= zone.enters(points, egos)).all()
