@@ -195,7 +195,7 @@ class Loop:
         people = self._population.crowd.position
         self._mirror.read(self._egos, people)
         for ego in self._egos:
-            if ego.lights:
+            if ego.lights.systems:
                 states = parts.sumo.light_states(ego.lights.systems)
                 ego.lights.update(states, ego.front, ego.vehicle.speed)
         if parts.yielding is not None:
