@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final
 
 from giveway.doctor.contents import Contents, read_contents
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from collections import Counter
     from pathlib import Path
 
-_CONTROL_STEP: Final = 0.05  # [s] our own default
+_CONTROL_STEP: Final = 0.05  # [s] a run's own is this or the longest below that divides SUMO's
 _NETWORK_VERSION: Final = (1, 20)  # what SUMO 1.28's netconvert writes
 _OLDEST_NETWORK: Final = (1, 0)  # before it, walkingareas and lefthand mean something else
 
@@ -125,17 +126,15 @@ def _demand(network: Contents, demand: Contents) -> list[Finding]:
 
 def _time(files: ScenarioFiles) -> list[Finding]:
     step = files.step_length
-    substeps = step / _CONTROL_STEP
+    substeps = max(1, math.ceil(step / _CONTROL_STEP - 1e-9))
     text = f"{step:g} s"
-    if abs(substeps - round(substeps)) > 1e-6 or round(substeps) < 1:
-        remedy = f"--time-step {step:g}, or --sumo-step-length {_CONTROL_STEP:g}"
-        text += f" is no multiple of the control step of {_CONTROL_STEP:g} s"
-        findings = [warning("step length", text, remedy)]
-    elif abs(step * 1000.0 - round(step * 1000.0)) > 1e-6:
+    if abs(step * 1000.0 - round(step * 1000.0)) > 1e-6:
         remedy = "SUMO cuts it off; use whole milliseconds"
         findings = [warning("step length", f"{text} is no whole number of ms", remedy)]
     else:
-        findings = [ok("step length", f"{text}, {round(substeps)} control step(s)")]
+        findings = [
+            ok("step length", f"{text}, {substeps} control step(s) of {step / substeps:.4g} s")
+        ]
     if files.end is None:
         text = f"from {files.begin:g} s, with no end"
         findings.append(note("time", text, "a run ends with its own --time-limit"))

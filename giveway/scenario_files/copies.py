@@ -73,6 +73,7 @@ class Copies:
         self._outputs = outputs
         self._prepared: dict[Path, Path] = {}
         self.has_ssm = False
+        self.missing: dict[Path, Path] = {}  # what is included and not there, by whom
 
     @property
     def read(self) -> tuple[Path, ...]:
@@ -137,6 +138,8 @@ class _Editor:
         referred = attributes.get(_READS.get(name, ""), "")
         if referred:
             there = located(referred, self._file)
+            if not there.is_file():
+                self._copies.missing[there] = self._file
             copy = self._copies.prepared(there) if there.is_file() else there
             self.needed |= copy != there
             changes[_READS[name]] = str(copy)

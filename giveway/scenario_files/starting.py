@@ -179,6 +179,10 @@ class _Preparation:
             copies = [self._copies.prepared(file) for file in files]
             if copies != list(files):
                 self._options[name] = ",".join(map(str, copies))
+        self._remarks += [
+            f"{file}: names {missing.name}, which is not in {missing.parent}; SUMO goes on without"
+            for missing, file in self._copies.missing.items()
+        ]
 
     def _randomness(self) -> None:
         seed = self._wanted.seed

@@ -56,7 +56,7 @@ def test_a_city_is_fit_to_drive_in(of_city: list[Finding]) -> None:
     assert "crossings" in about(of_city, "walkways").text
     assert about(of_city, "demand").text.startswith("30 vehicles and 0 flows, 60 persons")
     assert about(of_city, "traffic lights").text == "16 programs"
-    assert about(of_city, "step length").text == "0.5 s, 10 control step(s)"
+    assert about(of_city, "step length").text == "0.5 s, 10 control step(s) of 0.05 s"
     assert about(of_city, "time").text == "from 10 s to 80 s"
 
 
@@ -81,7 +81,7 @@ def test_what_a_run_would_change_is_noted(small: Callable[..., Path]) -> None:
     assert "instead of the scenario's teleport" in about(findings, "collision.action").text
     assert "time-to-teleport 77" in about(findings, "teleporting").text
     assert about(findings, "lanes").text == "sublane model, 0.8 m"
-    assert "--time-step 0.12" in about(findings, "step length").remedy
+    assert about(findings, "step length").text == "0.12 s, 3 control step(s) of 0.04 s"
     assert "with no end" in about(findings, "time").text
     assert "t.xml: written into RESULTS/sumo" in about(findings, "outputs").text
 

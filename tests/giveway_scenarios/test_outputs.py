@@ -159,6 +159,8 @@ def test_files_that_write_nothing_are_used_where_they_are(
     assert not start.copies
     assert set(start.read) == {path for _, path in read_scenario(config).inputs}
     assert not start.outputs
+    (remark,) = start.remarks
+    assert remark.startswith(f"{stops}: names none.xml, which is not in")
 
 
 def test_a_prefix_with_a_folder_does_not_lead_out(
