@@ -70,6 +70,15 @@ class Supervised:
         if self._folder is not None:
             self._heartbeat.finish(_exit_code(error))
 
+    def listen(self) -> None:
+        """Let a Ctrl-C through, which the supervisor has held back while Python started.
+
+        Raises:
+            KeyboardInterrupt: there has been one.
+        """
+        if self._folder is not None and sys.platform != "win32":
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+
     def _interrupt_once(self, number: int, frame: FrameType | None) -> None:
         """Ctrl-C reaches us from the terminal and again from the supervisor: it counts once."""
         now = time.monotonic()

@@ -129,7 +129,8 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
     environment = os.environ | {JOURNAL_VARIABLE: str(journal)}
     with _Relay() as relay:
         # Like any program on this terminal: same process group, same files (also <(...)).
-        child = subprocess.Popen(command, env=environment, close_fds=False)
+        with _held_back():
+            child = subprocess.Popen(command, env=environment, close_fds=False)
         with _Watchdog(child, heartbeat, hang_limit) as watchdog:
             relay.connect(child)
             child.wait()
@@ -140,6 +141,22 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
             sys.stdout.write(_SHOW_CURSOR)
             sys.stdout.flush()
     return verdict
+
+
+@contextlib.contextmanager
+def _held_back() -> Iterator[None]:
+    """A child started here inherits a Ctrl-C that waits until :meth:`Supervised.listen`.
+
+    While Python itself starts it would end in a traceback.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    previous = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
 class _Relay:

@@ -105,8 +105,9 @@ def _run(
     from giveway.cli.run import Outputs, run_command
 
     outputs = Outputs(out, force=force, parquet=parquet, pictures=pictures, quiet=quiet)
-    with Supervised(journal):
+    with Supervised(journal) as supervised:
         try:
+            supervised.listen()
             code = run_command(scenario, config, settings, outputs, journal)
         except KeyboardInterrupt:  # typer would end without a word
             code = fail("interrupted before the run began", INTERRUPTED)

@@ -33,7 +33,8 @@ def step_sumo():
 {body}
 
 folder = take_journal_folder()
-with Supervised(folder):
+with Supervised(folder) as supervised:
+    supervised.listen()
     journal = Journal(folder)
     journal.write_meta({{"pid": os.getpid()}})
     rows = journal.rows("ego", 1)
@@ -316,6 +317,35 @@ def test_a_second_signal_kills_a_child_that_does_not_heed(
     assert verdict["cause"] == "killed by a second interrupt"
     assert (verdict["code"], verdict["crashed"], verdict["interrupted"]) == (143, True, True)
     assert len(read_journal(journal).tables["ego"]) == 3
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_ctrl_c_while_python_starts_is_heard_later(tmp_path: Path, journal: Path) -> None:
+    script = tmp_path / "slow_to_start.py"
+    script.write_text(
+        """
+import sys, time
+print("STARTING", flush=True)
+time.sleep(0.5)
+from giveway.supervised import Supervised, take_journal_folder
+with Supervised(take_journal_folder()) as supervised:
+    try:
+        supervised.listen()
+        print("DEAF", flush=True)
+    except KeyboardInterrupt:
+        print("HEARD", flush=True)
+        sys.exit(130)
+"""
+    )
+    with start(script, journal, stderr=subprocess.PIPE) as parent:
+        assert parent.stdout is not None
+        assert parent.stdout.readline() == "STARTING\n"
+        parent.send_signal(signal.SIGINT)
+        output, errors = parent.communicate(timeout=20)
+    assert output.startswith("HEARD\n")
+    assert errors == ""
+    verdict = verdict_in(output)
+    assert (verdict["code"], verdict["crashed"], verdict["interrupted"]) == (130, False, True)
 
 
 def test_ctrl_c_before_the_loop_counts_once(child: Callable[[str], Path], journal: Path) -> None:
