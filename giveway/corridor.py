@@ -3,7 +3,7 @@
 The paper speaks of "the closest pedestrian in front" without saying who that is. Our reading (an
 option): body centres ahead of the front bumper, at most ``half_width`` from the ego's path, at
 that instant. A vehicle is in front where a part of its outline is. Nobody in front is an infinite
-distance, and so is whoever is more than ``SIGHT`` ahead.
+distance, and so is whoever is out of sight: more than 100 m ahead along the path.
 """
 
 from __future__ import annotations
@@ -13,18 +13,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from giveway.ego_path import EgoPath, body_pose, segment_at
+from giveway.ego_path import body_pose
+from giveway.in_front import closest_ahead, closest_in_sight, vehicles_in_front
 from giveway.jit import kernel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from giveway.ego_path import EgoPath
 
-SIGHT = 100.0  # [m] along the path
-_BEHIND = 10.0  # [m] so far back, or as far as people walk in the horizon, they are looked for
-_OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
-_FINEST_OUTLINE = 0.1  # [m] and at least
+    Array = NDArray[np.float64]
 
 
 class Leader(NamedTuple):
@@ -145,197 +143,6 @@ class Corridor:
             row,
             poses,
         )
-
-
-@kernel
-def look(
-    vertices: Array,
-    stations: Array,
-    first: int,
-    last: int,
-    x: float,
-    y: float,
-    front: float,
-    half_width: float,
-    reach: float,
-) -> tuple[float, bool]:
-    """Station of a point's closest passage in front (else inf), and could it walk there?"""
-    end = len(vertices) - 2
-    closest = np.inf
-    reachable = False
-    beyond_before = False  # is (x, y) beyond the end of the segment before?
-    for i in range(first, last + 1):
-        # Each segment counts on its own: a path that crosses itself or turns back comes past
-        # the same place twice, and only the passage ahead matters.
-        x_0, y_0 = vertices[i, 0], vertices[i, 1]
-        length = stations[i + 1] - stations[i]
-        e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
-        along = (x - x_0) * e_x + (y - y_0) * e_y
-        at_corner = along < 0.0 and i > 0 and beyond_before
-        beside = (along >= 0.0 or i == 0) and (along <= length or i == end)
-        beyond_before = along > length
-        if not (beside or at_corner):
-            continue
-        if at_corner:
-            along = 0.0
-        d_x, d_y = x - (x_0 + along * e_x), y - (y_0 + along * e_y)
-        distance = np.sqrt(d_x * d_x + d_y * d_y)
-        station = stations[i] + along
-        if distance <= half_width + reach and not (end == 0 and station + reach < front):
-            reachable = True
-        if front < station < closest and distance <= half_width:
-            closest = station
-    return closest, reachable
-
-
-@kernel
-def closest_in_front(
-    vertices: Array,
-    stations: Array,
-    first: int,
-    last: int,
-    positions: Array,
-    front: float,
-    half_width: float,
-    reach: float,
-) -> tuple[float, bool]:
-    """Station of the closest person in front; can anybody get there by walking ``reach``?"""
-    closest = np.inf
-    reachable = False
-    low_x, high_x = np.min(vertices[first : last + 2, 0]), np.max(vertices[first : last + 2, 0])
-    low_y, high_y = np.min(vertices[first : last + 2, 1]), np.max(vertices[first : last + 2, 1])
-    margin = half_width + reach
-    if first == 0 or last == len(vertices) - 2:
-        margin += SIGHT  # the path goes on straight beyond its ends
-    for j in range(positions.shape[0]):
-        x, y = positions[j, 0], positions[j, 1]
-        if x < low_x - margin or x > high_x + margin or y < low_y - margin or y > high_y + margin:
-            continue
-        station, near = look(vertices, stations, first, last, x, y, front, half_width, reach)
-        reachable |= near
-        closest = min(closest, station)
-    return closest, reachable
-
-
-@kernel
-def window(stations: Array, front: float, behind: float) -> tuple[int, int]:
-    """The first and last segment of the path that lie within sight, from ``behind`` [m] on."""
-    return segment_at(stations, front - behind), segment_at(stations, front + SIGHT)
-
-
-@kernel
-def closest_in_sight(
-    vertices: Array,
-    stations: Array,
-    positions: Array,
-    front: float,
-    half_width: float,
-    reach: float,
-) -> tuple[float, bool]:
-    """As :func:`closest_in_front`, on the path within sight."""
-    first, last = window(stations, front, max(_BEHIND, reach))
-    return closest_in_front(vertices, stations, first, last, positions, front, half_width, reach)
-
-
-@kernel
-def closest_ahead(
-    vertices: Array,
-    stations: Array,
-    positions: Array,
-    front: float,
-    advance: float,
-    half_width: float,
-    reach: float,
-    closest: Array,
-) -> None:
-    """Fill ``closest[i]`` for the predicted ``positions[i]`` at step i + 1."""
-    first, last = window(stations, front, max(_BEHIND, reach))
-    for i in range(positions.shape[0]):
-        at = front + (i + 1) * advance
-        closest[i], _ = closest_in_front(
-            vertices, stations, first, last, positions[i], at, half_width, 0.0
-        )
-
-
-@kernel
-def outline_in_front(
-    vertices: Array,
-    stations: Array,
-    first: int,
-    last: int,
-    vehicle: Array,
-    front: float,
-    half_width: float,
-) -> float:
-    """Station of the closest point of a vehicle's outline in front; inf: none is."""
-    cos, sin = np.cos(vehicle[2]), np.sin(vehicle[2])
-    rear, length, half = -vehicle[5], vehicle[4] + vehicle[5], vehicle[6] / 2.0
-    apart = max(_FINEST_OUTLINE, min(_OUTLINE, half_width))  # none slips through the corridor
-    along = max(1, int(np.ceil(length / apart)))
-    closest = np.inf
-    for i in range(along + 1):
-        to_x = rear + length * i / along
-        across = max(1, int(np.ceil(2.0 * half / apart))) if i in (0, along) else 1
-        for j in range(across + 1):
-            to_y = -half + 2.0 * half * j / across
-            x = vehicle[0] + cos * to_x - sin * to_y
-            y = vehicle[1] + sin * to_x + cos * to_y
-            station, _ = look(vertices, stations, first, last, x, y, front, half_width, 0.0)
-            closest = min(closest, station)
-    return closest
-
-
-@kernel
-def vehicles_in_front(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
-    poses: Array,
-    own: int,
-    front: float,
-    advance: float,
-    time_step: float,
-    half_width: float,
-    ahead: Array,
-) -> tuple[float, float]:
-    """The closest vehicle now (station, speed along the path); fills ``ahead`` for 1 ... N.
-
-    One that is in the corridor now is taken to follow the path at its present speed, any other
-    one to go straight on: so a car ahead in a bend stays ahead, and one from the side comes. One
-    that is in the corridor behind the front bumper stays behind: it does not drive through us.
-    """
-    N = ahead.shape[0]
-    first, last = window(stations, front, _BEHIND)
-    ahead[:] = np.inf
-    nearest, its_speed = np.inf, 0.0
-    x_0, y_0, _ = body_pose(vertices, stations, headings, front, 0.0)
-    for j in range(poses.shape[1]):
-        vehicle = poses[0, j]
-        size = vehicle[4] + vehicle[5] + vehicle[6]
-        away = np.hypot(vehicle[0] - x_0, vehicle[1] - y_0)
-        if j == own or away > SIGHT + size:
-            continue
-        station = outline_in_front(vertices, stations, first, last, vehicle, front, half_width)
-        if station < np.inf:
-            i = segment_at(stations, station)
-            along = max(0.0, vehicle[3] * np.cos(vehicle[2] - headings[i]))
-            if station < nearest:
-                nearest, its_speed = station, along
-            for k in range(N):
-                ahead[k] = min(ahead[k], station + (k + 1) * time_step * along)
-            continue
-        reach = N * (advance + abs(vehicle[3]) * time_step) + size + half_width
-        if away > reach:
-            continue  # it cannot meet the ego within the horizon
-        rear = front - reach
-        begin = segment_at(stations, rear)
-        if outline_in_front(vertices, stations, begin, last, vehicle, rear, half_width) < np.inf:
-            continue
-        for k in range(1, min(N, poses.shape[0] - 1) + 1):
-            at = front + k * advance
-            station = outline_in_front(vertices, stations, first, last, poses[k, j], at, half_width)
-            ahead[k - 1] = min(ahead[k - 1], station)
-    return nearest, its_speed
 
 
 @kernel

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.corridor import SIGHT
 from giveway.errors import CrowdError, VehicleError
+from giveway.in_front import SIGHT
 from giveway.jit import kernel
 from giveway.traffic import NO_VEHICLES, BackgroundVehicles
 from pedestrian_model import Vehicles

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from giveway.corridor import look
+from giveway.in_front import look
 from giveway.jit import kernel
 
 if TYPE_CHECKING:
