@@ -202,7 +202,11 @@ class Ego:
         return Seen(person, leader, stop, ahead, predicted)
 
     def _relevant(self, crowd: Crowd, speed: float) -> Crowd:
-        """Those of a large crowd that the plan, or somebody whom it depends on, may meet."""
+        """Those of a large crowd that the plan, or somebody whom it depends on, may meet.
+
+        Who is left out acts on the plan only through others, and moves those whom it may meet by
+        less than a micrometre within the horizon.
+        """
         if len(crowd) <= _PREDICT_ALL:
             return crowd
         config, span = self.config, self._span

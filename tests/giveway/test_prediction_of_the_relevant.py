@@ -1,0 +1,58 @@
+"""Of a large crowd only who matters to the ego is predicted: its plan does not notice."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+
+import numpy as np
+import pytest
+
+from giveway.config import RunConfig
+from giveway.drivers import make_driver, make_regulator
+from giveway.ego import Ego
+from giveway.ego_path import EgoPath
+from giveway.lights import Lights
+from giveway.tracks import VehicleShape
+from pedestrian_model import OPEN_GROUND, Crowd
+
+BEND = [(-50.0, 0.0), (0.0, 0.0), (30.0, 0.0), (60.0, 20.0), (100.0, 60.0)]
+CONFIG = RunConfig()
+
+
+def crowd(rng: np.random.Generator) -> Crowd:
+    """200 to 1,500 people in a square of 50 to 120 m about the ego, walking anywhere."""
+    count, size = int(rng.integers(200, 1500)), rng.uniform(25, 60)
+    position, destination = rng.uniform(-size, size, (2, count, 2))
+    speed = rng.uniform(0.5, 2.0, count)
+    way = destination - position
+    velocity = speed[:, None] * way / np.hypot(*way.T)[:, None]
+    return Crowd.create(position, velocity, speed, list(destination[:, None]))
+
+
+def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rng = np.random.default_rng(1)
+    shape, left_out, in_reach = VehicleShape(), 0, 0
+    for _ in range(25):
+        speed = rng.uniform(0.0, 10.0)
+        people = crowd(rng)
+        seen = []
+        for predict_all in (150, 10**9):
+            monkeypatch.setattr("giveway.ego._PREDICT_ALL", predict_all)
+            with ExitStack() as stack:
+                driver = make_driver(CONFIG, make_regulator(CONFIG, 0.05), 0.05, stack)
+                driver.start(speed)
+                lights = Lights((), comfortable=2.0, hardest=8.0)
+                ego = Ego(driver, EgoPath.through(BEND), 50.0, shape, lights, 100.0, 0.05, 0)
+                poses = np.zeros((driver.horizon, 1, 7))
+                poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
+                ego.corridor.fill_poses(poses, 0, ego.front, speed)
+                seen.append(ego.look(0, poses, people, OPEN_GROUND).ahead.copy())
+                left_out += predict_all == 150 and len(ego._relevant(people, speed)) < len(people)
+        reach = ego.front + (speed + 8.0 * 0.75 / 2) * 0.75 + CONFIG.regulation.safe_distance
+        matters = (seen[0] <= reach) | (seen[1] <= reach)
+        in_reach += int(matters.any())
+        assert seen[0][matters] == pytest.approx(seen[1][matters], abs=1e-6)
+    assert left_out > 15
+    assert in_reach > 15
