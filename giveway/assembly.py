@@ -16,7 +16,7 @@ from giveway.population import Population
 from giveway.scenario_files import StartOptions, free_prefix, read_scenario
 from giveway.spawn import PREFIX, Spawned, spawn
 from giveway.sumo import SumoSession
-from giveway.sumo_command import all_types, inserted_type
+from giveway.sumo_types import all_types, inserted_type
 from giveway.tracks import VehicleShape
 from giveway.walkways import WalkNetwork
 from giveway.yielding import Yielding

@@ -27,7 +27,7 @@ from giveway.handover import NOWHERE
 from giveway.lanes import Lanes
 from giveway.native_stderr import NativeStderr
 from giveway.scenario_files import prepare_start
-from giveway.sumo_command import PEDESTRIAN_TYPE
+from giveway.sumo_types import PEDESTRIAN_TYPE
 from giveway.sumo_vehicles import SumoVehicles
 from giveway.traffic import heading_to_angle
 

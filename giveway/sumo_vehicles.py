@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.errors import ScenarioError, SumoError
-from giveway.sumo_command import ego_type, inserted_type
+from giveway.sumo_types import ego_type, inserted_type
 from giveway.traffic import NO_VEHICLES, BackgroundVehicles, angle_to_heading
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from time import perf_counter
 from typing import Any
 
 from giveway.scenario_files import StartOptions, prepare_start, read_scenario
-from giveway.sumo_command import ROAD_CLASSES
+from giveway.sumo_types import ROAD_CLASSES
 
 _LOOK = 3.0  # [s] of wall clock: long enough to see somebody depart, short enough to wait for
 _ENOUGH = 3  # vehicles seen

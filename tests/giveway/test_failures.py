@@ -18,7 +18,7 @@ from giveway.recorder import Recorder
 from giveway.scenario_files import StartOptions, read_scenario
 from giveway.simulation import Ending, Loop
 from giveway.sumo import SumoSession
-from giveway.sumo_command import all_types, inserted_type
+from giveway.sumo_types import all_types, inserted_type
 from giveway.tracks import VehicleShape
 from sumo_scenarios import find
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import libsumo
 
 from giveway.scenario_files import StartOptions, prepare_start, read_scenario
-from giveway.sumo_command import all_types
+from giveway.sumo_types import all_types
 from giveway.tracks import VehicleShape
 
 

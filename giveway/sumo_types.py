@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import quoteattr
 
-from giveway.errors import ScenarioError, SumoError
-from giveway.scenario_files import read_scenario
+from giveway.errors import ScenarioError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from giveway.tracks import VehicleShape
 
@@ -23,18 +21,6 @@ ROAD_CLASSES: Final = (
     *("motorcycle", "moped", "scooter", "bicycle", "custom1", "custom2"),
 )
 """SUMO's vehicle classes that drive where people walk."""
-
-
-def own_types(ego: VehicleShape) -> str:
-    """The additional file with the types of the ego and of the added pedestrians."""
-    # timeToTeleport: an ego that waits for a crowd is not stuck. speedDev=0: a drawn speed factor
-    # would shift SUMO's random stream and with it the background traffic.
-    return f"""<additional>
-    <vType id="{EGO_TYPE}" vClass="passenger" length="{ego.length}" width="{ego.width}"
-           maxSpeed="100" speedDev="0" timeToTeleport="-1"/>
-    <vType id="{PEDESTRIAN_TYPE}" vClass="ignoring" speedDev="0"/>
-</additional>
-"""
 
 
 def inserted_type(ego_id: str) -> str:
@@ -65,6 +51,8 @@ def all_types(egos: Mapping[str, VehicleShape]) -> str:
     Args:
         egos: the type's id of each inserted ego, to its body.
     """
+    # timeToTeleport: an ego that waits for a crowd is not stuck. speedDev=0: a drawn speed factor
+    # would shift SUMO's random stream and with it the background traffic.
     never_stuck = 'maxSpeed="100" speedDev="0" timeToTeleport="-1"'
     inserted = [
         f'    <vType id={quoteattr(name)} vClass="passenger" length="{body.length}" '
@@ -77,36 +65,3 @@ def all_types(egos: Mapping[str, VehicleShape]) -> str:
     ]
     walker = f'    <vType id="{PEDESTRIAN_TYPE}" vClass="ignoring" speedDev="0"/>\n'
     return "".join(["<additional>\n", *inserted, *taken_over, walker, "</additional>\n"])
-
-
-def sumo_command(
-    config_file: Path, types: Path, *, seed: int, step_length: float | None
-) -> list[str]:
-    """The command line for libsumo, without regard to outputs; :func:`prepare_start` is better.
-
-    Args:
-        config_file: the scenario's configuration.
-        types: the file with our types.
-        seed: SUMO's seed.
-        step_length: SUMO's step [s]; None keeps the scenario's.
-
-    Raises:
-        ScenarioError: there is no such configuration.
-        SumoError: it is not readable.
-    """
-    try:
-        scenario = read_scenario(config_file)
-    except ScenarioError as error:
-        if not config_file.exists():
-            raise
-        raise SumoError(str(error)) from error
-    additional = [str(types), *map(str, scenario.additional_files)]
-    command = ["sumo", "-c", str(config_file)]
-    command += ["--additional-files", ",".join(additional)]
-    command += ["--pedestrian.model", "striping", "--gui-settings-file", ""]
-    command += ["--collision.action", "warn", "--collision.check-junctions", "true"]
-    command += ["--random", "false", "--seed", str(seed)]
-    command += ["--no-step-log", "true", "--duration-log.disable", "true"]
-    if step_length is not None:
-        command += ["--step-length", f"{step_length:.6f}"]
-    return command
