@@ -78,14 +78,22 @@ def _loaded(seen: dict[str, Any]) -> list[Finding]:
 
 
 def _warnings(stderr: str, copies: dict[str, str]) -> list[Finding]:
-    lines = [line for line in stderr.splitlines() if line.startswith("Warning")]
-    if not lines:
-        return []
-    first = lines[0].removeprefix("Warning:").strip()
+    """What SUMO complained of without giving up."""
     for copy, original in copies.items():
-        first = first.replace(copy, original)
-    number = f"{len(lines)} warnings, the first" if len(lines) > 1 else "one warning"
-    return [note("SUMO's warnings", f"{number}: {first}", "they are the scenario's, not a run's")]
+        stderr = stderr.replace(copy, original)
+    findings = []
+    for kind, report in (("error", warning), ("warning", note)):
+        mark = f"{kind.capitalize()}:"
+        lines = [line for line in stderr.splitlines() if line.startswith(mark)]
+        if not lines:
+            continue
+        first = lines[0].removeprefix(mark).strip()
+        number = f"{len(lines)} {kind}s, the first" if len(lines) > 1 else f"one {kind}"
+        remedy = "they are the scenario's, not a run's"
+        if kind == "error":
+            remedy = "SUMO goes on without; correct the scenario"
+        findings.append(report(f"SUMO's {kind}s", f"{number}: {first}", remedy))
+    return findings
 
 
 def _outputs(seen: dict[str, Any]) -> list[Finding]:

@@ -86,6 +86,14 @@ def test_what_a_run_would_change_is_noted(small: Callable[..., Path]) -> None:
     assert "t.xml: written into RESULTS/sumo" in about(findings, "outputs").text
 
 
+def test_what_sumo_cannot_read_but_does_without_is_a_warning(small: Callable[..., Path]) -> None:
+    config = small()
+    config.with_name("car.rou.xml").write_text('<routes><include href="none.xml"/></routes>')
+    finding = about(examine_scenario(config), "SUMO's errors")
+    assert finding.level == "warning"
+    assert "none.xml" in finding.text
+
+
 def test_without_walkways_only_persons_of_the_scenario_suffer(
     small: Callable[..., Path], call_sumo: Callable[..., str]
 ) -> None:
