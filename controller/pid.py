@@ -12,8 +12,8 @@ class Pid:
     """u = -(u_p + u_i + u_d) on the speed error e = v - v_ref, clipped to the force limit.
 
     The reference speed falls linearly with the gap: v_r clip((gap - d_safe) / d_buffer, 0, 1).
-    As printed, the output is not rate-limited and the integrator has no anti-windup; only under
-    a limit of the speed, which the paper does not know, the integrator does not drive.
+    As printed, the output is not rate-limited and the integrator has no anti-windup; only where
+    a limit of 0 wants the car to stand, which the paper does not know, it does not drive.
 
     Args:
         parameters: gains and distances.
@@ -62,7 +62,7 @@ class Pid:
         before = e if self._error is None else self._error
         u_p = p.K_p * e
         u_i = p.K_i * e * dt + self._integral
-        if limit <= self.reference_speed(gap):
+        if limit <= 0.0:
             # Ours, as the limit is: what has been wound up on the way to a higher speed would
             # creep over the stop line, for minutes (K_p / K_i = 240 s).
             u_i = max(u_i, 0.0)
