@@ -177,9 +177,11 @@ def _explain(error: Any, layers: Sequence[Layer]) -> str:
 
 
 def _known_part(location: Location) -> Location:
-    """``location`` without the inner positions that pydantic appends for tuples."""
-    while location and location[-1].isdigit():
-        location = location[:-1]
+    """``location`` without what pydantic appends: positions in tuples, branches of unions."""
+    known = {option.location for option in options()}
+    for end in range(len(location), 0, -1):
+        if location[:end] in known:
+            return location[:end]
     return location
 
 

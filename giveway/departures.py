@@ -10,7 +10,7 @@ from giveway.ego import Ego
 from giveway.ego_path import EgoPath
 from giveway.errors import ConfigError, ScenarioError
 from giveway.lights import Lights
-from giveway.scenario_files import undeclared
+from giveway.scenario_files import declares, undeclared
 from giveway.tracks import VehicleShape
 
 if TYPE_CHECKING:
@@ -54,6 +54,8 @@ class Departures:
         for driver in drivers:
             if driver.taken_over:
                 self._require_declared(driver.id)
+            else:
+                self._require_undeclared(driver.id)
         self._departed: dict[str, None] = dict.fromkeys(session.vehicles.present())
         self._ways = {
             driver.id: self._way_of_inserted(driver) for driver in drivers if not driver.taken_over
@@ -64,6 +66,15 @@ class Departures:
         hint = undeclared(name, self._session.start.read)
         if hint is not None:
             msg = f"--ego {name}: no such vehicle in the routes of {self._config_file}; {hint}"
+            raise ScenarioError(msg)
+
+    def _require_undeclared(self, name: str) -> None:
+        """Two vehicles cannot have the same id, be it that one departs later."""
+        if declares(name, self._session.start.read):
+            msg = (
+                f"--ego-id {name}: {self._config_file} has a vehicle of this id; choose another, "
+                f"or take that one over with --ego {name}"
+            )
             raise ScenarioError(msg)
 
     @property
@@ -109,13 +120,13 @@ class Departures:
             elif departed:
                 self._departed.update((d.id, None) for d in self.waiting if d.id in departed)
 
-    def due(self, step: int) -> list[Ego]:
-        """The egos that enter the road now, at the control step ``step``."""
+    def due(self) -> list[Ego]:
+        """The egos that enter the road now."""
         if not self.waiting:
             return []
         ready = [driver for driver in self.waiting if self._is_due(driver)]
         self.waiting = [driver for driver in self.waiting if driver not in ready]
-        return [self._enter(driver, step) for driver in ready]
+        return [self._enter(driver) for driver in ready]
 
     def require_all(self) -> None:
         """Make sure that everybody has departed.
@@ -143,11 +154,13 @@ class Departures:
             )
         names = list(self._departed)
         close = difflib.get_close_matches(driver.id, names, n=1)
-        shown = ", ".join(names[:3]) or "none"
-        hint = f"did you mean '{close[0]}'?" if close else f"name one that does, like {shown}"
+        hint = "nobody did; look at its begin and end"
+        if names:
+            shown = ", ".join(names[:3])
+            hint = f"did you mean '{close[0]}'?" if close else f"name one that does, like {shown}"
         return (
             f"--ego {driver.id}: no such vehicle departed in {self._config_file} until "
-            f"{self._session.time:g} s ({len(names)} others did); {hint}"
+            f"{self._session.time:.12g} s ({len(names)} others did); {hint}"
         )
 
     # --- inserted -----------------------------------------------------------------------------
@@ -191,9 +204,9 @@ class Departures:
 
     # --- entering -----------------------------------------------------------------------------
 
-    def _enter(self, driver: Driver, step: int) -> Ego:
+    def _enter(self, driver: Driver) -> Ego:
         if driver.taken_over:
-            return self._take_over(driver, step)
+            return self._take_over(driver)
         ego, vehicle = driver.config.ego, driver.config.vehicle
         path, way = self._ways[driver.id]
         speed = DEFAULT_SPEED if ego.initial_speed is None else ego.initial_speed
@@ -205,9 +218,9 @@ class Departures:
             speed=speed,
         )
         shape = VehicleShape(vehicle.length or BODY.length, vehicle.width or BODY.width)
-        return self._seated(driver, path, way, ego.depart_position, shape, speed, step)
+        return self._seated(driver, path, way, ego.depart_position, shape, speed)
 
-    def _take_over(self, driver: Driver, step: int) -> Ego:
+    def _take_over(self, driver: Driver) -> Ego:
         state = self._session.vehicles.state(driver.id)
         vehicle = driver.config.vehicle
         shape = VehicleShape(vehicle.length or state.length, vehicle.width or state.width)
@@ -219,7 +232,7 @@ class Departures:
         self._session.vehicles.adopt(state, shape)
         speed = driver.config.ego.initial_speed
         speed = state.speed if speed is None else speed
-        return self._seated(driver, path, lights, departure, shape, speed, step)
+        return self._seated(driver, path, lights, departure, shape, speed)
 
     def _seated(
         self,
@@ -229,7 +242,6 @@ class Departures:
         departure: float,
         shape: VehicleShape,
         speed: float,
-        step: int,
     ) -> Ego:
         config = driver.config
         driver.start(speed)
@@ -247,7 +259,6 @@ class Departures:
             lights,
             path.length - departure if goal is None else goal,
             self._time_step,
-            step,
         )
 
 

@@ -99,7 +99,6 @@ class Ego:
         lights: the traffic lights on its way.
         goal: the FMU's position [m] at which it is done.
         time_step: [s].
-        first: the control step at which it departed.
     """
 
     def __init__(
@@ -111,7 +110,6 @@ class Ego:
         lights: Lights,
         goal: float,
         time_step: float,
-        first: int,
     ) -> None:
         config = driver.config
         self.driver = driver
@@ -122,7 +120,6 @@ class Ego:
         self.shape = shape
         self.lights = lights
         self.goal = goal
-        self.first = first
         self.vehicle = driver.vehicle
         half_width = config.regulation.corridor_half_width
         self.corridor = Corridor(

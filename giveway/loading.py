@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,12 +32,32 @@ def load(layers: Sequence[Layer]) -> tuple[RunConfig, Scenario]:
         scenario = find(wanted)
     except UnknownScenario as error:
         raise ScenarioError(str(error)) from error
+    for layer in layers:
+        _require_one_ego(layer)
     own = []
     if scenario.settings_file is not None:
         layer = read_toml(scenario.settings_file)
         settings = {key: value for key, value in layer.values.items() if key != "description"}
         own = [Layer(layer.origin, settings)]
     return _placed(build_config([*own, *layers]), scenario), scenario
+
+
+def _require_one_ego(layer: Layer) -> None:
+    """Make sure that one origin does not ask for several kinds of ego at once.
+
+    Raises:
+        ConfigError: it does.
+    """
+    ego = layer.values.get("ego")
+    if not isinstance(ego, Mapping):
+        return
+    named = [layer.name(("ego", key)) for key in ("take_over", "route", "none") if ego.get(key)]
+    if len(named) > 1:
+        msg = (
+            f"{' and '.join(named)}: contradict each other; expected one of them: a vehicle of the "
+            "scenario, an inserted one, or none"
+        )
+        raise ConfigError(msg)
 
 
 def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:

@@ -37,6 +37,7 @@ FILES = frozenset(
         SUMO_FOLDER,
     }
 )
+_RUNNING = '{"ending": "running"}\n'
 _DECIMALS = 6  # micrometres, microseconds: finer than anything that is compared
 
 
@@ -60,6 +61,13 @@ def check_folder(folder: Path, *, force: bool) -> None:
             "name another folder with --out"
         )
         raise ResultsError(msg)
+    marker = folder / "manifest.json"
+    if present == [marker.name] and not force and marker.read_text("utf-8") == _RUNNING:
+        msg = (
+            f"{folder}: another run is writing there, or was killed; name another folder with "
+            "--out, or replace it with --force"
+        )
+        raise ResultsError(msg)
     if present and not force:
         msg = f"{folder}: results exist; replace them with --force or name another with --out"
         raise ResultsError(msg)
@@ -80,7 +88,7 @@ def take_folder(folder: Path, *, force: bool) -> bool:
         if any(folder.iterdir()):
             return False
         with (folder / "manifest.json").open("x", encoding="utf-8") as marker:
-            marker.write('{"ending": "running"}\n')
+            marker.write(_RUNNING)
     except FileExistsError:
         msg = f"{folder}: another run is writing there; name another folder with --out"
         raise ResultsError(msg) from None

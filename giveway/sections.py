@@ -17,6 +17,7 @@ from pydantic import (
     JsonValue,
     model_validator,
 )
+from pydantic_core import PydanticCustomError
 
 
 def option(
@@ -34,7 +35,19 @@ def _split(value: Any) -> Any:
 
 def _words(value: Any) -> Any:
     """Options for SUMO, written as in a shell."""
-    return shlex.split(value) if isinstance(value, str) else value
+    if not isinstance(value, str):
+        return value
+    try:
+        return shlex.split(value)
+    except ValueError as error:
+        msg = f"expected options as in a shell, like '--emission-output e.xml' ({error})"
+        raise PydanticCustomError("shell", "{expected}", {"expected": msg}) from None
+
+
+def _text(value: Any) -> Any:
+    """A number where text is expected, like a radius in a TOML file."""
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return f"{value:.12g}" if is_number else value
 
 
 def _seed(value: Any) -> Any:
@@ -44,11 +57,13 @@ def _seed(value: Any) -> Any:
 Rectangle = Annotated[tuple[float, float, float, float], BeforeValidator(_split)]
 Displacement = Annotated[tuple[float, float], BeforeValidator(_split)]
 NameList = Annotated[tuple[str, ...], BeforeValidator(_split)]
+TextOrNumber = Annotated[str, BeforeValidator(_text)]
 OptionList = Annotated[tuple[str, ...], BeforeValidator(_words)]
 SumoSeed = Annotated[
     Annotated[int, Field(ge=0, le=2**31 - 1)] | Literal["scenario", "run"], BeforeValidator(_seed)
 ]
 
+_SUMO_ID = r"^[^\s|\\'\";,:!<>&*?]+$"  # what SUMO accepts as the name of anything
 _FARTHEST = 1e7  # [m] beyond it a millimetre is lost in rounding
 
 
@@ -70,7 +85,7 @@ class EgoConfig(Section):
         flag="--ego",
     )
     none: bool = option(False, None, "drive no vehicle at all", flag="--no-ego")
-    id: str = option("ego", None, "SUMO id of an inserted ego", min_length=1)
+    id: str = option("ego", None, "SUMO id of an inserted ego", pattern=_SUMO_ID)
     route: NameList = option((), None, "edges that an inserted ego drives along, comma-separated")
     lane: int | None = option(
         None,
@@ -136,7 +151,7 @@ class CrowdConfig(Section):
         "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"
     )
     preset: Literal["SIM", "TABLE2"] = option("SIM", None, "parameter set of the VCI model")
-    zone: str = option(
+    zone: TextOrNumber = option(
         "50",
         None,
         "where the scenario's own walkers follow the VCI model: metres round each ego, "

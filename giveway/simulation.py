@@ -186,7 +186,7 @@ class Loop:
     def _read_sumo(self) -> None:
         parts = self._parts
         if parts.departures.waiting:
-            arrivals = parts.departures.due(self._k)
+            arrivals = parts.departures.due()
             self._egos += arrivals
             for ego in arrivals:
                 self._recorder.drive(ego.id, ego.shape, ego.goal)

@@ -77,6 +77,7 @@ class SumoSession:
         self.module = self._sumo = _import_libsumo()
         self._config_file = scenario.config_file
         self._native_log = native_log
+        self._extra = options.extra
         self._scratch = tempfile.TemporaryDirectory(prefix="giveway-")
         try:
             self.start = prepare_start(scenario, options, Path(self._scratch.name), types=types)
@@ -110,6 +111,8 @@ class SumoSession:
             reason = self._readable(self._stderr.errors() or str(error))
             self._stderr.close()
             msg = f"{self._config_file}: SUMO cannot load this scenario: {reason}"
+            if self._extra:
+                msg += f" (with --sumo-options '{' '.join(self._extra)}')"
             raise SumoError(msg) from error
 
     def __enter__(self) -> Self:

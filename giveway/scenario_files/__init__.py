@@ -7,7 +7,7 @@ that writes nothing beside the scenario.
 from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, ScenarioFiles, read_scenario
 from giveway.scenario_files.person_ids import free_prefix
 from giveway.scenario_files.starting import Start, StartOptions, prepare_start
-from giveway.scenario_files.vehicle_ids import undeclared
+from giveway.scenario_files.vehicle_ids import declares, undeclared
 
 __all__ = [
     "STRIPING",
@@ -15,6 +15,7 @@ __all__ = [
     "ScenarioFiles",
     "Start",
     "StartOptions",
+    "declares",
     "free_prefix",
     "prepare_start",
     "read_scenario",

@@ -44,6 +44,18 @@ def undeclared(name: str, files: Iterable[Path]) -> str | None:
     return f"name one like {shown}" if shown else "it has no vehicles; insert one with --ego-route"
 
 
+def declares(name: str, files: Iterable[Path]) -> bool:
+    """Whether a vehicle ``name`` is declared in ``files`` for sure."""
+    flow, _, number = name.rpartition(".")
+    wanted = {(b"vehicle", name), (b"trip", name)}
+    if number.isdecimal():
+        wanted.add((b"flow", flow))
+    try:
+        return any(found in wanted for found in _declarations(files))
+    except (OSError, EOFError):
+        return False  # SUMO will say what is wrong with the file
+
+
 def _declarations(files: Iterable[Path]) -> Iterator[tuple[bytes, str]]:
     """Kind and id of every vehicle, trip and flow; a calibrator is told by its kind alone."""
     for file in files:

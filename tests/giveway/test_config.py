@@ -200,3 +200,30 @@ def test_several_vehicles_of_the_scenario_become_several_egos() -> None:
 def test_a_wrong_ego_entry_is_named(entry: dict, expected: str) -> None:
     with pytest.raises(ConfigError, match=expected):
         build_config([Layer("study.toml", {"egos": [entry]})])
+
+
+def test_contradictory_egos_are_refused_where_one_origin_names_both() -> None:
+    flags = {"ego": {"take_over": "5", "route": "a,b"}}
+    with pytest.raises(ConfigError, match="--ego and --ego-route: contradict"):
+        load([Layer("command line", flags, from_flags=True)])
+    with pytest.raises(ConfigError, match=r"take_over and .* none: contradict"):
+        load([Layer("study.toml", {"ego": {"take_over": "5", "none": True}})])
+    config, _ = load([Layer("", {"scenario": "street", "ego": {"take_over": "x"}})])
+    assert config.each_ego()[0].ego_id == "x"  # the scenario's own route gives way
+
+
+def test_a_radius_may_be_a_number() -> None:
+    assert RunConfig.model_validate({"crowd": {"zone": 30}}).crowd.zone == "30"
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ({"ego": {"id": "we ird;id"}}, r"ego.* id = 'we ird;id'"),
+        ({"sumo": {"options": "'unclosed"}}, r"options = \"'unclosed\".*as in a shell"),
+        ({"sumo": {"seed": "today"}}, r"seed = 'today'"),
+    ],
+)
+def test_texts_that_sumo_could_not_use_are_refused(settings: dict, expected: str) -> None:
+    with pytest.raises(ConfigError, match=expected):
+        build_config([Layer("study.toml", settings)])

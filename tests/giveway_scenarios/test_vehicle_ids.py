@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from giveway.scenario_files import undeclared
+from giveway.scenario_files import declares, undeclared
 
 ROUTES = b"""<routes>
   <vType id="car"/>
@@ -65,3 +65,13 @@ def test_a_scenario_without_vehicles_says_so(tmp_path: Path) -> None:
     file = tmp_path / "routes.xml"
     file.write_bytes(b"<routes/>")
     assert "--ego-route" in str(undeclared("x", [file]))
+
+
+def test_what_is_declared_for_sure(routes: Path, tmp_path: Path) -> None:
+    assert declares("veh12", [routes])
+    assert declares("north.2", [routes])
+    assert not declares("ego", [routes])
+    assert not declares("north", [routes])
+    calibrated = tmp_path / "more.add.xml"
+    calibrated.write_bytes(b'<additional><calibrator id="c" edge="a" pos="0"/></additional>')
+    assert not declares("c.0", [calibrated])
