@@ -44,7 +44,7 @@ def drive(
         driver = make_driver(config, make_regulator(config, STEP), STEP, stack)
         driver.start(config.ego.initial_speed or 0.0)
         lights = Lights([Light(line, "tls", 0)], comfortable=2.0, hardest=8.0)
-        ego = Ego(driver, path, DEPARTURE, shape, lights, 1900.0, STEP, 0)
+        ego = Ego(driver, path, DEPARTURE, shape, lights, 1900.0, STEP)
         poses = np.zeros((driver.horizon, 1, 7))
         poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
         for k in range(round((yellow_at + YELLOW + RED) / STEP)):

@@ -124,5 +124,5 @@ def test_a_scenario_without_an_end_ends_when_the_way_stays_blocked(
 
 def test_an_ego_cannot_have_the_name_of_a_vehicle_yet_to_depart(scenario: Scenario) -> None:
     car = f'<vehicle id="ego" depart="20">{ROUTE}</vehicle>'
-    with pytest.raises(ScenarioError, match=r"ego id 'ego': .*choose another id"):
+    with pytest.raises(ScenarioError, match=r"--ego-id ego: .*choose another"):
         giveway.run({"scenario": scenario(car), "ego": {"route": EASTWARDS}} | NOBODY)

@@ -44,7 +44,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
                 driver = make_driver(CONFIG, make_regulator(CONFIG, 0.05), 0.05, stack)
                 driver.start(speed)
                 lights = Lights((), comfortable=2.0, hardest=8.0)
-                ego = Ego(driver, EgoPath.through(BEND), 50.0, shape, lights, 100.0, 0.05, 0)
+                ego = Ego(driver, EgoPath.through(BEND), 50.0, shape, lights, 100.0, 0.05)
                 poses = np.zeros((driver.horizon, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
