@@ -43,7 +43,7 @@ def baseline(result: RunResult) -> float:
     with ExitStack() as stack:
         parts = assemble(result.config, result.scenario, stack)
         vehicle = parts.drivers[0].vehicle
-        parts.departures.due(0)  # inserts the ego and starts its FMU
+        parts.departures.due()  # inserts the ego and starts its FMU
         move_ego, move_person = libsumo.vehicle.moveToXY, libsumo.person.moveToXY
         began = perf_counter()
         for (x, y), ids, rows, force in steps:

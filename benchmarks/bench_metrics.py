@@ -44,6 +44,8 @@ def made_up_run(pedestrians: int, steps: int) -> tuple[EgoTrack, CrowdTrack]:
         force=np.zeros(steps),
         gap=np.full(steps, np.inf),
         reference_speed=np.full(steps, 4.0),
+        vehicle_gap=np.full(steps, np.inf),
+        stop_gap=np.full(steps, np.inf),
         acting=np.full(steps, "mpc"),
         reason=np.full(steps, "optimal"),
         solver_status=np.full(steps, "solved"),
