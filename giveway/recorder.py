@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from giveway.jit import kernel
 from giveway.journal import Journal
+from giveway.population import LEDGER
 from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings, VehicleShape
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from giveway.ego_path import Pose
     from giveway.traffic import BackgroundVehicles
@@ -58,6 +59,7 @@ class Recorder:
         self._background = rows("background", 9)  # time, vehicle, type, x, y, heading, ...
         self._timings = rows("timing", len(Timings.NAMES))
         self._drives = rows("drives", 4)  # ego, length, width, goal
+        self._ledger = rows("ledger", len(LEDGER))
         self._words = names("words")
         self._egos = names("egos")
         self._pedestrians = names("pedestrians")
@@ -83,6 +85,10 @@ class Recorder:
         """Note an ego that departs: its body and the distance [m] it is to drive."""
         row = (self._egos.index(ego_id), shape.length, shape.width, goal)
         self._drives.block(1)[0] = row
+
+    def ledger(self, counts: Mapping[str, int]) -> None:
+        """Note where everybody is, at one of SUMO's instants."""
+        self._ledger.block(1)[0] = [counts[name] for name in LEDGER]
 
     def ego(self, ego_id: str, row: EgoRow) -> None:
         """Record an ego at the present control instant."""
@@ -148,6 +154,7 @@ class Recorder:
                 "background": self._background.filled,
                 "timing": self._timings.filled,
                 "drives": self._drives.filled,
+                "ledger": self._ledger.filled,
             },
             {
                 "words": self._words.names,
@@ -182,6 +189,12 @@ class Tables:
         instants = len(rows["clock"])  # a journal may end within an instant: what it has counts
         self.time = np.ascontiguousarray(rows["clock"][:, 0])  # (T,) [s]
         self._ego = rows["ego"][rows["ego"][:, 0] < instants]
+
+    @property
+    def ledger(self) -> dict[str, int]:
+        """Where everybody was at the latest of SUMO's instants."""
+        rows = self._rows["ledger"]
+        return {name: int(rows[-1, i]) for i, name in enumerate(LEDGER)} if len(rows) else {}
 
     def drives(self) -> Iterator[Drive]:
         """Every ego that has rows, in the order of departure."""

@@ -89,7 +89,7 @@ def _result_of(
             scenario,
             config_text=contents.meta["config"],
             vehicles={},
-            pedestrians={},
+            pedestrians=tables.ledger,
             traffic={},
             sumo={},
             time_step=None,

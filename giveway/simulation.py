@@ -201,6 +201,7 @@ class Loop:
         if parts.yielding is not None:
             parts.yielding.update(self._mirror.background, self._population.crowd)
         self._record_background()
+        self._recorder.ledger(self._population.ledger)
 
     def _places(self) -> Array:
         """(e, 2) [m] the egos' front bumpers."""

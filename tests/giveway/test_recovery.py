@@ -58,6 +58,8 @@ def test_a_native_crash_keeps_the_rows_and_says_where_it_was(tmp_path: Path) -> 
     assert "rows up to then are in" in line
     manifest = json.loads((tmp_path / "r" / "manifest.json").read_text())
     assert manifest["ending"] == "crashed"
+    ledger = manifest["pedestrians"]
+    assert ledger["added"] == 3000 == ledger["arrived"] + ledger["walking"]
     ego = pd.read_csv(tmp_path / "r" / "ego.csv")
     crowd = pd.read_csv(tmp_path / "r" / "trajectories.csv")
     assert len(ego) > 1
