@@ -33,6 +33,7 @@ LIGHT_GREY = "#ECECEC"
 _STYLE = {
     "axes.axisbelow": True,
     "axes.edgecolor": GREY,
+    "axes.formatter.useoffset": False,  # whole coordinates, also far from the origin
     "axes.labelsize": 9,
     "axes.linewidth": 0.8,
     "axes.spines.right": False,
