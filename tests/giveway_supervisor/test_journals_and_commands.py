@@ -1,0 +1,84 @@
+"""Whose journal it is, how long it stays, and how we are started again."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from giveway.supervised import JOURNAL_VARIABLE, take_journal_folder
+from giveway.supervisor import journal_folder, own_command, supervise
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the deaths here are Unix's")
+
+
+def test_only_the_supervised_process_takes_the_journal(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    assert take_journal_folder() is None
+    monkeypatch.setenv(JOURNAL_VARIABLE, str(tmp_path))
+    assert take_journal_folder() == tmp_path
+    assert take_journal_folder() is None  # nor do the processes that it starts
+    monkeypatch.setenv(JOURNAL_VARIABLE, str(tmp_path / "of a run long gone"))
+    assert take_journal_folder() is None
+
+
+def test_the_folder_of_a_journal_is_gone_afterwards(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    with journal_folder() as folder:
+        assert folder.is_dir()
+    assert not folder.exists()
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    with journal_folder() as folder:
+        assert folder.parent == tmp_path
+
+
+def test_journals_of_killed_supervisors_do_not_pile_up(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    for name, age in (("giveway-journal-old", 2 * 86400), ("giveway-journal-new", 60)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "rows").touch()
+        os.utime(tmp_path / name / "rows", (time.time() - age,) * 2)
+    with journal_folder():
+        assert not (tmp_path / "giveway-journal-old").exists()
+        assert (tmp_path / "giveway-journal-new").exists()
+
+
+def test_open_files_reach_the_child(tmp_path: Path, journal: Path) -> None:
+    """``giveway run --config <(...)`` names a file that only we have open."""
+    file = tmp_path / "study.toml"
+    file.write_text("seed = 7")
+    with file.open() as opened:
+        os.set_inheritable(opened.fileno(), True)
+        code = f"import os, sys; sys.exit(5 if os.read({opened.fileno()}, 9) == b'seed = 7' else 6)"
+        assert supervise([sys.executable, "-c", code], journal).code == 5
+
+
+def test_we_start_again_as_we_were_started() -> None:
+    script = "from giveway.supervisor import own_command; print(own_command())"
+    done = subprocess.run(
+        [sys.executable, "-X", "utf8", "-c", script, "run", "--seed", "1"],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    expected = [sys.executable, "-X", "utf8", "-c", script, "run", "--seed", "1"]
+    assert done.stdout.strip() == str(expected)
+    assert own_command()[0] == sys.executable
+
+
+def test_supervising_imports_nothing_heavy() -> None:
+    code = "import sys, giveway.supervisor; print({m.split('.')[0] for m in sys.modules})"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+    )
+    for heavy in ("numpy", "numba", "pandas", "typer", "pydantic", "libsumo", "ctypes"):
+        assert f"'{heavy}'" not in done.stdout
