@@ -176,7 +176,7 @@ def _require_distinct(egos: Sequence[RunConfig]) -> None:
 def _start_options(config: RunConfig, moved: bool, outputs: Path | None) -> StartOptions:
     sumo = config.sumo
     seed = config.seed if sumo.seed == "run" else sumo.seed
-    extra = sumo.options if sumo.end is None else ("--end", f"{sumo.end:g}", *sumo.options)
+    extra = sumo.options if sumo.end is None else ("--end", f"{sumo.end:.3f}", *sumo.options)
     return StartOptions(
         seed=None if seed == "scenario" else int(seed),
         fallback_seed=config.seed,

@@ -148,9 +148,10 @@ class Departures:
 
     def _never(self, driver: Driver) -> str:
         if not driver.taken_over:
+            departure = driver.config.ego.depart_time
             return (
-                f"ego '{driver.id}': {self._config_file} ends at {self._session.time:g} s, before "
-                f"its departure at {driver.config.ego.depart_time:g} s; let it depart earlier"
+                f"ego '{driver.id}': {self._config_file} ends at {self._session.time:.12g} s, "
+                f"before its departure at {departure:.12g} s; let it depart earlier"
             )
         names = list(self._departed)
         close = difflib.get_close_matches(driver.id, names, n=1)
@@ -169,8 +170,8 @@ class Departures:
         ego = driver.config.ego
         if ego.depart_time >= self._session.end:
             msg = (
-                f"--ego-depart-time {ego.depart_time:g}: {self._config_file} ends at "
-                f"{self._session.end:g} s; let the ego depart before [s]"
+                f"--ego-depart-time {ego.depart_time:.12g}: {self._config_file} ends at "
+                f"{self._session.end:.12g} s; let the ego depart before [s]"
             )
             raise ConfigError(msg)
         if not ego.route:

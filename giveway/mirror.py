@@ -109,7 +109,7 @@ class Mirror:
         if bad.any():
             i = int(np.argmax(bad))
             place, speed = f"({vehicles.x[i]}, {vehicles.y[i]})", vehicles.speed[i]
-            msg = f"vehicle '{vehicles.ids[i]}' at {self._session.time:g} s: SUMO has it at "
+            msg = f"vehicle '{vehicles.ids[i]}' at {self._session.time:.12g} s: SUMO has it at "
             msg += f"{place} with {speed} m/s; expected finite numbers; check its route and type"
             raise VehicleError(msg)
 

@@ -136,13 +136,13 @@ def _time(files: ScenarioFiles) -> list[Finding]:
             ok("step length", f"{text}, {substeps} control step(s) of {step / substeps:.4g} s")
         ]
     if files.end is None:
-        text = f"from {files.begin:g} s, with no end"
+        text = f"from {files.begin:.12g} s, with no end"
         findings.append(note("time", text, "a run ends with its own --time-limit"))
     elif files.end <= files.begin:
-        text = f"from {files.begin:g} s to {files.end:g} s: nothing is simulated"
+        text = f"from {files.begin:.12g} s to {files.end:.12g} s: nothing is simulated"
         findings.append(error("time", text, "let <end> come after <begin>"))
     else:
-        findings.append(ok("time", f"from {files.begin:g} s to {files.end:g} s"))
+        findings.append(ok("time", f"from {files.begin:.12g} s to {files.end:.12g} s"))
     return findings
 
 

@@ -227,3 +227,10 @@ def test_a_radius_may_be_a_number() -> None:
 def test_texts_that_sumo_could_not_use_are_refused(settings: dict, expected: str) -> None:
     with pytest.raises(ConfigError, match=expected):
         build_config([Layer("study.toml", settings)])
+
+
+def test_a_long_clock_keeps_its_fractions_on_the_way_to_sumo() -> None:
+    from giveway.assembly import _start_options
+
+    config = RunConfig.model_validate({"sumo": {"end": 54012.35}})
+    assert _start_options(config, True, None).extra == ("--end", "54012.350")
