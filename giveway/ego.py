@@ -85,7 +85,6 @@ class Seen(NamedTuple):
     leader: Leader
     stop: float  # station [m] where a red light wants the front bumper; inf: none
     ahead: Array  # (N,) stations [m] of the closest obstacle at steps 1 ... N
-    predicted: bool
 
 
 class Ego:
@@ -181,8 +180,7 @@ class Ego:
         person, reachable = corridor.closest_now(crowd.position, front)
         ahead = corridor.nobody
         predictor = self.driver.predictor
-        predicted = reachable and predictor is not None
-        if predicted and predictor is not None:
+        if reachable and predictor is not None:
             positions = predictor.predict(
                 self._relevant(crowd, speed), poses[: predictor.horizon], surroundings
             )
@@ -196,7 +194,7 @@ class Ego:
             if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
                 allowed = stop + _BEYOND + self._origin
                 ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
-        return Seen(person, leader, stop, ahead, predicted)
+        return Seen(person, leader, stop, ahead)
 
     def _relevant(self, crowd: Crowd, speed: float) -> Crowd:
         """Those of a large crowd that the plan, or somebody whom it depends on, may meet.
