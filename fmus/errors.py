@@ -9,8 +9,16 @@ class FmuFileError(FmuError):
     """The file is missing, or no readable FMU."""
 
 
+class FmuArchiveError(FmuFileError):
+    """The archive is malicious, damaged or beyond all measure; nothing of it was unpacked."""
+
+
+class FmuProfileError(FmuError):
+    """A vehicle profile cannot be used."""
+
+
 class FmuInterfaceError(FmuError):
-    """The FMU does not offer what is needed: FMI 2.0 or 3.0 Co-Simulation."""
+    """The FMU does not offer what is needed: an interface that can be run here."""
 
 
 class FmuPlatformError(FmuError):
@@ -30,7 +38,11 @@ class FmuStepError(FmuError):
 
 
 class FmuOutputError(FmuError):
-    """The FMU's outputs are not finite numbers."""
+    """The FMU's outputs are no finite numbers, or none that a car can have."""
+
+
+class FmuCrashError(FmuStepError):
+    """The FMU's process died, or hung and was ended."""
 
 
 class FmuStateError(FmuError):

@@ -1,12 +1,29 @@
-"""What an FMU says about itself, and how its variables are found."""
+"""What an FMU says about itself: its interfaces, its variables, their units."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from difflib import get_close_matches
-from math import isfinite
-from pathlib import Path
+from __future__ import annotations
 
-from fmus.errors import FmuVariableError
+import enum
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+
+class Kind(enum.StrEnum):
+    """How an FMU is stepped."""
+
+    CO_SIMULATION = "co-simulation"  # it brings its own solver
+    MODEL_EXCHANGE = "model-exchange"  # it gives derivatives; the solver is ours
+
+
+REAL_TYPES = frozenset({"Real", "Float64", "Float32"})
+INTEGER_TYPES = frozenset(
+    {"Integer", "Enumeration"}
+    | {f"{sign}Int{bits}" for sign in ("", "U") for bits in (8, 16, 32, 64)}
+)
+NUMERIC_TYPES = REAL_TYPES | INTEGER_TYPES
 
 
 @dataclass(frozen=True)
@@ -21,82 +38,122 @@ class FmuDescription:
 
 
 @dataclass(frozen=True)
+class Unit:
+    """A unit as an FMU defines it: SI = factor * raw + offset.
+
+    Attributes:
+        name: as the FMU writes it.
+        dimension: exponents of kg, m, s, A, K, mol, cd, rad; None: the FMU does not tell.
+    """
+
+    name: str
+    factor: float = 1.0
+    offset: float = 0.0
+    dimension: tuple[int, int, int, int, int, int, int, int] | None = None
+
+
+@dataclass(frozen=True)
 class Variable:
     """A variable of an FMU."""
 
     name: str
     reference: int
     kind: str  # FMI's type: "Real", "Float64", "Boolean", ...
-    causality: str  # "input", "output", "parameter", ...
-    scalar: bool
-    settable: bool  # before the start
+    causality: str  # "input", "output", "parameter", "local", ...
+    variability: str = "continuous"
+    initial: str = ""  # "exact", "approx", "calculated"; empty where the FMU does not say
+    start: str = ""  # as it is written; empty without one
+    shape: tuple[int, ...] = ()  # of an FMI 3 array, from its dimensions' start values
+    unit: str = ""  # name of its unit; empty without one
+    description: str = ""
+    minimum: float | None = None  # in its unit
+    maximum: float | None = None
+    settable: bool = False  # before the start
+
+    @property
+    def scalar(self) -> bool:
+        """Not an array."""
+        return not self.shape
 
     @property
     def is_real(self) -> bool:
-        """A scalar in double precision."""
-        return self.scalar and self.kind in {"Real", "Float64"}
+        """A floating-point variable."""
+        return self.kind in REAL_TYPES
+
+    @property
+    def is_integer(self) -> bool:
+        """A whole number or an enumeration."""
+        return self.kind in INTEGER_TYPES
 
     @property
     def is_boolean(self) -> bool:
-        """A scalar that is true or false."""
-        return self.scalar and self.kind == "Boolean"
+        """True or false."""
+        return self.kind == "Boolean"
+
+    @property
+    def size(self) -> int:
+        """How many values it has."""
+        size = 1
+        for extent in self.shape:
+            size *= extent
+        return size
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One number that goes into, or comes out of, an FMU at every step."""
+
+    variable: Variable
+    element: int = 0  # of an array, row by row from 0
+
+    @property
+    def name(self) -> str:
+        """As a user would write it: ``x``, or ``x[2]`` for an array's second element."""
+        return f"{self.variable.name}[{self.element + 1}]" if self.variable.shape else self.variable.name
+
+
+@dataclass(frozen=True)
+class Interface:
+    """One of the kinds in which an FMU can run.
+
+    Attributes:
+        identifier: the name of its binaries.
+        flags: its capability flags that are numbers or text or true, as the FMU writes them.
+    """
+
+    kind: Kind
+    identifier: str
+    saves_state: bool = False  # canGetAndSetFMUState
+    needs_execution_tool: bool = False
+    once_per_process: bool = False
+    variable_step: bool = True  # canHandleVariableCommunicationStepSize
+    fixed_internal_step: float | None = None  # [s]
+    completed_step_needed: bool = True  # Model Exchange: completedIntegratorStep
+    flags: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Model:
-    """A Co-Simulation FMU that can run on this platform."""
+    """An FMU's model description, and where its binary for this platform is."""
 
     path: Path
-    fmi_version: str  # "2.0" or "3.0"
+    fmi_version: str  # "1.0", "2.0" or "3.0"
+    name: str
     guid: str
-    identifier: str  # the name of its binaries
-    folder: str  # where this platform's binary is in the archive
+    generation_tool: str
+    description: str
+    interfaces: Mapping[Kind, Interface]
     variables: Mapping[str, Variable]
-    saves_state: bool
+    units: Mapping[str, Unit]
+    platforms: tuple[str, ...]  # folders of the archive that hold binaries
+    states: int  # continuous ones
+    event_indicators: int
+    default_step: float | None  # [s] of its default experiment
+    default_tolerance: float | None
+    source: Any = field(default=None, repr=False)  # the reader's own object
 
-    def role(self, name: str, causality: str) -> Variable:
-        """The variable for an input or output of the vehicle: a real scalar.
-
-        Raises:
-            FmuVariableError: it is missing, or of another causality or type.
-        """
-        variable = self._find(name)
-        if variable.causality == causality and variable.is_real:
-            return variable
-        fitting = [
-            v.name for v in self.variables.values() if v.causality == causality and v.is_real
-        ]
-        msg = (
-            f"{self.path}: variable '{name}' is {variable.causality} {variable.kind}; expected a "
-            f"real scalar {causality}: {', '.join(fitting) or 'the FMU has none'}"
-        )
-        raise FmuVariableError(msg)
-
-    def settable(self, name: str, value: float | bool) -> Variable:
-        """The variable for a start value: a real or boolean scalar that can be set.
-
-        Raises:
-            FmuVariableError: it is missing, cannot be set, or not to this value.
-        """
-        variable = self._find(name)
-        problem = None
-        if not variable.settable:
-            problem = f"'{name}' is {variable.causality}; expected a parameter or an input"
-        elif variable.is_boolean and not isinstance(value, bool):
-            problem = "expected true or false"
-        elif variable.is_real and (isinstance(value, bool) or not isfinite(value)):
-            problem = "expected a finite number"
-        elif not (variable.is_real or variable.is_boolean):
-            problem = f"'{name}' is {variable.kind}; expected a real or boolean scalar"
-        if problem is None:
-            return variable
-        msg = f"{self.path}: start value {name} = {value}: {problem}"
-        raise FmuVariableError(msg)
-
-    def _find(self, name: str) -> Variable:
-        if name in self.variables:
-            return self.variables[name]
-        close = get_close_matches(name, self.variables, n=1)
-        hint = f"did you mean '{close[0]}'?" if close else f"it has {', '.join(self.variables)}"
-        msg = f"{self.path}: no variable '{name}' in the FMU; {hint}"
-        raise FmuVariableError(msg)
+    def unit_of(self, variable: Variable) -> Unit | None:
+        """The unit of a variable; None without one."""
+        if not variable.unit:
+            return None
+        return self.units.get(variable.unit, Unit(variable.unit))
