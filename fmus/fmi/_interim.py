@@ -1,3 +1,4 @@
+# Only until fmus/vehicle.py runs on the new instances.
 """Reading, loading and calling FMUs: the only file that talks to FMPy.
 
 FMPy reads the model description, loads the binary and knows the C functions. Only the three calls
@@ -27,8 +28,8 @@ from fmus.errors import (
     FmuStartError,
     FmuStateError,
 )
-from fmus.instance import DISCARD, WARNING, Instance, Journal, Tick
-from fmus.model import FmuDescription, Model, Variable
+from fmus.fmi._interim_instance import DISCARD, WARNING, Instance, Journal, Tick
+from fmus.fmi._interim_model import FmuDescription, Model, Variable
 
 # ---- reading ----
 
