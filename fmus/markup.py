@@ -1,0 +1,129 @@
+"""Reading an FMU's XML with nothing that a hostile file could use.
+
+A model description needs elements and attributes, no document type: whatever declares entities or
+refers to other files is refused at the first sight of ``<!DOCTYPE``, in any encoding, by the same
+parser (expat) that reads the rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+from xml.parsers import expat
+
+from fmus.errors import FmuArchiveError, FmuFileError
+from fmus.text import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+MAX_DEPTH: Final = 64  # of elements; FMI's own go to 6, annotations are free
+MAX_ELEMENTS: Final = 1_000_000  # 50,000 variables make 150,000
+MAX_ATTRIBUTE: Final = 4 << 20  # [characters]; a list of dependencies can be long
+
+
+@dataclass(slots=True)
+class Element:
+    """An XML element; its text, which FMI does not use, is left out."""
+
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    children: list[Element] = field(default_factory=list)
+
+    def get(self, name: str, default: str = "") -> str:
+        """An attribute's value."""
+        return self.attributes.get(name, default)
+
+    def every(self, *tags: str) -> Iterator[Element]:
+        """All descendants at the end of a chain of tags."""
+        for child in self.children:
+            if child.tag == tags[0]:
+                if len(tags) == 1:
+                    yield child
+                else:
+                    yield from child.every(*tags[1:])
+
+    def first(self, *tags: str) -> Element | None:
+        """The first of :meth:`every`."""
+        return next(self.every(*tags), None)
+
+
+def guard(data: bytes, where: str) -> None:
+    """Refuse what no model description has; keeps nothing.
+
+    Args:
+        data: the XML file.
+        where: named in errors.
+
+    Raises:
+        FmuArchiveError: a document type, or beyond all measure.
+        FmuFileError: not well-formed.
+    """
+    _walk(data, where, lambda *_element: None, lambda: None)
+
+
+def parse(data: bytes, where: str) -> Element:
+    """The root element.
+
+    Raises:
+        FmuArchiveError: a document type, or beyond all measure.
+        FmuFileError: not well-formed.
+    """
+    top = Element("", {}, 0)
+    open_elements = [top]
+
+    def start(tag: str, attributes: dict[str, str], line: int) -> None:
+        element = Element(tag, attributes, line)
+        open_elements[-1].children.append(element)
+        open_elements.append(element)
+
+    _walk(data, where, start, lambda: open_elements.pop())
+    return top.children[0]
+
+
+def _walk(
+    data: bytes,
+    where: str,
+    start: Callable[[str, dict[str, str], int], None],
+    end: Callable[[], object],
+) -> None:
+    parser = expat.ParserCreate()
+    depth = count = 0
+
+    def refuse(what: str) -> None:
+        msg = f"{where}, line {parser.CurrentLineNumber}: {what}; no tool exports such a file"
+        raise FmuArchiveError(msg)
+
+    def on_start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal depth, count
+        depth += 1
+        count += 1
+        if depth > MAX_DEPTH:
+            refuse(f"more than {MAX_DEPTH} elements within each other")
+        if count > MAX_ELEMENTS:
+            refuse(f"more than {MAX_ELEMENTS} elements")
+        for value in attributes.values():
+            if len(value) > MAX_ATTRIBUTE:
+                refuse(f"an attribute of more than {MAX_ATTRIBUTE} characters")
+        start(tag, attributes, parser.CurrentLineNumber)
+
+    def on_end(_tag: str) -> None:
+        nonlocal depth
+        depth -= 1
+        end()
+
+    def on_doctype(*_declaration: object) -> None:
+        refuse("a document type (<!DOCTYPE ...>); a model description has none")
+
+    parser.StartDoctypeDeclHandler = on_doctype
+    parser.StartElementHandler = on_start
+    parser.EndElementHandler = on_end
+    try:
+        parser.Parse(data, True)
+    except expat.ExpatError as error:
+        msg = f"{where}: not well-formed XML: {printable(error)}; export the model again"
+        raise FmuFileError(msg) from None
+    except (LookupError, ValueError) as error:  # an encoding that nobody knows
+        msg = f"{where}: its encoding cannot be read: {printable(error)}; expected UTF-8"
+        raise FmuFileError(msg) from None

@@ -1,0 +1,26 @@
+"""Text that came from an FMU, made fit for a terminal and a log."""
+
+from __future__ import annotations
+
+import unicodedata
+
+LIMIT = 200  # characters of one message
+_SPACES = frozenset({"Zl", "Zp", "Zs"})
+
+
+def printable(text: object, limit: int = LIMIT) -> str:
+    """One line of visible characters, at most ``limit`` long.
+
+    Control characters, direction marks and half surrogates become ``?``: an FMU must be able
+    neither to steer the terminal nor to break a line.
+    """
+    words = str(text)[: 4 * limit].split()
+    line = "".join(map(_visible, " ".join(words)))
+    return line if len(line) <= limit else f"{line[: limit - 3]}..."
+
+
+def _visible(character: str) -> str:
+    category = unicodedata.category(character)
+    if category in _SPACES:
+        return " "
+    return "?" if category.startswith("C") else character
