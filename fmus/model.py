@@ -26,6 +26,10 @@ INTEGER_TYPES = frozenset(
 NUMERIC_TYPES = REAL_TYPES | INTEGER_TYPES
 
 
+Dimension = tuple[int, int, int, int, int, int, int, int]
+"""Exponents of kg, m, s, A, K, mol, cd, rad."""
+
+
 @dataclass(frozen=True)
 class FmuDescription:
     """What identifies an FMU in the record of a run."""
@@ -43,13 +47,13 @@ class Unit:
 
     Attributes:
         name: as the FMU writes it.
-        dimension: exponents of kg, m, s, A, K, mol, cd, rad; None: the FMU does not tell.
+        dimension: None: the FMU does not tell.
     """
 
     name: str
     factor: float = 1.0
     offset: float = 0.0
-    dimension: tuple[int, int, int, int, int, int, int, int] | None = None
+    dimension: Dimension | None = None
 
 
 @dataclass(frozen=True)
@@ -109,7 +113,11 @@ class Channel:
     @property
     def name(self) -> str:
         """As a user would write it: ``x``, or ``x[2]`` for an array's second element."""
-        return f"{self.variable.name}[{self.element + 1}]" if self.variable.shape else self.variable.name
+        return (
+            f"{self.variable.name}[{self.element + 1}]"
+            if self.variable.shape
+            else self.variable.name
+        )
 
 
 @dataclass(frozen=True)

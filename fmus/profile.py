@@ -72,6 +72,7 @@ class Inputs(Table):
     throttle: Pedal | None = None
     brake: Pedal | None = None
     speed_setpoint: SpeedSetpoint | None = None  # [m/s]
+    block_reverse: bool = True  # at a standstill no braking force or acceleration is passed on
 
     @model_validator(mode="after")
     def _one_way(self) -> Inputs:

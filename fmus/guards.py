@@ -1,0 +1,95 @@
+"""What no car does: a vehicle FMU that shows it is at fault, whatever status it returns."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+_DRIVEN = 200.0  # [N] a car that does not answer this much is stuck
+
+
+class Guard:
+    """Judges each new state against the one before.
+
+    Args:
+        speed_limit: [m/s].
+        position_jump: [m].
+        frozen_time: [s].
+        names: what the FMU calls its speed, position and acceleration.
+    """
+
+    def __init__(
+        self,
+        speed_limit: float,
+        position_jump: float,
+        frozen_time: float,
+        names: dict[str, str],
+    ) -> None:
+        self._speed_limit = speed_limit
+        self._position_jump = position_jump
+        self._frozen_time = frozen_time
+        self._names = names
+        self._frozen = 0.0  # [s]
+        self._warned: set[str] = set()
+
+    def fault(
+        self, position: float, speed: float, acceleration: float, jump: float, at: float
+    ) -> str:
+        """What is wrong with a new state; empty if nothing is.
+
+        Args:
+            position: [m].
+            speed: [m/s].
+            acceleration: [m/s2].
+            jump: by how much [m] the position differs from what the speed accounts for.
+            at: time [s].
+        """
+        for role, value in (
+            ("position", position),
+            ("speed", speed),
+            ("acceleration", acceleration),
+        ):
+            if not isfinite(value):
+                return (
+                    f"{self._names[role]} = {value} at {at:.10g} s; expected a finite number; "
+                    "check the FMU's parameters and the step size"
+                )
+        limit = self._speed_limit
+        if abs(speed) > limit:
+            return (
+                f"{self._names['speed']} = {speed:.6g} m/s at {at:.10g} s; expected within "
+                f"+-{limit:g} m/s; check its unit and the step, or raise speed in [limits]"
+            )
+        return (
+            f"{self._names['position']} = {position:.6g} m at {at:.10g} s, {jump:+.6g} m from where "
+            f"the speed leads; expected within {self._position_jump:g} m; check the units of "
+            "position and speed, or raise position_jump in [limits]"
+        )
+
+    def watch(self, changed: bool, force: float, speed: float, step: float, at: float) -> str:
+        """A warning about a state that stands still though it is driven; empty if there is none.
+
+        Args:
+            changed: whether any output has changed in this step.
+            force: held over it [N].
+            speed: [m/s].
+            step: [s].
+            at: time [s].
+        """
+        if changed or (speed == 0.0 and force < _DRIVEN) or abs(force) < _DRIVEN:
+            self._frozen = 0.0
+            return ""
+        self._frozen += step
+        if self._frozen < self._frozen_time:
+            return ""
+        return self.once(
+            "frozen",
+            f"{self._names['speed']} has not changed for {self._frozen_time:g} s until "
+            f"{at:.10g} s under forces like {force:.0f} N; is the input connected?",
+        )
+
+    def once(self, kind: str, warning: str) -> str:
+        """The warning the first time, then nothing."""
+        if kind in self._warned:
+            return ""
+        self._warned.add(kind)
+        return warning

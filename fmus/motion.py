@@ -1,0 +1,133 @@
+"""From an FMU's outputs to a motion in SI units, with an eye on what no car does."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from fmus.errors import FmuOutputError
+from fmus.guards import Guard
+
+if TYPE_CHECKING:
+    from fmus.preparation import Prepared
+    from fmus.wiring import Wiring
+
+
+class Motion:
+    """Position, speed and acceleration along the way, as the FMU tells them or as derived.
+
+    Args:
+        prepared: the vehicle.
+
+    Attributes:
+        position: [m].
+        speed: [m/s].
+        acceleration: [m/s2].
+        warnings: what the user should know.
+    """
+
+    def __init__(self, prepared: Prepared) -> None:
+        wiring = prepared.wiring
+        self.position = self.speed = self.acceleration = 0.0
+        self.warnings: list[str] = []
+        self.names = _names(wiring)
+        self._path = prepared.path
+        self._wires = wiring.outputs
+        self._place = wiring.output("position")
+        self._rate = wiring.output("acceleration")
+        self._inputs = wiring.inputs
+        self._bounds = prepared.bounds
+        self._limit = prepared.speed_limit
+        self._jump = prepared.position_jump
+        self._guard = Guard(self._limit, self._jump, prepared.frozen_time, self.names)
+        self._origin = 0.0  # [m] where the FMU's own position is 0
+
+    @property
+    def state(self) -> tuple[float, float, float]:
+        """Position, speed and acceleration."""
+        return self.position, self.speed, self.acceleration
+
+    def begin(self, outputs: memoryview[float]) -> None:
+        """Take over a first state as it is.
+
+        Raises:
+            FmuOutputError: no car has it.
+        """
+        wires = self._wires
+        self.speed = wires[0].to_si(outputs[0])
+        if self._rate is not None:
+            self.acceleration = wires[self._rate].to_si(outputs[self._rate])
+        if self._place is not None:
+            self.position = wires[self._place].to_si(outputs[self._place])
+        self._judge(0.0, 0.0, 0.0)
+
+    def count_from(self, position: float) -> None:
+        """Let the present place be at ``position`` [m]."""
+        self._origin += self.position - position
+        self.position = position
+
+    def follow(
+        self, outputs: memoryview[float], force: float, duration: float, time: float
+    ) -> None:
+        """Take over the state after a step.
+
+        Args:
+            outputs: of the FMU.
+            force: held over the step [N].
+            duration: of the step [s].
+            time: at its end [s].
+
+        Raises:
+            FmuOutputError: no car has it.
+        """
+        wires, before, place, rate = self._wires, self.speed, self._place, self._rate
+        speed = wires[0].scale * outputs[0] + wires[0].shift
+        position = led = self.position + 0.5 * duration * (before + speed)
+        if place is not None:
+            position = wires[place].scale * outputs[place] + wires[place].shift - self._origin
+        unchanged = speed == before and position == self.position
+        self.speed, self.position = speed, position
+        if rate is not None:
+            self.acceleration = wires[rate].scale * outputs[rate] + wires[rate].shift
+        else:
+            self.acceleration = (speed - before) / duration
+        self._judge(position - led, 0.5 * duration * abs(speed - before), time)
+        self._note(self._guard.watch(not unchanged, force, speed, duration, time))
+        if speed < 0.0:
+            backwards = f"{self.names['speed']} = {speed:.3g} m/s at {time:.10g} s: it reverses"
+            self._note(self._guard.once("reverse", backwards))
+
+    def _judge(self, jump: float, slack: float, time: float) -> None:
+        """Refuse a state; ``slack`` [m] of its ``jump`` [m] is accounted for."""
+        good = (
+            -self._limit <= self.speed <= self._limit
+            and abs(jump) <= self._jump + slack
+            and isfinite(self.position + self.acceleration)
+        )
+        if not good:
+            problem = self._guard.fault(*self.state, jump, time)
+            raise FmuOutputError(f"{self._path}: {problem}")
+
+    def keep_bounds(self, inputs: memoryview[float]) -> None:
+        """Let inputs have no values beyond those that the FMU declares."""
+        for bound in self._bounds:
+            value = inputs[bound.index]
+            if not bound.low <= value <= bound.high:
+                inputs[bound.index] = min(max(value, bound.low), bound.high)
+                wired = self._inputs[bound.index]
+                allowed = f"{bound.low:g} to {bound.high:g} {wired.unit}".rstrip()
+                limited = f"{wired.channel.name} was limited to the FMU's {allowed}"
+                self._note(self._guard.once(wired.role, limited))
+
+    def _note(self, warning: str) -> None:
+        if warning:
+            self.warnings.append(f"{self._path.name}: {warning}")
+
+
+def _names(wiring: Wiring) -> dict[str, str]:
+    """What the FMU calls the quantities of the motion."""
+    names = {}
+    for role in ("speed", "position", "acceleration"):
+        index = wiring.output(role)
+        names[role] = f"{role} (derived)" if index is None else wiring.outputs[index].channel.name
+    return names

@@ -1,0 +1,43 @@
+"""Bringing a vehicle to its initial speed where the FMU has no parameter for it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fmus.errors import FmuStartError
+
+if TYPE_CHECKING:
+    from fmus.vehicle import VehicleFmu
+
+_NEAR = 0.01  # [m/s] of the speed wanted, and
+_SETTLED = 0.5  # [s] for so long
+_LIMIT = 120.0  # [s] of simulated time
+_RESPONSE = 0.5  # [s] time constant of the approach
+_INTEGRATION = 4.0  # [s] of the integrator: what the model's friction does not account for
+_STRONGEST = 3.0  # [m/s2] that is asked for
+
+
+def run_up(vehicle: VehicleFmu, speed: float) -> float:
+    """Drive ``vehicle`` until it keeps ``speed`` [m/s]; returns how long it took [s].
+
+    Raises:
+        FmuStartError: it does not get there.
+    """
+    mass, friction = vehicle.prepared.run_up_mass, vehicle.prepared.run_up_friction
+    h, integral, settled = vehicle.step_size, 0.0, 0.0
+    for _ in range(round(_LIMIT / h)):
+        error = speed - vehicle.speed
+        wanted = error / _RESPONSE + integral
+        acceleration = min(max(wanted, -_STRONGEST), _STRONGEST)
+        if wanted == acceleration:  # no wind-up while saturated
+            integral += error * h / (_RESPONSE * _INTEGRATION)
+        vehicle.step(mass * acceleration + friction * speed)
+        settled = settled + h if abs(speed - vehicle.speed) <= _NEAR else 0.0
+        if settled >= _SETTLED:
+            return vehicle.time
+    msg = (
+        f"{vehicle.path}: does not reach its initial speed of {speed:g} m/s within {_LIMIT:g} s (it "
+        f"is at {vehicle.speed:.4g} m/s); name its parameter for it, [initial.speed] variable = ..., "
+        "or start slower (--ego-initial-speed)"
+    )
+    raise FmuStartError(msg)
