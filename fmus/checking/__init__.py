@@ -1,0 +1,22 @@
+"""Does an FMU behave like a vehicle? Dry runs, the step-halving self-check, identification."""
+
+from fmus.checking.findings import Finding, Verdict
+from fmus.checking.identification import Identification, identify
+from fmus.checking.manoeuvres import Drivable, Opener, Phase, Trace, drive, replay
+from fmus.checking.self_check import Convergence, convergence, require_converged
+
+__all__ = [
+    "Convergence",
+    "Drivable",
+    "Finding",
+    "Identification",
+    "Opener",
+    "Phase",
+    "Trace",
+    "Verdict",
+    "convergence",
+    "drive",
+    "identify",
+    "replay",
+    "require_converged",
+]

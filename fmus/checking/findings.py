@@ -1,0 +1,25 @@
+"""What a check found: one finding per test."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Verdict = Literal["pass", "warn", "fail", "skip"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """The outcome of one test.
+
+    Attributes:
+        name: of the test, a few words.
+        verdict: "skip" where the test does not apply, or could not be tried any more.
+        text: what was found, with numbers and units; one line.
+        remedy: what to do, ideally the line to add to the profile; empty if nothing.
+    """
+
+    name: str
+    verdict: Verdict
+    text: str
+    remedy: str = ""

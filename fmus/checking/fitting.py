@@ -1,0 +1,213 @@
+"""Least squares for M and alpha of the MPC's model, with the actuator's lag and dead time.
+
+The model is the MPC's own one-step prediction, M (v+ - v) / dt + alpha v = F (Yang & Özgüner 2019,
+eq. (3)), where F is the mean over the step of the force that acts. For a given lag and dead time
+it is linear in 1 / M and alpha / M; the two are found by a search that minimises the residual.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fmus.checking.actuator import mean_force
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from fmus.checking.manoeuvres import Trace
+
+STANDSTILL = 0.05  # [m/s] below it brakes may hold the vehicle: not in the fit
+SETTLING = 1.0  # [s] at the begin: what acted before the start is unknown
+LONGEST_LAG = 2.0  # [s] of the search
+LONGEST_DELAY = 1.0  # [s] of the search
+NOTICEABLE = 0.02  # a lag or a dead time must better the residual by this share
+EXACT = 1e-9  # [m/s2] a residual of mere rounding
+NORMAL_95 = 1.96  # half width of the interval of 95 %, in standard errors
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A trace made ready for the fit.
+
+    Attributes:
+        force: (n,) commanded [N].
+        speed: (n + 1,) [m/s].
+        step: [s].
+        used: (n,) which steps count.
+    """
+
+    force: NDArray[np.float64]
+    speed: NDArray[np.float64]
+    step: float
+    used: NDArray[np.bool_]
+
+    @property
+    def acceleration(self) -> NDArray[np.float64]:
+        """(n,) mean over each step [m/s2]."""
+        return np.diff(self.speed) / self.step
+
+
+def prepare(trace: Trace, limits: tuple[float, float] = (np.inf, np.inf)) -> Drive:
+    """What of a trace the fit may use: neither its begin, nor standstill, nor saturation.
+
+    Args:
+        trace: of a drive.
+        limits: largest drive and brake force that the vehicle carries out [N].
+    """
+    moving = np.minimum(trace.speed[:-1], trace.speed[1:]) > STANDSTILL
+    settled = np.arange(trace.force.size) * trace.step_size >= SETTLING - 1e-9
+    beyond = (trace.force > limits[0]) | (trace.force < -limits[1])
+    memory = round(SETTLING / trace.step_size)
+    since = np.cumsum(beyond)
+    recently = since - np.concatenate((np.zeros(memory, int), since))[: since.size] > 0
+    return Drive(trace.force, trace.speed, trace.step_size, moving & settled & ~recently)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """M v' + alpha v = F and how the force comes to act.
+
+    Attributes:
+        intervals: half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
+        residual: root mean square of what is left of the acceleration [m/s2].
+        r_squared: share of the acceleration's variation that is explained.
+    """
+
+    mass: float
+    friction: float
+    lag: float
+    delay: float
+    intervals: tuple[float, float]
+    residual: float
+    r_squared: float
+
+    def acceleration(self, drive: Drive) -> NDArray[np.float64]:
+        """(n,) of the model under the measured speed [m/s2]."""
+        acting = mean_force(drive.force, drive.step, self.lag, self.delay)
+        return (acting - self.friction * drive.speed[:-1]) / self.mass
+
+
+def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
+    """The model that leaves the least of the accelerations; None where nothing can be fitted.
+
+    A lag or dead time is only reported where it betters the fit noticeably.
+
+    Args:
+        drives: what was measured.
+        actuator: search for lag and dead time.
+    """
+    if sum(int(drive.used.sum()) for drive in drives) < 10:
+        return None
+
+    def cost(lag: float, delay: float) -> float:
+        return _solve(drives, lag, delay).residual
+
+    best = simplest = (0.0, 0.0)
+    if actuator:
+        best = _search(cost, drives[0].step)
+        candidates = [(0.0, 0.0), _line_search(cost, 0), _line_search(cost, 1), best]
+        enough = max(cost(*best) * (1.0 + NOTICEABLE), EXACT)
+        simplest = next(pair for pair in candidates if cost(*pair) <= enough)
+    solution = _solve(drives, *simplest)
+    return solution if np.isfinite(solution.mass) and solution.mass > 0.0 else None
+
+
+def _solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
+    """Linear least squares in theta = (1 / M, alpha / M)."""
+    rows, targets, groups = [], [], []
+    for number, drive in enumerate(drives):
+        acting = mean_force(drive.force, drive.step, lag, delay)[drive.used]
+        rows.append(np.column_stack((acting, -drive.speed[:-1][drive.used])))
+        targets.append(drive.acceleration[drive.used])
+        groups.append(np.full(acting.size, number))
+    X, y, group = np.concatenate(rows), np.concatenate(targets), np.concatenate(groups)
+    scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
+    theta, *_ = np.linalg.lstsq(X / scale, y, rcond=None)
+    if theta[1] < 0.0:  # no friction that drives: the model has none
+        theta = np.array(
+            [(X[:, 0] / scale[0]) @ y / max(((X[:, 0] / scale[0]) ** 2).sum(), 1e-300), 0.0]
+        )
+    left = y - X / scale @ theta
+    inverse, ratio = theta / scale
+    mass = 1.0 / inverse if inverse else np.inf
+    residual = float(np.sqrt(np.mean(left**2)))
+    spread = float(np.sqrt(np.mean((y - y.mean()) ** 2)))
+    return Fit(
+        mass=float(mass),
+        friction=float(ratio * mass),
+        lag=lag,
+        delay=delay,
+        intervals=_intervals(X, left, group, mass, ratio * mass),
+        residual=residual,
+        r_squared=1.0 - (residual / spread) ** 2 if spread > 0.0 else 0.0,
+    )
+
+
+def _intervals(
+    X: NDArray[np.float64],
+    left: NDArray[np.float64],
+    group: NDArray[np.int_],
+    mass: float,
+    friction: float,
+) -> tuple[float, float]:
+    """95 % half widths of M and alpha; errors may hang together within a drive, not between them.
+
+    The covariance is that of clusters (Liang & Zeger 1986), carried to M and alpha to first order.
+    """
+    scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
+    Z = X / scale
+    bread = np.linalg.pinv(Z.T @ Z)
+    scores = np.array([Z[group == g].T @ left[group == g] for g in np.unique(group)])
+    if len(scores) > 1:
+        meat = scores.T @ scores * len(scores) / (len(scores) - 1)
+    else:
+        meat = Z.T @ Z * float(np.mean(left**2))
+    covariance = bread @ meat @ bread / np.outer(scale, scale)
+    # M = 1 / theta_1, alpha = theta_2 / theta_1
+    slopes = np.array([[-(mass**2), 0.0], [-friction * mass, mass]])
+    variances = np.diag(slopes @ covariance @ slopes.T)
+    half_mass, half_friction = NORMAL_95 * np.sqrt(np.maximum(variances, 0.0))
+    return float(half_mass), float(half_friction)
+
+
+def _search(cost: Callable[[float, float], float], step: float) -> tuple[float, float]:
+    """Lag and dead time of least cost: a coarse grid, then ever finer ones about its best."""
+    lags = [0.0, *np.geomspace(step / 4, LONGEST_LAG, 9)]
+    delays = [0.0, *np.geomspace(step / 2, LONGEST_DELAY, 9)]
+    best = min(((a, b) for a in lags for b in delays), key=lambda pair: cost(*pair))
+    reach = [max(best[0] * 0.6, step / 4), max(best[1] * 0.6, step / 2)]
+    for _ in range(26):
+        around = [
+            (max(0.0, best[0] + i * reach[0]), max(0.0, best[1] + j * reach[1]))
+            for i in (-1, 0, 1)
+            for j in (-1, 0, 1)
+        ]
+        found = min(around, key=lambda pair: cost(*pair))
+        if found == best:
+            reach = [r * 0.5 for r in reach]
+        best = found
+    return best
+
+
+def _line_search(cost: Callable[[float, float], float], axis: int) -> tuple[float, float]:
+    """As the search, with only the lag (axis 0) or only the dead time (axis 1)."""
+
+    def pair(value: float) -> tuple[float, float]:
+        return (value, 0.0) if axis == 0 else (0.0, value)
+
+    longest = LONGEST_DELAY if axis else LONGEST_LAG
+    grid = np.concatenate(([0.0], np.geomspace(longest / 200, longest, 25)))
+    at = int(np.argmin([cost(*pair(float(value))) for value in grid]))
+    low, high = float(grid[max(at - 1, 0)]), float(grid[min(at + 1, grid.size - 1)])
+    for _ in range(40):
+        third = (high - low) / 3.0
+        if cost(*pair(low + third)) <= cost(*pair(high - third)):
+            high -= third
+        else:
+            low += third
+    return pair(0.5 * (low + high))

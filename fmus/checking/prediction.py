@@ -1,0 +1,51 @@
+"""How far the MPC's own prediction, with M and alpha alone, is off a drive that was not fitted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fmus.checking.fitting import STANDSTILL
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from fmus.checking.manoeuvres import Trace
+
+
+def speed_errors(trace: Trace, mass: float, friction: float) -> NDArray[np.float64]:
+    """(m,) [m/s] one step ahead, while the vehicle moves."""
+    h, v, v_next = trace.step_size, trace.speed[:-1], trace.speed[1:]
+    predicted = v + h / mass * (trace.force - friction * v)
+    moving = np.minimum(v, v_next) > STANDSTILL
+    return np.asarray((predicted - v_next)[moving])
+
+
+def position_errors(
+    trace: Trace, mass: float, friction: float, horizon: int
+) -> NDArray[np.float64]:
+    """(m,) [m] ``horizon`` steps ahead, from every instant; predicted speeds stop at 0.
+
+    Forward Euler, as the MPC predicts (Yang & Özgüner 2019, eqs. (2) and (3)).
+    """
+    h, force = trace.step_size, trace.force
+    starts = force.size - horizon + 1
+    position, speed = trace.position[:starts].copy(), trace.speed[:starts].copy()
+    for k in range(horizon):
+        position += h * speed
+        speed += h / mass * (force[k : k + starts] - friction * speed)
+        np.maximum(speed, 0.0, out=speed)
+    return np.asarray(np.abs(position - trace.position[horizon : horizon + starts]))
+
+
+def simulate(
+    force: NDArray[np.float64], step: float, mass: float, friction: float, speed: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(n + 1,) position [m] and speed [m/s] of the MPC's model from ``speed`` on, held at 0."""
+    position, velocity = np.zeros(force.size + 1), np.empty(force.size + 1)
+    velocity[0] = speed
+    for k, u in enumerate(force):
+        position[k + 1] = position[k] + step * velocity[k]
+        velocity[k + 1] = max(0.0, velocity[k] + step / mass * (u - friction * velocity[k]))
+    return position, velocity
