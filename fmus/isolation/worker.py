@@ -1,0 +1,119 @@
+"""The FMU's own process: runs one vehicle for one episode, as told through a socket."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import sys
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, NoReturn
+
+from fmus.errors import FmuError
+from fmus.isolation.protocol import LOST, QUIT, START, STEP, Text, receive, reply
+from fmus.text import printable
+from fmus.vehicle import VehicleFmu
+
+if TYPE_CHECKING:
+    import socket
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from fmus.profile import Value, VehicleProfile
+
+
+_WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: in JSON below its limit
+
+
+@dataclass(frozen=True)
+class Order:
+    """What the process is to run."""
+
+    path: Path
+    step_size: float  # [s]
+    profile: VehicleProfile | None
+    start_values: Mapping[str, Value] | None
+    folder: Path  # holds the extracted FMU
+
+    def vehicle(self) -> VehicleFmu:
+        """The vehicle, its FMU loaded into this process."""
+        return VehicleFmu(
+            self.path,
+            step_size=self.step_size,
+            start_values=self.start_values,  # type: ignore[arg-type]
+        )
+
+
+def serve(order: Order, connection: socket.socket) -> NoReturn:
+    """Answer requests until the connection ends; then the process ends."""
+    status = LOST
+    with suppress(BaseException):  # whatever happened, the other side sees the connection end
+        _protect()
+        _Worker(order, connection).run()
+        status = 0
+    os._exit(status)  # neither the FMU's exit handlers nor ours
+
+
+def _protect() -> None:
+    """What the FMU prints comes out line by line; a crash leaves no core file."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the other process's business
+    if sys.platform != "win32":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        libc = ctypes.CDLL(None)
+        for name in ("stdout", "__stdoutp"):
+            with suppress(ValueError):  # the name is that of another C library
+                line_wise = 1  # _IOLBF: Linux and macOS agree
+                libc.setvbuf(ctypes.c_void_p.in_dll(libc, name), None, line_wise, ctypes.c_size_t())
+
+
+class _Worker:
+    def __init__(self, order: Order, connection: socket.socket) -> None:
+        self._order = order
+        self._connection = connection
+        self._vehicle: VehicleFmu | None = None
+        self._warned = 0
+
+    def run(self) -> None:
+        while (request := receive(self._connection)) is not None:
+            what, number, first, second = request
+            try:
+                text = self._do(what, first, second)
+            except FmuError as error:
+                self._refuse(number, type(error).__name__, str(error))
+            except Exception as error:  # a fault of ours, or an FMU that tampers with Python
+                self._refuse(number, "", f"{type(error).__name__}: {printable(error)}")
+            else:
+                vehicle = self._vehicle
+                assert vehicle is not None
+                values = (vehicle.position, vehicle.speed, vehicle.acceleration)
+                reply(self._connection, number, values, text)
+                if what == QUIT:
+                    return
+
+    def _do(self, what: bytes, first: float, second: float) -> Text | None:
+        vehicle = self._vehicle
+        if what == STEP and vehicle is not None:
+            vehicle.step(first)
+        elif what == START:
+            vehicle = self._vehicle = self._order.vehicle()
+            vehicle.start(position=first, speed=second)
+        elif what == QUIT and vehicle is not None:
+            vehicle.close()
+        return self._news()
+
+    def _news(self) -> Text | None:
+        """Warnings that have not been told."""
+        warnings: list[str] = getattr(self._vehicle, "warnings", [])
+        if len(warnings) == self._warned:
+            return None
+        new = warnings[self._warned :][:_WARNINGS]
+        self._warned = len(warnings)
+        return {"warnings": [printable(w, _WARNING) for w in new]}
+
+    def _refuse(self, number: int, kind: str, message: str) -> None:
+        text: dict[str, Any] = {"error": kind, "message": printable(message, _MESSAGE)}
+        text |= self._news() or {}
+        reply(self._connection, number, None, text)
