@@ -22,7 +22,7 @@ class Command(ABC):
     """Turns a force into the values of the FMU's inputs."""
 
     @abstractmethod
-    def apply(self, force: float, speed: float, inputs: memoryview[float]) -> None:
+    def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
         """Fill the inputs, in the FMU's units.
 
         Args:
@@ -40,7 +40,8 @@ class ForceCommand(Command):
     shift: float
     block_reverse: bool
 
-    def apply(self, force: float, speed: float, inputs: memoryview[float]) -> None:
+    def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
+        """As for :class:`Command`."""
         if self.block_reverse and force < 0.0 and speed <= 0.0:
             force = 0.0
         inputs[0] = (force - self.shift) / self.scale
@@ -53,7 +54,8 @@ class SplitForceCommand(Command):
     drive: Wire
     brake: Wire
 
-    def apply(self, force: float, speed: float, inputs: memoryview[float]) -> None:
+    def apply(self, force: float, _speed: float, inputs: memoryview[float], /) -> None:
+        """As for :class:`Command`."""
         inputs[0] = self.drive.to_raw(max(force, 0.0))
         inputs[1] = self.brake.to_raw(max(-force, 0.0))
 
@@ -67,7 +69,8 @@ class AccelerationCommand(Command):
     friction: float  # alpha [N.s/m]
     block_reverse: bool
 
-    def apply(self, force: float, speed: float, inputs: memoryview[float]) -> None:
+    def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
+        """As for :class:`Command`."""
         acceleration = (force - self.friction * speed) / self.mass
         if self.block_reverse and acceleration < 0.0 and speed <= 0.0:
             acceleration = 0.0
@@ -83,7 +86,8 @@ class PedalCommand(Command):
     full_drive: float  # [N]
     full_brake: float  # [N]
 
-    def apply(self, force: float, speed: float, inputs: memoryview[float]) -> None:
+    def apply(self, force: float, _speed: float, inputs: memoryview[float], /) -> None:
+        """As for :class:`Command`."""
         inputs[0] = self.throttle.to_raw(min(max(force / self.full_drive, 0.0), 1.0))
         inputs[1] = self.brake.to_raw(min(max(-force / self.full_brake, 0.0), 1.0))
 
@@ -100,7 +104,8 @@ class SetpointCommand(Command):
     friction: float  # alpha [N.s/m]
     lead: float  # T [s]
 
-    def apply(self, force: float, speed: float, inputs: memoryview[float]) -> None:
+    def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
+        """As for :class:`Command`."""
         acceleration = (force - self.friction * speed) / self.mass
         inputs[0] = self.wire.to_raw(max(0.0, speed + self.lead * acceleration))
 

@@ -60,8 +60,8 @@ class Guard:
                 f"+-{limit:g} m/s; check its unit and the step, or raise speed in [limits]"
             )
         return (
-            f"{self._names['position']} = {position:.6g} m at {at:.10g} s, {jump:+.6g} m from where "
-            f"the speed leads; expected within {self._position_jump:g} m; check the units of "
+            f"{self._names['position']} = {position:.6g} m at {at:.10g} s, {jump:+.6g} m from "
+            f"where the speed leads; expected within {self._position_jump:g} m; check the units of "
             "position and speed, or raise position_jump in [limits]"
         )
 

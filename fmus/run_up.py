@@ -36,8 +36,8 @@ def run_up(vehicle: VehicleFmu, speed: float) -> float:
         if settled >= _SETTLED:
             return vehicle.time
     msg = (
-        f"{vehicle.path}: does not reach its initial speed of {speed:g} m/s within {_LIMIT:g} s (it "
-        f"is at {vehicle.speed:.4g} m/s); name its parameter for it, [initial.speed] variable = ..., "
-        "or start slower (--ego-initial-speed)"
+        f"{vehicle.path}: does not reach its initial speed of {speed:g} m/s within {_LIMIT:g} s "
+        f"(it is at {vehicle.speed:.4g} m/s); name its parameter for it, [initial.speed] variable "
+        "= ..., or start slower (--ego-initial-speed)"
     )
     raise FmuStartError(msg)
