@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fmus.bundled import bundled_fmu
+from fmus.bundled import is_bundled
 from fmus.isolation.vehicle import IsolatedVehicle
 from fmus.vehicle import VehicleFmu
 
@@ -15,3 +16,29 @@ if TYPE_CHECKING:
     from fmus.profile import Value, VehicleProfile
 
 __all__ = ["IsolatedVehicle", "open_vehicle"]
+
+
+def open_vehicle(
+    path: str | os.PathLike[str],
+    *,
+    step_size: float,
+    profile: VehicleProfile | None = None,
+    start_values: Mapping[str, Value] | None = None,
+    isolated: bool | None = None,
+) -> VehicleFmu | IsolatedVehicle:
+    """A vehicle that runs an FMU.
+
+    Args:
+        path: the .fmu file.
+        step_size: [s].
+        profile: which variable plays which part; None: see :func:`fmus.preparation.prepare`.
+        start_values: further start values by variable name.
+        isolated: in a process of its own; None: unless it is a shipped FMU.
+
+    Raises:
+        FmuError: see :class:`IsolatedVehicle`.
+    """
+    if isolated is None:
+        isolated = not is_bundled(Path(path))
+    make = IsolatedVehicle if isolated else VehicleFmu
+    return make(path, step_size=step_size, profile=profile, start_values=start_values)

@@ -81,7 +81,9 @@ class PrintedTail:
 
     def last_line(self) -> str:
         """The last line that is not blank, fit for a message; empty if there is none."""
-        lines = (printable(line) for line in reversed(self._end.decode("utf-8", "replace").splitlines()))
+        lines = (
+            printable(line) for line in reversed(self._end.decode("utf-8", "replace").splitlines())
+        )
         return next((line for line in lines if line.strip()), "")
 
 

@@ -13,7 +13,6 @@ from __future__ import annotations
 import ctypes
 import gc
 import os
-import pickle
 import resource
 import select
 import shutil
@@ -26,11 +25,9 @@ from time import monotonic, sleep
 from typing import Final
 
 from fmus.isolation.burial import Death, PrintedTail, out_of_memory_kills
-from fmus.isolation.worker import Order, serve
+from fmus.isolation.protocol import BURY, FORK, MESSAGE
+from fmus.isolation.worker import Order, read_order, serve
 
-FORK: Final = b"fork"  # with the worker's end of the connection; answered by "ok"
-BURY: Final = b"bury"  # with a patience [ms]: kill the worker if it lives on; answered by its death
-_MESSAGE: Final = 4096  # [bytes] at most
 _WATCH: Final = 1000  # [ms] between looks whether the vehicle's process is still there
 _HIGH: Final = 200  # FMUs that close or write to files that are not theirs try low numbers
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
@@ -45,8 +42,8 @@ def main(control: int, parent: int, folder: str) -> None:
         parent: process id.
         folder: the vehicle's temporary folder, with the pickled order in ``order``.
     """
-    order = pickle.loads(Path(folder, "order").read_bytes())
     try:
+        order = read_order(folder)
         with socket.socket(fileno=control) as connection:
             _Guardian(connection, parent, order).run()
     finally:
@@ -89,15 +86,19 @@ class _Guardian:
     def _obey(self) -> bool:
         """Do what the vehicle asks for; False: it is gone."""
         try:
-            message, files, _flags, _sender = socket.recv_fds(self._control, _MESSAGE, 1)
-            if message == FORK:
+            message, files, _flags, _sender = socket.recv_fds(self._control, MESSAGE, 1)
+            if not message:
+                return False
+            number, what, argument = message.split(b" ")
+            answer = b""
+            if what == FORK:
                 self._fork(files[0])
-                self._control.send(b"ok")
-            elif message.startswith(BURY):
-                self._control.send(self._bury(int(message.split()[1]) / 1e3).encoded())
+            elif what == BURY:
+                answer = self._bury(int(argument) / 1e3).encoded()
+            self._control.send(b"%s %s" % (number, answer))
         except OSError:
             return False
-        return message != b""
+        return True
 
     def _fork(self, connection: int) -> None:
         self._bury()

@@ -22,6 +22,9 @@ FAILED: Final = b"fail"  # the text is the error
 REQUEST: Final = struct.Struct("<4sIdd")  # what, number, two values
 REPLY: Final = struct.Struct("<4sIIddd")  # what, number of the request, size of the text, values
 TEXT_LIMIT: Final = 1 << 16  # [bytes]
+FORK: Final = b"fork"  # to the guardian, with the worker's end of the connection
+BURY: Final = b"bury"  # with a patience [ms], then the worker is killed; answered by its death
+MESSAGE: Final = 4096  # [bytes] from and to the guardian at most
 LOST: Final = 113  # exit status of a process whose connection is gone
 
 Text = dict[str, Any]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 import weakref
 from math import isfinite
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, NoReturn, Self
+from typing import TYPE_CHECKING, Self
 
 from fmus import errors
 from fmus.errors import (
@@ -17,15 +16,14 @@ from fmus.errors import (
     FmuStartError,
     FmuStateError,
     FmuStepError,
-    FmuVariableError,
 )
-from fmus.isolation.keeper import Keeper
+from fmus.isolation.keeper import Keeper, make_keeper
 from fmus.isolation.protocol import QUIT, START, STEP, GarbledError, Line, Text
-from fmus.isolation.worker import Order
-from fmus.profile import Fmu
+from fmus.preparation import prepare, unpack
 from fmus.text import printable
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Mapping
     from types import TracebackType
 
@@ -65,22 +63,25 @@ class IsolatedVehicle:
         profile: VehicleProfile | None = None,
         start_values: Mapping[str, Value] | None = None,
     ) -> None:
-        self.path = Path(path)
+        prepared = prepare(path, step_size=step_size, profile=profile, start_values=start_values)
+        self.path = prepared.path
+        self.step_size = step_size
         self.position = self.speed = self.acceleration = self.time = 0.0
         self.warnings: list[str] = []
-        if not (isfinite(step_size) and step_size > 0.0):
-            msg = f"{self.path}: step size {step_size:g} s; expected a number above 0"
-            raise FmuVariableError(msg)
-        self.step_size = step_size
-        self._timeouts = Fmu() if profile is None else profile.fmu
+        self._start_timeout = prepared.start_timeout
+        self._step_timeout = prepared.step_timeout
         self._steps = 0
         self._line: Line | None = None
-        self._refusal = ""
         self._refuse("has not been started; call start() first")
-        self._folder = TemporaryDirectory(prefix="vehicle-fmu-", ignore_cleanup_errors=True)
-        order = Order(self.path.absolute(), step_size, profile, start_values, Path(self._folder.name))
-        self._keeper = Keeper(order)
-        self._closing = weakref.finalize(self, _close, self._keeper, self._folder)
+        temporary = TemporaryDirectory(prefix="vehicle-fmu-", ignore_cleanup_errors=True)
+        folder = Path(temporary.name)
+        self._keeper = make_keeper(prepared, folder)
+        self._closing = weakref.finalize(self, _close, self._keeper, temporary)
+        try:
+            unpack(prepared, folder / "fmu")
+        except BaseException:
+            self._closing()
+            raise
 
     def start(self, *, position: float = 0.0, speed: float = 0.0) -> None:
         """Begin (again) at time 0, in a new process.
@@ -102,7 +103,7 @@ class IsolatedVehicle:
         self._refuse("has not started; call start() again")
         self._line = Line(self._keeper.begin())
         self._steps, self.time = 0, 0.0
-        self._exchange(START, position, speed, self._timeouts.start_timeout)
+        self._exchange(START, position, speed, self._start_timeout)
         self._refusal = ""
 
     def step(self, force: float) -> None:
@@ -119,7 +120,7 @@ class IsolatedVehicle:
         if not isfinite(force):
             msg = f"{self.path}: force {force} N at {self.time:g} s; expected a finite number"
             raise FmuStepError(msg)
-        self._exchange(STEP, force, 0.0, self._timeouts.step_timeout)
+        self._exchange(STEP, force, 0.0, self._step_timeout)
         self._steps += 1
         self.time = self._steps * self.step_size
 
@@ -166,7 +167,9 @@ class IsolatedVehicle:
             raise
         self.position, self.speed, self.acceleration = x, v, a
 
-    def _crash(self, what: bytes, force: float, problem: Exception, timeout: float) -> FmuCrashError:
+    def _crash(
+        self, what: bytes, force: float, problem: Exception, timeout: float
+    ) -> FmuCrashError:
         """Bury the process; the error says when it ended, of what, and its last words."""
         lost = isinstance(problem, EOFError)
         death = self._keeper.bury(_DEATH_PATIENCE if lost else 0.0)
@@ -196,10 +199,12 @@ class IsolatedVehicle:
             if not self._failed:
                 line.ask(QUIT, 0.0, 0.0, _END_TIMEOUT)
         except TimeoutError:
-            self.warnings.append(f"{self.path}: the FMU did not end within {_END_TIMEOUT:g} s; killed")
+            self.warnings.append(
+                f"{self.path.name}: the FMU did not end within {_END_TIMEOUT:g} s; killed"
+            )
         except (EOFError, GarbledError):
             cause = self._keeper.bury(_DEATH_PATIENCE).cause
-            self.warnings.append(f"{self.path}: the FMU's process {cause} when it was ended")
+            self.warnings.append(f"{self.path.name}: the FMU's process {cause} when it was ended")
         finally:
             line.close()
             self._keeper.bury()

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import ctypes
 import os
+import pickle
 import signal
+import socket
 import sys
+import threading
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, NoReturn
+from pathlib import Path
+from time import sleep
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from fmus.errors import FmuError
 from fmus.isolation.protocol import LOST, QUIT, START, STEP, Text, receive, reply
@@ -16,11 +21,7 @@ from fmus.text import printable
 from fmus.vehicle import VehicleFmu
 
 if TYPE_CHECKING:
-    import socket
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from fmus.profile import Value, VehicleProfile
+    from fmus.preparation import Prepared
 
 
 _WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: in JSON below its limit
@@ -28,21 +29,43 @@ _WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: in JSON bel
 
 @dataclass(frozen=True)
 class Order:
-    """What the process is to run."""
+    """What the process is to run: a vehicle, and the folder that holds its unpacked FMU."""
 
-    path: Path
-    step_size: float  # [s]
-    profile: VehicleProfile | None
-    start_values: Mapping[str, Value] | None
-    folder: Path  # holds the extracted FMU
+    prepared: Prepared
+    folder: Path
 
     def vehicle(self) -> VehicleFmu:
         """The vehicle, its FMU loaded into this process."""
-        return VehicleFmu(
-            self.path,
-            step_size=self.step_size,
-            start_values=self.start_values,  # type: ignore[arg-type]
-        )
+        return VehicleFmu(self.prepared.path, step_size=self.prepared.step_size)
+
+
+def read_order(folder: str) -> Order:
+    """The order that the vehicle's process has left in its temporary folder."""
+    order = pickle.loads(Path(folder, "order").read_bytes())
+    assert isinstance(order, Order)
+    return order
+
+
+def main(port: int, token: str, folder: str) -> NoReturn:
+    """Be a worker that nobody watches over; connect back to the vehicle's process.
+
+    Args:
+        port: on this machine.
+        token: by which the vehicle knows us.
+        folder: the vehicle's temporary folder.
+    """
+    parent = os.getppid()
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            sleep(1.0)
+        os._exit(LOST)
+
+    threading.Thread(target=watch, daemon=True).start()
+    connection = socket.create_connection(("127.0.0.1", port))
+    connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    connection.sendall(token.encode())
+    serve(read_order(folder), connection)
 
 
 def serve(order: Order, connection: socket.socket) -> NoReturn:
