@@ -1,11 +1,13 @@
 """Does an FMU behave like a vehicle? Dry runs, the step-halving self-check, identification."""
 
+from fmus.checking.check import CheckReport, check
 from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, identify
 from fmus.checking.manoeuvres import Drivable, Opener, Phase, Trace, drive, replay
 from fmus.checking.self_check import Convergence, convergence, require_converged
 
 __all__ = [
+    "CheckReport",
     "Convergence",
     "Drivable",
     "Finding",
@@ -14,6 +16,7 @@ __all__ = [
     "Phase",
     "Trace",
     "Verdict",
+    "check",
     "convergence",
     "drive",
     "identify",

@@ -35,7 +35,7 @@ def mean_force(
     else:
         keep = float(np.exp(-step / lag))
         lagged = np.fromiter(
-            accumulate(force, lambda F, u: u + (F - u) * keep, initial=0.0),  # noqa: N803
+            accumulate(force, lambda F, u: u + (F - u) * keep, initial=0.0),
             np.float64,
             force.size + 1,
         )
@@ -46,7 +46,7 @@ def mean_force(
     whole = int(delay / step)
     part = delay - whole * step  # [s] of the step before that still acts
     shifted = np.zeros_like(impulse)
-    shifted[whole + 1 :] = _impulse_at(force, lagged, impulse, step, lag, step - part)[
+    shifted[whole + 1 :] = _impulse_at(force, lagged, impulse, lag, step - part)[
         : impulse.size - whole - 1
     ]
     return np.diff(shifted) / step
@@ -56,7 +56,6 @@ def _impulse_at(
     force: NDArray[np.float64],
     lagged: NDArray[np.float64] | None,
     impulse: NDArray[np.float64],
-    step: float,
     lag: float,
     into: float,
 ) -> NDArray[np.float64]:

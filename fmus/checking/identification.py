@@ -7,7 +7,6 @@ driven by an acceleration, a speed or pedals it is the whole chain from the forc
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +15,7 @@ from fmus.checking import actuator
 from fmus.checking.fitting import SETTLING, STANDSTILL, Drive, Fit, fit, prepare
 from fmus.checking.manoeuvres import Phase, Trace, drive
 from fmus.checking.prediction import position_errors, speed_errors
+from fmus.checking.saturation import force_limits
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
 from fmus.profile import FittedModel
 
@@ -29,7 +29,6 @@ LEVELS = (0.1, 0.25, 0.5, 1.0)  # of the largest force of the tests
 SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] at the start of the tests
 HARDEST = 8.0  # [m/s2] no test drives or brakes harder
 LEAD_IN, STEP, PAUSE = SETTLING + 1.0, 1.5, 1.0  # [s]
-SATURATED = 0.85  # less of the force than this share arrives: the actuator is at its limit
 POOR_FIT = 0.9  # of R squared, below which a remark says so
 NO_FIT = 0.3  # of R squared, below which there is no model
 VALIDATION = (  # of the largest force, each held for HELD; no level of the tests
@@ -103,7 +102,7 @@ def identify(
             phases = _test(level * largest, speed, top=1.25 * max(speeds) + 1.0)
             tests[number].append(begin.drive(phases, speed))
             tell(1 + sum(map(len, tests)), total)
-    limits, saturation = _limits(tests)
+    limits = force_limits(tests)
     traces = tuple(trace for group in tests for trace in group)
     found = fit([prepare(trace, limits) for trace in traces])
     validation = begin.drive(
@@ -128,7 +127,7 @@ def identify(
         fit=found,
         tests=traces,
         validation=validation,
-        remarks=(*saturation, *_remarks(found, model, traces, limits)),
+        remarks=(*_saturation(limits), *_remarks(found, model, traces, limits)),
     )
 
 
@@ -209,50 +208,6 @@ def _validation(force: float, fastest: float) -> list[Phase]:
     return [Phase(0.0, LEAD_IN), *changes, Phase(-0.5 * force, 5.0, above=STANDSTILL)]
 
 
-def _limits(tests: Sequence[Sequence[Trace]]) -> tuple[tuple[float, float], list[str]]:
-    """Largest drive and brake force that arrive [N], and a remark on each that was found.
-
-    Level by level: what the weaker ones say about M and alpha predicts the next.
-    """
-    limits = [np.inf, np.inf]
-    remarks = []
-    for weaker, group in zip(range(1, len(tests)), tests[1:], strict=True):
-        known = [prepare(trace, (limits[0], limits[1])) for g in tests[:weaker] for trace in g]
-        model = fit(known)
-        if model is None:
-            continue
-        for side, sign in ((0, 1.0), (1, -1.0)):
-            found = [
-                arrived
-                for trace in group
-                for commanded, arrived in _arrived(trace, sign, model)
-                if arrived < SATURATED * commanded
-            ]
-            if found and not np.isfinite(limits[side]):
-                limits[side] = max(min(found), 0.0)
-                name = "drive" if sign > 0 else "brake"
-                remarks.append(
-                    f"no more than {limits[side]:.0f} N of {name} force arrive: run with "
-                    f"--force-limit {limits[side]:.0f} or less"
-                )
-    return (limits[0], limits[1]), remarks
-
-
-def _arrived(trace: Trace, sign: float, model: Fit) -> list[tuple[float, float]]:
-    """Force that should act and that does [N], of the later half of each phase of one sign."""
-    h = trace.step_size
-    edges = np.flatnonzero(np.diff(trace.force)) + 1
-    should = actuator.mean_force(trace.force, h, model.lag, model.delay)
-    does = model.mass * np.diff(trace.speed) / h + model.friction * trace.speed[:-1]
-    pairs = []
-    for begin, end in pairwise([0, *edges.tolist(), trace.force.size]):
-        half = slice((begin + end + 1) // 2, end)
-        moving = (trace.speed[half] > STANDSTILL).all() and trace.speed[end] > STANDSTILL
-        if (end - begin) * h >= 0.3 and sign * trace.force[begin] > 0.0 and moving:
-            pairs.append((sign * float(should[half].mean()), sign * float(does[half].mean())))
-    return pairs
-
-
 def _rated(
     found: Fit, validation: Trace, limits: tuple[float, float], step_size: float, horizon: int
 ) -> FittedModel:
@@ -278,6 +233,15 @@ def _r_squared(found: Fit, drives: Sequence[Drive]) -> float:
     fitted = np.concatenate([found.acceleration(drive)[drive.used] for drive in drives])
     spread = float(((measured - measured.mean()) ** 2).sum()) if measured.size else 0.0
     return 1.0 - float(((measured - fitted) ** 2).sum()) / spread if spread > 0.0 else 0.0
+
+
+def _saturation(limits: tuple[float, float]) -> list[str]:
+    return [
+        f"no more than {limit:.0f} N of {name} force arrive: run with --force-limit {limit:.0f} or "
+        "less"
+        for name, limit in zip(("drive", "brake"), limits, strict=True)
+        if np.isfinite(limit)
+    ]
 
 
 def _remarks(

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, field
 from time import perf_counter
 from typing import TYPE_CHECKING, Protocol
 
@@ -12,6 +11,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -83,17 +83,17 @@ class Trace:
     """
 
     step_size: float
-    force: NDArray[np.float64]
-    position: NDArray[np.float64]
-    speed: NDArray[np.float64]
-    acceleration: NDArray[np.float64]
-    cost: NDArray[np.float64]
+    force: NDArray[np.float64] = field(repr=False)
+    position: NDArray[np.float64] = field(repr=False)
+    speed: NDArray[np.float64] = field(repr=False)
+    acceleration: NDArray[np.float64] = field(repr=False)
+    cost: NDArray[np.float64] = field(repr=False)
     warnings: tuple[str, ...]
 
     @property
     def time(self) -> NDArray[np.float64]:
         """(n + 1,) [s]."""
-        return np.arange(self.speed.size) * self.step_size
+        return np.asarray(np.arange(self.speed.size) * self.step_size, np.float64)
 
     def same_motion(self, other: Trace) -> bool:
         """Whether every bit of position, speed and acceleration is the other's."""

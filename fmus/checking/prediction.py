@@ -27,10 +27,13 @@ def position_errors(
 ) -> NDArray[np.float64]:
     """(m,) [m] ``horizon`` steps ahead, from every instant; predicted speeds stop at 0.
 
-    Forward Euler, as the MPC predicts (Yang & Özgüner 2019, eqs. (2) and (3)).
+    Forward Euler, as the MPC predicts (Yang & Özgüner 2019, eqs. (2) and (3)). What follows after
+    a vehicle rolls backwards is left out: the MPC never wants that.
     """
-    h, force = trace.step_size, trace.force
-    starts = force.size - horizon + 1
+    backwards = np.flatnonzero(trace.speed < -STANDSTILL)
+    end = int(backwards[0]) if backwards.size else trace.force.size
+    h, force = trace.step_size, trace.force[:end]
+    starts = max(force.size - horizon + 1, 0)
     position, speed = trace.position[:starts].copy(), trace.speed[:starts].copy()
     for k in range(horizon):
         position += h * speed

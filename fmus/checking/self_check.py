@@ -171,10 +171,10 @@ class _Rungs:
         here, there = self.run(coarse), self.run(fine)
         name = f"its steps of {milliseconds(self._step / coarse)} do not converge"
         if isinstance(here, FmuError):
-            return f"{name} ({_reason(here)})"
+            return f"{name} ({plain(here)})"
         other = milliseconds(self._step / fine)
         if isinstance(there, FmuError):
-            return f"{name}: with {other} it fails ({_reason(there)})"
+            return f"{name}: with {other} it fails ({plain(there)})"
         for one, two in zip(here, there, strict=True):
             found = compare(one, two)
             if found:
@@ -241,7 +241,7 @@ def milliseconds(step: float) -> str:
     return f"{1000.0 * step:.4g} ms"
 
 
-def _reason(error: FmuError) -> str:
+def plain(error: FmuError) -> str:
     """An error without the path that the whole message begins with."""
     text = str(error)
     head, separator, rest = text.partition(": ")

@@ -1,0 +1,199 @@
+"""The dry run of a vehicle FMU: a handful of drives, and what each of them shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from fmus.checking import observations as observe
+from fmus.checking.findings import Finding
+from fmus.checking.manoeuvres import Phase, drive
+from fmus.checking.observations import Expected
+from fmus.checking.prediction import simulate
+from fmus.checking.self_check import convergence, milliseconds, plain, remedy
+from fmus.errors import FmuCrashError, FmuError, FmuOutputError, FmuStepError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from fmus.checking.manoeuvres import Opener, Trace
+    from fmus.checking.self_check import Convergence
+    from fmus.profile import VehicleProfile
+
+GENTLE = 3.0  # [m/s2] of the manoeuvres, by the controller's model
+FASTEST_START = 4.0  # [m/s] of the rolling start where the run's own is 0
+DRIVE, COAST, BRAKE = 3.0, 3.0, 5.0  # [s]
+
+_DRIVES = ("idle", "response", "again", "rolling", "full")
+_NAMES = {  # of the finding of a drive that failed
+    "idle": "starts",
+    "response": "drives",
+    "again": "reproducible",
+    "rolling": "start speed",
+    "full": "force limits",
+}
+
+
+@dataclass
+class CheckReport:
+    """What a check found.
+
+    Attributes:
+        findings: in the order of the tests.
+        traces: by the name of the drive, as far as they ran.
+        expected: what was checked against.
+        convergence: of the step-halving test; None: it was not reached.
+    """
+
+    expected: Expected
+    findings: list[Finding] = field(default_factory=list)
+    traces: dict[str, Trace] = field(default_factory=dict)
+    convergence: Convergence | None = None
+
+    @property
+    def passed(self) -> bool:
+        """Whether no test failed."""
+        return all(finding.verdict != "fail" for finding in self.findings)
+
+    def expected_response(self) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+        """(n + 1,) position [m] and speed [m/s] of the controller's model in the response."""
+        trace = self.traces.get("response")
+        if trace is None:
+            return None
+        model = self.expected
+        position, speed = simulate(
+            trace.force, trace.step_size, model.mass, model.friction, float(trace.speed[0])
+        )
+        return position + trace.position[0], speed
+
+
+def check(
+    opener: Opener,
+    *,
+    step_size: float,
+    fmu_step: float | None = None,
+    profile: VehicleProfile | None = None,
+    mass: float = 1000.0,
+    friction: float = 100.0,
+    horizon: int = 15,
+    force_limit: float = 8000.0,
+    start_speed: float = FASTEST_START,
+    progress: Callable[[str], None] | None = None,
+) -> CheckReport:
+    """Dry-run a vehicle; nothing that the FMU does raises.
+
+    Args:
+        opener: makes the vehicle.
+        step_size: of the run [s].
+        fmu_step: of the FMU itself [s]; None: ``step_size``.
+        profile: of the vehicle, for what to change in it.
+        mass: M of the controller's model [kg].
+        friction: alpha of it [N.s/m].
+        horizon: of the MPC [steps].
+        force_limit: u_max [N].
+        start_speed: of the rolling start [m/s].
+        progress: told the name of each drive before it begins.
+    """
+    if profile is not None and profile.model is not None:
+        mass, friction = profile.model.mass, profile.model.friction
+    force = min(force_limit, GENTLE * mass)
+    expected = Expected(mass, friction, horizon, start_speed, force, force_limit, profile)
+    report = CheckReport(expected)
+    tell = progress or (lambda _name: None)
+    go_on = _drive_all(report, opener, tell)
+    _observe(report)
+    if go_on:
+        tell("step halving")
+        _halve(report, opener, fmu_step or step_size)
+    traces = report.traces
+    if "response" in traces:
+        report.findings.append(observe.pace(traces["response"]))
+    if traces:
+        report.findings.append(observe.warnings(traces))
+    return report
+
+
+def _drive_all(report: CheckReport, opener: Opener, tell: Callable[[str], None]) -> bool:
+    """Drive what can be driven; False: no use in going on."""
+    for name in _DRIVES:
+        tell(name)
+        speed = report.expected.start_speed if name == "rolling" else 0.0
+        try:
+            report.traces[name] = drive(opener, _phases(name, report.expected), speed=speed)
+        except FmuError as error:
+            report.findings.append(Finding(_NAMES[name], "fail", plain(error)))
+            # Steps that are too coarse show as an output or a step that fails: halving tells.
+            may_diverge = isinstance(error, FmuOutputError | FmuStepError)
+            if name != "rolling" or isinstance(error, FmuCrashError):
+                return may_diverge and not isinstance(error, FmuCrashError)
+        else:
+            if name == "idle":
+                report.findings.append(Finding("starts", "pass", "at rest, at time 0"))
+    return True
+
+
+def _phases(name: str, expected: Expected) -> list[Phase]:
+    force = expected.force
+    return {
+        "idle": [Phase(0.0, 2.0)],
+        "response": [Phase(force, DRIVE), Phase(0.0, COAST), Phase(-force, BRAKE)],
+        "again": [Phase(force, DRIVE), Phase(0.0, COAST), Phase(-force, BRAKE)],
+        "rolling": [Phase(0.0, 2.0), Phase(-force, BRAKE)],
+        "full": [Phase(expected.largest_force, 2.0, below=30.0)],
+    }[name]
+
+
+def _halve(report: CheckReport, opener: Opener, fmu_step: float) -> None:
+    expected, name = report.expected, "step halving"
+    try:
+        result = convergence(
+            opener, fmu_step, force=expected.force, start_speed=_rolling_speed(report)
+        )
+    except FmuError as error:
+        report.findings.append(Finding(name, "fail", plain(error)))
+        return
+    report.convergence = result
+    if result.problem:
+        found = Finding(name, "fail", result.problem, remedy(result))
+    elif result.finer is None:
+        found = Finding(name, "skip", f"the FMU does steps of {milliseconds(result.step)} only")
+    else:
+        pair = f"{milliseconds(result.step)} and {milliseconds(result.finer)}"
+        found = Finding(name, "pass", f"steps of {pair} give the same drive")
+    report.findings.append(found)
+
+
+def _rolling_speed(report: CheckReport) -> float:
+    return report.expected.start_speed if "rolling" in report.traces else 0.0
+
+
+def _observe(report: CheckReport) -> None:
+    """Every test whose drives there are."""
+    traces, expected, add = report.traces, report.expected, report.findings.append
+    idle, response = traces.get("idle"), traces.get("response")
+    rolling, full = traces.get("rolling"), traces.get("full")
+    if idle is not None:
+        add(observe.idles(idle))
+    if rolling is not None:
+        add(observe.start_speed(rolling, expected))
+    if response is None:
+        return
+    if "again" in traces:
+        add(observe.reproducible(response, traces["again"]))
+    moves = observe.drives(response, expected)
+    add(moves)
+    if moves.verdict == "fail":
+        return
+    add(observe.coasts(response, expected))
+    if rolling is not None:
+        add(observe.brakes(rolling, expected))
+    add(observe.position_follows_speed(response, expected))
+    add(observe.acceleration_follows_speed(response, expected))
+    model = observe.quick_fit([t for t in (response, rolling) if t is not None])
+    add(observe.matches_model(model, response, expected))
+    add(observe.actuator_lag(model, response.step_size))
+    if full is not None and rolling is not None:
+        add(observe.actuator_limits(model, full, rolling, expected))
