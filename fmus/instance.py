@@ -1,24 +1,32 @@
-"""One running FMU, whatever its FMI version: its folder, its messages, its life."""
+"""One running FMU, whatever its FMI version and kind: its life, its messages, its channels."""
 
-import tempfile
-import zipfile
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import ExitStack, suppress
-from ctypes import c_double
-from pathlib import Path
-from typing import Any, Final
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final
 
-from fmus.errors import FmuFileError, FmuStartError
-from fmus.model import Model, Variable
+from fmus.text import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from fmus.model import Channel, Interface, Model
+    from fmus.profile import Value
 
 WARNING: Final = 1  # the last FMI status with which a call has done what it should
 DISCARD: Final = 2
-STATUS_NAMES: Final = ("OK", "warning", "discard", "error", "fatal", "pending")
+ERROR: Final = 3
+FATAL: Final = 4
+PENDING: Final = 5
+ENDED: Final = 6  # not FMI's: the FMU asked to end the simulation
+STATUS_NAMES: Final = (
+    "OK", "warning", "discard", "error", "fatal", "pending", "end of the simulation",
+)  # fmt: skip
 
 Tick = Callable[[float, float], int]
-"""One step: (force [N], start of the step [s]) -> FMI status."""
+"""One step: (start of the step [s], step [s]) -> status."""
 
 
 class Journal:
@@ -27,10 +35,13 @@ class Journal:
     def __init__(self) -> None:
         self._messages: deque[str] = deque(maxlen=3)
 
-    def add(self, status: int, message: bytes | None) -> None:
-        """Keep a message, on one line."""
-        if status and message:
-            self._messages.append(" ".join(message.decode("utf-8", "replace").split()))
+    def add(self, status: int, message: bytes | str | None) -> None:
+        """Keep a message, on one line; one that was the last already is not repeated."""
+        if not status or not message:
+            return
+        text = printable(_decoded(message) if isinstance(message, bytes) else message)
+        if text and text not in self._messages:
+            self._messages.append(text)
 
     def take(self) -> str:
         """Everything since the last time."""
@@ -40,121 +51,73 @@ class Journal:
 
 
 class Instance(ABC):
-    """An FMU's library, loaded from a temporary folder of its own, and one instance of its model.
+    """An FMU's library, loaded, and one instance of its model.
 
-    A subclass knows the calls of one FMI version.
+    Whole numbers, booleans and elements of arrays are doubles in the buffers, too.
 
-    Raises:
-        FmuFileError: the archive is damaged.
-        FmuPlatformError: the binary cannot be loaded.
+    Attributes:
+        inputs: one double per input channel; the next :attr:`tick` hands them to the FMU.
+        outputs: one double per output channel, as of the last tick.
+        tick: does one step and fills :attr:`outputs`.
+        journal: the FMU's last messages, and what was found wrong with it.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, interface: Interface) -> None:
         self.model = model
+        self.interface = interface
         self.journal = Journal()
-        self.buffer = (c_double * 3)()  # filled by every tick
-        self.outputs: Sequence[float] = memoryview(self.buffer).cast("B").cast("d")  # quick to read
-        with ExitStack() as stack:  # what has been set up is undone if the rest fails
-            folder = stack.enter_context(
-                tempfile.TemporaryDirectory(prefix="vehicle-fmu-", ignore_cleanup_errors=True)
-            )
-            _extract(model, folder)
-            stack.callback(self.load(Path(folder)))
-            stack.callback(self.stop)
-            self._resources = stack.pop_all()
+        self.inputs = self.outputs = memoryview(bytearray()).cast("d")
+        self.tick: Tick = _not_started
 
-    def start(self, values: Mapping[Variable, float | bool]) -> None:
-        """Make a new instance with these start values and initialise it at time 0.
+    @abstractmethod
+    def start(
+        self,
+        values: Mapping[Channel, Value],
+        inputs: Sequence[Channel],
+        outputs: Sequence[Channel],
+    ) -> None:
+        """Make a new instance with these start values, initialise it at time 0, read its outputs.
 
         Raises:
-            FmuStartError: the FMU refuses.
+            FmuStartError: the FMU refuses, or a value does not fit its variable.
         """
-        self.stop()
-        try:
-            self.instantiate()
-            for variable, value in values.items():
-                if variable.is_real:
-                    self.set_real(variable.reference, float(value))
-                else:
-                    self.set_boolean(variable.reference, bool(value))
-            self.initialise()
-        except Exception as error:
-            reason = self.journal.take() or str(error)
-            self.stop()
-            msg = f"{self.model.path}: the FMU does not start: {reason}; check its start values"
-            raise FmuStartError(msg) from error
-
-    def stop(self) -> None:
-        """End and free the instance, if there is one; the library stays loaded."""
-        with suppress(Exception):  # nothing is lost if an FMU cannot end in peace
-            self.terminate()
-        self.free_instance()
-
-    def close(self) -> None:
-        """Free the instance, the library and the temporary folder."""
-        self._resources.close()
-
-    @abstractmethod
-    def load(self, folder: Path) -> Callable[[], None]:
-        """Load the library from the extracted FMU; returns what unloads it."""
-
-    @abstractmethod
-    def instantiate(self) -> None:
-        """Make an instance; its messages go to the journal."""
-
-    @abstractmethod
-    def set_real(self, reference: int, value: float) -> None:
-        """Set a start value."""
-
-    @abstractmethod
-    def set_boolean(self, reference: int, value: bool) -> None:
-        """Set a start value."""
-
-    @abstractmethod
-    def initialise(self) -> None:
-        """Bring the instance to time 0, ready to step."""
-
-    @abstractmethod
-    def link(self, force: int, outputs: Sequence[int], step_size: float) -> Tick:
-        """Read :attr:`outputs`, and return what sets the force, does a step and reads them.
-
-        Args:
-            force: value reference of the input.
-            outputs: value references, in the order of :attr:`outputs`.
-            step_size: [s].
-
-        Raises:
-            FmuStartError: the outputs cannot be read.
-        """
-
-    @abstractmethod
-    def terminate(self) -> None:
-        """End the simulation."""
-
-    @abstractmethod
-    def free_instance(self) -> None:
-        """Free the instance, if there is one."""
 
     @abstractmethod
     def save(self) -> Any:
-        """The FMU's state: an opaque handle, to be freed."""
+        """The FMU's state: an opaque handle, to be freed.
+
+        Raises:
+            FmuStateError: the FMU refuses.
+        """
 
     @abstractmethod
     def restore(self, state: Any) -> None:
-        """Go back to a saved state."""
+        """Go back to a saved state and read the outputs; also after a step that failed.
+
+        Raises:
+            FmuStateError: the FMU refuses.
+        """
 
     @abstractmethod
     def free_state(self, state: Any) -> None:
         """Free a saved state."""
 
+    @abstractmethod
+    def stop(self) -> None:
+        """End and free the instance, if there is one; the library stays loaded."""
 
-def _extract(model: Model, folder: str) -> None:
-    """Unpack what this platform needs."""
+    @abstractmethod
+    def close(self) -> None:
+        """Free the instance and the library."""
+
+
+def _not_started(_start: float, _step: float) -> int:
+    return ERROR
+
+
+def _decoded(message: bytes) -> str:
+    """Old tools write Latin-1 where the standard says UTF-8."""
     try:
-        with zipfile.ZipFile(model.path) as archive:
-            wanted = (f"{model.folder}/", "resources/")
-            archive.extractall(folder, [m for m in archive.namelist() if m.startswith(wanted)])
-    except (zipfile.BadZipFile, EOFError, OSError) as error:
-        msg = f"{model.path}: cannot be unpacked: {error}; copy or export the FMU again"
-        raise FmuFileError(msg) from error
-    Path(folder, "resources").mkdir(exist_ok=True)  # named to the FMU even where it has none
+        return message.decode("utf-8")
+    except UnicodeDecodeError:
+        return message.decode("latin-1")

@@ -1,5 +1,87 @@
-"""Reading, loading and calling FMUs: the only package that talks to FMPy."""
+"""Reading, loading and calling FMUs: the only package that talks to FMPy.
 
-from fmus.fmi._interim import describe, load, read_model
+Instances call the FMU's C functions themselves, without FMPy's wrappers: a step costs what it
+costs in C, and a function that an FMU lacks is missed only where it is needed.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fmus.binaries import this_platform
+from fmus.errors import FmuInterfaceError, FmuPlatformError
+from fmus.fmi._interim import describe, read_model
+from fmus.fmi.co_simulation import CoSimulation
+from fmus.fmi.fmi2 import Fmi2Calls
+from fmus.fmi.fmi3 import Fmi3Calls
+from fmus.fmi.library import Library
+from fmus.instance import Journal
+from fmus.model import Kind
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from typing import Literal
+
+    from fmus.instance import Instance
+    from fmus.model import Interface, Model
 
 __all__ = ["describe", "load", "read_model"]
+
+_CALLS = {"2.0": Fmi2Calls, "3.0": Fmi3Calls}
+
+
+def load(
+    model: Model,
+    interface: Interface | None = None,
+    folder: Path | None = None,
+    *,
+    solver: Literal["cvode", "rk4"] | None = None,
+    tolerance: float | None = None,
+    rewinds: bool = True,
+) -> Instance:
+    """Load an FMU's library, ready to be started.
+
+    Args:
+        model: as read.
+        interface: the one of its interfaces that is to run.
+        folder: with the extracted FMU; the caller removes it after :meth:`Instance.close`.
+        solver: of Model Exchange; None: CVode where it runs.
+        tolerance: relative: of Model Exchange's solver, or told to a Co-Simulation FMU.
+        rewinds: before each step keep the state, so that a discarded step can be done again in
+            smaller ones; only with Co-Simulation FMUs that can save their state.
+
+    Raises:
+        FmuInterfaceError: this version and kind cannot be run.
+        FmuPlatformError: the binary cannot be loaded, or lacks a function that it must have.
+    """
+    if interface is None or folder is None:  # until fmus/vehicle.py is on the new instances
+        from fmus.fmi import _interim
+
+        return _interim.load(model)  # type: ignore[arg-type, return-value]
+    if model.fmi_version not in _CALLS:
+        msg = f"{model.path}: FMI {model.fmi_version}; expected 1.0, 2.0 or 3.0; export it again"
+        raise FmuInterfaceError(msg)
+    (folder / "resources").mkdir(exist_ok=True)  # named to the FMU even where it has none
+    library = Library(_binary(model, interface, folder), model.path)
+    try:
+        calls = _CALLS[model.fmi_version](library, model, interface, folder, Journal())
+        if interface.kind == Kind.MODEL_EXCHANGE:
+            from fmus.fmi.model_exchange import ModelExchange  # its numpy is not always needed
+
+            return ModelExchange(calls, tolerance, solver)
+        return CoSimulation(calls, tolerance, rewinds=rewinds)
+    except BaseException:
+        library.close()
+        raise
+
+
+def _binary(model: Model, interface: Interface, folder: Path) -> Path:
+    here = this_platform()
+    file = f"{interface.identifier}{here.suffix}"
+    names = here.folders(model.fmi_version)
+    for name in names:
+        path = folder / "binaries" / name / file
+        if path.is_file():
+            return path
+    msg = f"{model.path}: no binaries/{names[0]}/{file}; export the FMU for {here}"
+    raise FmuPlatformError(msg)

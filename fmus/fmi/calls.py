@@ -1,0 +1,242 @@
+"""The C functions of one FMI version, under names that all versions share."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+from abc import ABC, abstractmethod
+from ctypes import c_size_t, c_uint32, c_void_p
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from fmus.instance import STATUS_NAMES, WARNING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from fmus.fmi.library import Function, Library
+    from fmus.instance import Journal
+    from fmus.model import Interface, Model
+
+
+class CallFailedError(Exception):
+    """A function of the FMU did not do what it should."""
+
+    def __init__(self, function: str, status: int) -> None:
+        super().__init__(f"{function} returned {named(status)}")
+        self.status = status
+
+
+@dataclass(frozen=True)
+class CType:
+    """How values of an FMI type travel: the C type, and the end of its functions' names."""
+
+    type: type[Any]
+    suffix: str
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What an FMU says after a step that it did not simply do."""
+
+    reached: float | None  # [s]; None: it does not say
+    ended: bool  # it wants the simulation to end
+
+
+@dataclass
+class EventInfo:
+    """What an FMU says after an update of its discrete states."""
+
+    again: bool = False
+    ended: bool = False
+    nominals_changed: bool = False
+    next_time: float | None = None  # [s] of its next time event
+
+
+class Calls(ABC):
+    """An FMU's functions.
+
+    Args:
+        library: loaded.
+        model: the FMU.
+        interface: that is to run.
+        folder: with the extracted FMU.
+        journal: receives the FMU's messages.
+
+    Raises:
+        FmuPlatformError: a function is missing that the FMU must have.
+    """
+
+    types: ClassVar[Mapping[str, CType]]
+
+    def __init__(
+        self, library: Library, model: Model, interface: Interface, folder: Path, journal: Journal
+    ) -> None:
+        self.library = library
+        self.model = model
+        self.interface = interface
+        self.folder = folder
+        self.journal = journal
+        self.component: c_void_p | None = None
+        self._functions: dict[str, Function] = {}
+
+    # ---- life ----
+
+    @abstractmethod
+    def instantiate(self) -> None:
+        """Make an instance.
+
+        Raises:
+            CallFailedError: the FMU refuses.
+        """
+
+    @abstractmethod
+    def configure(self, setting: Sequence[Setting]) -> None:
+        """Set the start values that come before the initialisation."""
+
+    @abstractmethod
+    def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:
+        """Bring the instance to time 0; the inputs' start values are set on the way."""
+
+    @abstractmethod
+    def terminate(self) -> None:
+        """End the simulation."""
+
+    @abstractmethod
+    def free(self) -> None:
+        """Free the instance."""
+
+    # ---- values ----
+
+    @abstractmethod
+    def name(self, verb: str, suffix: str = "") -> str:
+        """A function's name, e.g. of ``Set`` and ``Real``."""
+
+    def arguments(self, references: Sequence[int], values: Any) -> tuple[Any, ...]:
+        """What a set or get function takes, ready to be passed any number of times."""
+        count = len(references)
+        return self.component, (c_uint32 * count)(*references), c_size_t(count), values
+
+    def apply(self, setting: Setting) -> None:
+        """Set a value.
+
+        Raises:
+            CallFailedError: the FMU refuses.
+        """
+        name = self.name("Set", setting.type.suffix)
+        self.call(name, *self.arguments([setting.reference], setting.values)[1:])
+
+    # ---- Co-Simulation ----
+
+    @abstractmethod
+    def stepper(self, start: ctypes.c_double, step: ctypes.c_double) -> Stepper:
+        """What does a step, with its arguments."""
+
+    # ---- Model Exchange ----
+
+    @abstractmethod
+    def enter_event_mode(self) -> None:
+        """From continuous-time mode."""
+
+    @abstractmethod
+    def update_discrete_states(self) -> EventInfo:
+        """One round of the event iteration."""
+
+    @abstractmethod
+    def enter_continuous_time_mode(self) -> None:
+        """From event mode."""
+
+    @abstractmethod
+    def completed_step(self) -> tuple[bool, bool]:
+        """After an integrator's step: whether it wants event mode, whether it wants to end."""
+
+    @abstractmethod
+    def exchange_names(self) -> Mapping[str, str]:
+        """The names of the functions that Model Exchange calls often, by what they do."""
+
+    # ---- state ----
+
+    @abstractmethod
+    def state_names(self) -> tuple[str, str, str]:
+        """The functions that get, set and free a state."""
+
+    def save(self, state: c_void_p | None = None) -> c_void_p:
+        """The FMU's state, in a new handle or over the one given."""
+        state = c_void_p() if state is None else state
+        self.call(self.state_names()[0], ctypes.byref(state))
+        return state
+
+    def restore(self, state: c_void_p) -> None:
+        """Go back to a saved state."""
+        self.call(self.state_names()[1], state)
+
+    def free_state(self, state: c_void_p) -> None:
+        """Free a saved state."""
+        self.call(self.state_names()[2], ctypes.byref(state))
+
+    # ---- calling ----
+
+    def function(self, name: str) -> Function:
+        """A function, looked up once.
+
+        Raises:
+            FmuPlatformError: the FMU has none.
+        """
+        found = self._functions.get(name)
+        if found is None:
+            found = self._functions[name] = self.library.function(name)
+        return found
+
+    def call(self, name: str, *arguments: Any) -> None:
+        """Call a function of the instance.
+
+        Raises:
+            CallFailedError: it did not do what it should.
+        """
+        status = self.function(name)(self.component, *arguments)
+        if status not in (0, WARNING):
+            raise CallFailedError(name, status)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A variable's start value, ready for C."""
+
+    name: str
+    reference: int
+    type: CType
+    values: Any  # ctypes array
+
+
+@dataclass(frozen=True)
+class Stepper:
+    """A step of Co-Simulation.
+
+    ``flags`` is anything but 0 after a step that FMI 3 calls done but that ended early.
+    """
+
+    do_step: Function
+    arguments: tuple[Any, ...]
+    flags: Any  # indexable
+    progress: Any  # () -> Progress
+    repeat: Any  # (bool) -> None: FMI 1 wants to know that a step is done again
+
+
+def named(status: int) -> str:
+    """A status in words."""
+    return f"'{STATUS_NAMES[status]}'" if 0 <= status < len(STATUS_NAMES) else f"status {status}"
+
+
+if sys.platform == "win32":
+    _c_library = ctypes.cdll.msvcrt
+else:
+    _c_library = ctypes.CDLL(None)
+
+
+def allocators() -> tuple[c_void_p, c_void_p]:
+    """C's own calloc and free, for FMUs that take the host's."""
+    return (
+        ctypes.cast(_c_library.calloc, c_void_p),
+        ctypes.cast(_c_library.free, c_void_p),
+    )

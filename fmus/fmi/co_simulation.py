@@ -1,0 +1,126 @@
+"""Co-Simulation: the FMU brings its own solver and is asked to step.
+
+An FMU may discard a step: it then says how far it came. The rest is done from there; failing that,
+the state before the step comes back and the step is done in halves, quarters, ...
+"""
+
+from __future__ import annotations
+
+from ctypes import c_double
+from typing import TYPE_CHECKING
+
+from fmus.fmi.calls import CallFailedError
+from fmus.fmi.running import RunningInstance
+from fmus.instance import DISCARD, ENDED, WARNING
+
+if TYPE_CHECKING:
+    from ctypes import c_void_p
+
+    from fmus.fmi.calls import Calls, Stepper
+    from fmus.fmi.values import Transfer
+    from fmus.instance import Tick
+
+HALVINGS = 6  # of a step that an FMU discards
+CONTINUATIONS = 100  # of a step from where the FMU came to
+NEGLIGIBLE = 1e-9  # share of a step that is taken for nothing
+
+
+class CoSimulation(RunningInstance):
+    """An FMU that steps by itself.
+
+    Args:
+        calls: the FMU's functions.
+        tolerance: relative, told to the FMU; None: its own.
+        rewinds: save the state before every step, to be able to do it again in smaller ones.
+    """
+
+    def __init__(self, calls: Calls, tolerance: float | None, *, rewinds: bool) -> None:
+        super().__init__(calls, tolerance)
+        self._rewinds = rewinds and calls.interface.saves_state
+        self._start, self._step = c_double(), c_double()
+        for name in ("DoStep",):
+            calls.function(calls.name(name))
+
+    def make_tick(self, into: Transfer, out: Transfer) -> Tick:  # noqa: D102 - as in the base
+        set_inputs, set_arguments = into.function, into.arguments
+        get_outputs, get_arguments = out.function, out.arguments
+        start, step = self._start, self._step
+        self._stepper = stepper = self.calls.stepper(start, step)
+        do_step, arguments, flags = stepper.do_step, stepper.arguments, stepper.flags
+        look, complete = self.look, self._complete
+        self._before: c_void_p | None = None
+        save = self._save if self._rewinds else None
+
+        def tick(time: float, size: float) -> int:
+            status = set_inputs(*set_arguments)
+            if status and (status := look(status)) > WARNING:
+                return status
+            if save:
+                save()
+            start.value = time
+            step.value = size
+            status = do_step(*arguments)
+            if (status or flags[0]) and (status := complete(status, time, size)) > WARNING:
+                return status
+            status = get_outputs(*get_arguments)
+            return look(status) if status else 0
+
+        return tick
+
+    def _save(self) -> None:
+        """The state before a step, over the last one's."""
+        if self._rewinds:
+            try:
+                self._before = self.calls.save(self._before)
+            except CallFailedError:  # it can do less than it says
+                self._rewinds = False
+                self._before = None
+
+    def _complete(self, status: int, time: float, size: float) -> int:
+        """Finish a step that the FMU did not simply do."""
+        status = self._continue(self.look(status), time, time + size, size)
+        for halving in range(1, HALVINGS + 1):
+            if status != DISCARD or self._before is None:
+                break
+            try:
+                self.calls.restore(self._before)
+            except CallFailedError as error:
+                return self.look(error.status)
+            parts = 1 << halving
+            for part in range(parts):
+                begin, end = time + size * part / parts, time + size * (part + 1) / parts
+                status = self._do(begin, end)
+                status = self._continue(status, begin, end, size)
+                if status > WARNING:
+                    break
+        if status == DISCARD:
+            self._worst = DISCARD
+        return status
+
+    def _continue(self, status: int, time: float, end: float, size: float) -> int:
+        """Go on from where the FMU came to, after a step that it was asked to do up to ``end``."""
+        for _ in range(CONTINUATIONS):
+            if status > DISCARD or not (status == DISCARD or self._stepper.flags[0]):
+                return status
+            progress = self._stepper.progress()
+            if progress.ended:
+                return ENDED
+            reached = progress.reached
+            if reached is None or not time + NEGLIGIBLE * size < reached:
+                return DISCARD
+            if reached >= end - NEGLIGIBLE * size:
+                return WARNING
+            time = reached
+            status = self._do(time, end)
+        return DISCARD
+
+    def _do(self, begin: float, end: float) -> int:
+        self._start.value = begin
+        self._step.value = end - begin
+        return self.look(self._stepper.do_step(*self._stepper.arguments))
+
+    def stop(self) -> None:  # noqa: D102
+        if getattr(self, "_before", None) is not None:
+            self.free_state(self._before)
+            self._before = None
+        super().stop()

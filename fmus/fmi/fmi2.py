@@ -1,0 +1,181 @@
+"""FMI 2.0."""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import Structure, byref, c_char_p, c_double, c_int, c_void_p
+from typing import TYPE_CHECKING, ClassVar
+
+from fmus.fmi.calls import (
+    CallFailedError,
+    Calls,
+    CType,
+    EventInfo,
+    Progress,
+    Setting,
+    Stepper,
+    allocators,
+)
+from fmus.fmi.messages import formatted_receiver
+from fmus.instance import DISCARD, ERROR, WARNING
+from fmus.model import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from fmus.fmi.library import Library
+    from fmus.instance import Journal
+    from fmus.model import Interface, Model
+
+_LAST_SUCCESSFUL_TIME = c_int(2)  # fmi2StatusKind
+_TERMINATED = c_int(3)
+
+
+class _Callbacks(Structure):
+    _fields_: ClassVar = [
+        ("logger", c_void_p),
+        ("allocateMemory", c_void_p),
+        ("freeMemory", c_void_p),
+        ("stepFinished", c_void_p),
+        ("componentEnvironment", c_void_p),
+    ]
+
+
+class _EventInfo(Structure):
+    _fields_: ClassVar = [
+        ("newDiscreteStatesNeeded", c_int),
+        ("terminateSimulation", c_int),
+        ("nominalsOfContinuousStatesChanged", c_int),
+        ("valuesOfContinuousStatesChanged", c_int),
+        ("nextEventTimeDefined", c_int),
+        ("nextEventTime", c_double),
+    ]
+
+
+class Fmi2Calls(Calls):
+    """The functions of FMI 2.0."""
+
+    types: ClassVar[Mapping[str, CType]] = {
+        "Real": CType(c_double, "Real"),
+        "Integer": CType(c_int, "Integer"),
+        "Enumeration": CType(c_int, "Integer"),
+        "Boolean": CType(c_int, "Boolean"),
+        "String": CType(c_char_p, "String"),
+    }
+
+    def __init__(
+        self, library: Library, model: Model, interface: Interface, folder: Path, journal: Journal
+    ) -> None:
+        super().__init__(library, model, interface, folder, journal)
+        self._receiver = formatted_receiver(journal)
+        logger = ctypes.cast(self._receiver, c_void_p)
+        self._callbacks = _Callbacks(logger, *allocators(), None, None)
+        self._instantiate = library.instantiator("fmi2Instantiate")
+        for name in ("SetupExperiment", "EnterInitializationMode", "ExitInitializationMode"):
+            self.function(f"fmi2{name}")
+        self._free = library.function("fmi2FreeInstance")
+        self.function("fmi2Terminate")
+
+    def instantiate(self) -> None:  # noqa: D102 - as in Calls
+        resources = (self.folder / "resources").resolve()
+        component = self._instantiate(
+            c_char_p(self.interface.identifier.encode()),
+            c_int(0 if self.interface.kind == Kind.MODEL_EXCHANGE else 1),
+            c_char_p(self.model.guid.encode()),
+            c_char_p(resources.as_uri().encode()),
+            byref(self._callbacks),
+            c_int(0),  # not visible
+            c_int(1),  # with logging, for the reason of a failure: some FMUs give it only then
+        )
+        if not component:
+            msg = "fmi2Instantiate"
+            raise CallFailedError(msg, ERROR)
+        self.component = c_void_p(component)
+
+    def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102
+        for one in setting:
+            self.apply(one)
+
+    def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:  # noqa: D102
+        self.call(
+            "fmi2SetupExperiment",
+            c_int(tolerance is not None),
+            c_double(tolerance or 0.0),
+            c_double(0.0),
+            c_int(0),  # no stop time
+            c_double(0.0),
+        )
+        self.call("fmi2EnterInitializationMode")
+        for one in inputs:
+            self.apply(one)
+        self.call("fmi2ExitInitializationMode")
+
+    def terminate(self) -> None:  # noqa: D102
+        self.call("fmi2Terminate")
+
+    def free(self) -> None:  # noqa: D102
+        self._free(self.component)
+        self.component = None
+
+    def name(self, verb: str, suffix: str = "") -> str:  # noqa: D102
+        return f"fmi2{verb}{suffix}"
+
+    def state_names(self) -> tuple[str, str, str]:  # noqa: D102
+        return "fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate"
+
+    # ---- Co-Simulation ----
+
+    def stepper(self, start: c_double, step: c_double) -> Stepper:  # noqa: D102
+        reached, ended = c_double(), c_int()
+        real_status = self.library.optional("fmi2GetRealStatus")
+        boolean_status = self.library.optional("fmi2GetBooleanStatus")
+
+        def progress() -> Progress:
+            ended.value = 0
+            if boolean_status is None or boolean_status(
+                self.component, _TERMINATED, byref(ended)
+            ) not in (0, WARNING):
+                ended.value = 0
+            if real_status is None or real_status(
+                self.component, _LAST_SUCCESSFUL_TIME, byref(reached)
+            ) not in (0, WARNING, DISCARD):
+                return Progress(None, bool(ended.value))
+            return Progress(reached.value, bool(ended.value))
+
+        rollback_possible = c_int(0)  # noSetFMUStatePriorToCurrentPoint = false
+        arguments = (self.component, start, step, rollback_possible)
+        return Stepper(self.function("fmi2DoStep"), arguments, (0,), progress, lambda _: None)
+
+    # ---- Model Exchange ----
+
+    def enter_event_mode(self) -> None:  # noqa: D102
+        self.call("fmi2EnterEventMode")
+
+    def update_discrete_states(self) -> EventInfo:  # noqa: D102
+        info = _EventInfo()
+        self.call("fmi2NewDiscreteStates", byref(info))
+        return EventInfo(
+            again=bool(info.newDiscreteStatesNeeded),
+            ended=bool(info.terminateSimulation),
+            nominals_changed=bool(info.nominalsOfContinuousStatesChanged),
+            next_time=info.nextEventTime if info.nextEventTimeDefined else None,
+        )
+
+    def enter_continuous_time_mode(self) -> None:  # noqa: D102
+        self.call("fmi2EnterContinuousTimeMode")
+
+    def completed_step(self) -> tuple[bool, bool]:  # noqa: D102
+        event, end = c_int(), c_int()
+        self.call("fmi2CompletedIntegratorStep", c_int(0), byref(event), byref(end))
+        return bool(event.value), bool(end.value)
+
+    def exchange_names(self) -> Mapping[str, str]:  # noqa: D102
+        return {
+            "set_time": "fmi2SetTime",
+            "set_states": "fmi2SetContinuousStates",
+            "get_states": "fmi2GetContinuousStates",
+            "get_derivatives": "fmi2GetDerivatives",
+            "get_indicators": "fmi2GetEventIndicators",
+            "get_nominals": "fmi2GetNominalsOfContinuousStates",
+        }

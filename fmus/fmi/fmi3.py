@@ -1,0 +1,175 @@
+"""FMI 3.0."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import (
+    byref,
+    c_bool,
+    c_char_p,
+    c_double,
+    c_float,
+    c_size_t,
+    c_void_p,
+)
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from fmus.fmi.calls import CallFailedError, Calls, CType, EventInfo, Progress, Setting, Stepper
+from fmus.fmi.messages import plain_receiver
+from fmus.instance import ERROR
+from fmus.model import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from fmus.fmi.library import Library
+    from fmus.instance import Journal
+    from fmus.model import Interface, Model
+
+
+def _types() -> dict[str, CType]:
+    types = {
+        "Float64": CType(c_double, "Float64"),
+        "Float32": CType(c_float, "Float32"),
+        "Boolean": CType(c_bool, "Boolean"),
+        "String": CType(c_char_p, "String"),
+        "Enumeration": CType(ctypes.c_int64, "Int64"),
+    }
+    for bits in (8, 16, 32, 64):
+        types[f"Int{bits}"] = CType(getattr(ctypes, f"c_int{bits}"), f"Int{bits}")
+        types[f"UInt{bits}"] = CType(getattr(ctypes, f"c_uint{bits}"), f"UInt{bits}")
+    return types
+
+
+class Fmi3Calls(Calls):
+    """The functions of FMI 3.0."""
+
+    types: ClassVar[Mapping[str, CType]] = _types()
+
+    def __init__(
+        self, library: Library, model: Model, interface: Interface, folder: Path, journal: Journal
+    ) -> None:
+        super().__init__(library, model, interface, folder, journal)
+        self._receiver = plain_receiver(journal)
+        exchange = interface.kind == Kind.MODEL_EXCHANGE
+        self._make = f"fmi3Instantiate{'ModelExchange' if exchange else 'CoSimulation'}"
+        self._instantiate = library.instantiator(self._make)
+        for name in ("EnterInitializationMode", "ExitInitializationMode", "Terminate"):
+            self.function(f"fmi3{name}")
+        self._free = library.function("fmi3FreeInstance")
+
+    def instantiate(self) -> None:  # noqa: D102 - as in Calls
+        resources = str((self.folder / "resources").resolve()) + os.sep
+        start = (
+            c_char_p(self.interface.identifier.encode()),
+            c_char_p(self.model.guid.encode()),
+            c_char_p(os.fsencode(resources)),
+            c_bool(False),  # not visible
+            c_bool(True),  # with logging, for the reason of a failure
+        )
+        environment = (None, ctypes.cast(self._receiver, c_void_p))
+        if self.interface.kind == Kind.MODEL_EXCHANGE:
+            component = self._instantiate(*start, *environment)
+        else:
+            event_mode_used = early_return_allowed = c_bool(False)
+            needed = (None, c_size_t(0))  # no variables between the steps
+            component = self._instantiate(
+                *start, event_mode_used, early_return_allowed, *needed, *environment, None
+            )
+        if not component:
+            raise CallFailedError(self._make, ERROR)
+        self.component = c_void_p(component)
+
+    def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102
+        structural, others = [], []
+        for one in setting:
+            causality = self.model.variables[one.name].causality
+            (structural if causality == "structuralParameter" else others).append(one)
+        if structural:
+            self.call("fmi3EnterConfigurationMode")
+            for one in structural:
+                self.apply(one)
+            self.call("fmi3ExitConfigurationMode")
+        for one in others:
+            self.apply(one)
+
+    def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:  # noqa: D102
+        self.call(
+            "fmi3EnterInitializationMode",
+            c_bool(tolerance is not None),
+            c_double(tolerance or 0.0),
+            c_double(0.0),
+            c_bool(False),  # no stop time
+            c_double(0.0),
+        )
+        for one in inputs:
+            self.apply(one)
+        self.call("fmi3ExitInitializationMode")
+
+    def terminate(self) -> None:  # noqa: D102
+        self.call("fmi3Terminate")
+
+    def free(self) -> None:  # noqa: D102
+        self._free(self.component)
+        self.component = None
+
+    def name(self, verb: str, suffix: str = "") -> str:  # noqa: D102
+        return f"fmi3{verb}{suffix}"
+
+    def arguments(self, references: Sequence[int], values: Any) -> tuple[Any, ...]:  # noqa: D102
+        return *super().arguments(references, values), c_size_t(len(values))
+
+    def state_names(self) -> tuple[str, str, str]:  # noqa: D102
+        return "fmi3GetFMUState", "fmi3SetFMUState", "fmi3FreeFMUState"
+
+    # ---- Co-Simulation ----
+
+    def stepper(self, start: c_double, step: c_double) -> Stepper:  # noqa: D102
+        event, reached = c_bool(), c_double()
+        flags = (c_bool * 2)()  # terminateSimulation, earlyReturn
+        size = ctypes.sizeof(c_bool)
+        report = (byref(event), byref(flags), byref(flags, size), byref(reached))
+
+        def progress() -> Progress:
+            return Progress(reached.value, flags[0])
+
+        arguments = (self.component, start, step, c_bool(False), *report)
+        seen = memoryview(flags).cast("B").cast("H")  # both flags in one look
+        return Stepper(self.function("fmi3DoStep"), arguments, seen, progress, lambda _: None)
+
+    # ---- Model Exchange ----
+
+    def enter_event_mode(self) -> None:  # noqa: D102
+        self.call("fmi3EnterEventMode")
+
+    def update_discrete_states(self) -> EventInfo:  # noqa: D102
+        again, end, nominals, values, defined = (c_bool() for _ in range(5))
+        time = c_double()
+        flags = (again, end, nominals, values, defined, time)
+        self.call("fmi3UpdateDiscreteStates", *map(byref, flags))
+        return EventInfo(
+            again=again.value,
+            ended=end.value,
+            nominals_changed=nominals.value,
+            next_time=time.value if defined.value else None,
+        )
+
+    def enter_continuous_time_mode(self) -> None:  # noqa: D102
+        self.call("fmi3EnterContinuousTimeMode")
+
+    def completed_step(self) -> tuple[bool, bool]:  # noqa: D102
+        event, end = c_bool(), c_bool()
+        self.call("fmi3CompletedIntegratorStep", c_bool(False), byref(event), byref(end))
+        return event.value, end.value
+
+    def exchange_names(self) -> Mapping[str, str]:  # noqa: D102
+        return {
+            "set_time": "fmi3SetTime",
+            "set_states": "fmi3SetContinuousStates",
+            "get_states": "fmi3GetContinuousStates",
+            "get_derivatives": "fmi3GetContinuousStateDerivatives",
+            "get_indicators": "fmi3GetEventIndicators",
+            "get_nominals": "fmi3GetNominalsOfContinuousStates",
+        }

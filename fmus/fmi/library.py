@@ -1,0 +1,98 @@
+"""An FMU's shared library: loading it, finding its functions, letting it go."""
+
+from __future__ import annotations
+
+import _ctypes
+import ctypes
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from fmus.errors import FmuPlatformError
+from fmus.text import printable
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+Function = Callable[..., int]
+"""A C function that takes ready-made ctypes objects as they are and returns an int."""
+
+_ALTERED_SEARCH_PATH = 0x8  # Windows: what the library depends on is sought beside it
+
+
+class Library:
+    """A loaded shared library.
+
+    Args:
+        path: of the library.
+        fmu: named in errors.
+
+    Raises:
+        FmuPlatformError: it cannot be loaded.
+    """
+
+    def __init__(self, path: Path, fmu: Path) -> None:
+        self._fmu = fmu
+        try:
+            self._library = _load(path)
+        except OSError as error:
+            reason = printable(str(error).replace(str(path.parent), "").lstrip("/\\"))
+            msg = (
+                f"{fmu}: its binary {printable(path.name)} cannot be loaded: {reason}; "
+                "install what it needs, or export the FMU again for this platform"
+            )
+            raise FmuPlatformError(msg) from error
+
+    def function(self, name: str) -> Function:
+        """A function that the FMU must have.
+
+        Raises:
+            FmuPlatformError: it has none.
+        """
+        found = self.optional(name)
+        if found is None:
+            msg = (
+                f"{self._fmu}: its binary has no function {printable(name)}, which the FMI "
+                "standard demands; export the FMU again"
+            )
+            raise FmuPlatformError(msg)
+        return found
+
+    def optional(self, name: str) -> Function | None:
+        """A function that the FMU may have."""
+        try:
+            return self._library[name]
+        except (AttributeError, ValueError):
+            return None
+
+    def instantiator(self, name: str) -> Callable[..., int | None]:
+        """A function that returns a pointer.
+
+        Raises:
+            FmuPlatformError: the FMU has none.
+        """
+        found: Any = self.function(name)
+        found.restype = ctypes.c_void_p
+        return found  # type: ignore[no-any-return]
+
+    def close(self) -> None:
+        """Unload it."""
+        handle = self._library._handle
+        if sys.platform == "win32":
+            _ctypes.FreeLibrary(handle)
+        else:
+            _ctypes.dlclose(handle)
+
+
+def _load(path: Path) -> ctypes.CDLL:
+    """Load a library; what it needs and lies beside it is loaded first where the system fails."""
+    beside = [file for file in path.parent.iterdir() if file != path]
+    while True:
+        try:
+            return ctypes.CDLL(str(path), winmode=_ALTERED_SEARCH_PATH)
+        except OSError as error:
+            missing = next((file for file in beside if file.name in str(error)), None)
+            if missing is None:
+                raise
+            beside.remove(missing)
+            ctypes.CDLL(str(missing), mode=ctypes.RTLD_GLOBAL)

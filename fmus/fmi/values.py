@@ -1,0 +1,224 @@
+"""Values on their way into and out of an FMU: start values, and the buffers of every step."""
+
+from __future__ import annotations
+
+from ctypes import c_bool, c_char_p, c_double, c_float, sizeof
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from fmus.errors import FmuStartError
+from fmus.fmi.calls import CType, Setting
+from fmus.text import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from fmus.fmi.calls import Calls
+    from fmus.model import Channel, Variable
+    from fmus.profile import Value
+
+# ---- start values ----
+
+
+def settings(calls: Calls, values: Mapping[Channel, Value]) -> list[Setting]:
+    """Start values ready for C; elements of one array become one setting.
+
+    Raises:
+        FmuStartError: a value does not fit its variable.
+    """
+    wholes: dict[str, list[Any]] = {}
+    variables: dict[str, Variable] = {}
+    for channel, value in values.items():
+        variable = variables.setdefault(channel.variable.name, channel.variable)
+        if isinstance(value, list):
+            if len(value) != variable.size:
+                raise _unfit(calls, variable, value, f"{variable.size} values")
+            wholes[variable.name] = list(value)
+        else:
+            if variable.name not in wholes:
+                wholes[variable.name] = start_list(variable)
+            wholes[variable.name][channel.element] = value
+    return [_setting(calls, variables[name], whole) for name, whole in wholes.items()]
+
+
+def start_list(variable: Variable) -> list[Any]:
+    """The start values that the FMU itself names; 0 or nothing where it names none."""
+    text = variable.kind == "String"
+    words = [variable.start] if text or variable.scalar else variable.start.split()
+    words = [word for word in words if word] or [""]
+    if len(words) != variable.size:  # one value stands for all
+        words = [words[0]] * variable.size
+    return words if text else [_number(word) for word in words]
+
+
+def _number(word: str) -> float:
+    if word in {"true", "false"}:
+        return float(word == "true")
+    try:
+        return float(word)
+    except ValueError:
+        return 0.0
+
+
+def _setting(calls: Calls, variable: Variable, whole: Sequence[Any]) -> Setting:
+    ctype = calls.types.get(variable.kind)
+    if ctype is None:
+        expected = f"another variable: a {printable(variable.kind)} cannot be set"
+        raise _unfit(calls, variable, whole, expected)
+    try:
+        ready = [_ready(variable, ctype, value) for value in whole]
+    except ValueError as error:
+        raise _unfit(calls, variable, whole, str(error)) from None
+    array = (ctype.type * len(ready))(*ready)
+    return Setting(variable.name, variable.reference, ctype, array)
+
+
+def _ready(variable: Variable, ctype: CType, value: Any) -> Any:
+    """A value for a ctypes array; ValueError with what was expected."""
+    if ctype.type is c_char_p:
+        if not isinstance(value, str) or "\0" in value:
+            msg = "a text"
+            raise ValueError(msg)
+        return value.encode()
+    number = value if isinstance(value, int | float) else None
+    if number is None or (variable.is_real and isinstance(value, bool)) or not isfinite(number):
+        msg = "true or false" if variable.is_boolean else "a finite number"
+        raise ValueError(msg)
+    if variable.is_boolean:
+        if number not in (0, 1):
+            msg = "true or false"
+            raise ValueError(msg)
+        return int(number)
+    if variable.is_real:
+        return float(number)
+    low, high = bounds(ctype)
+    if number != int(number) or not low <= number <= high:
+        msg = f"a whole number from {low} to {high}"
+        raise ValueError(msg)
+    return int(number)
+
+
+def _unfit(calls: Calls, variable: Variable, value: Any, expected: str) -> FmuStartError:
+    shown = value[0] if isinstance(value, list) and len(value) == 1 else value
+    return FmuStartError(
+        f"{calls.model.path}: start value {printable(variable.name)} = {printable(repr(shown))}: "
+        f"expected {expected}; change it under [parameters]"
+    )
+
+
+def bounds(ctype: CType) -> tuple[int, int]:
+    """The smallest and the greatest whole number of a C type."""
+    bits = 8 * sizeof(ctype.type)
+    unsigned = ctype.type(-1).value > 0
+    return (0, (1 << bits) - 1) if unsigned else (-(1 << bits - 1), (1 << bits - 1) - 1)
+
+
+# ---- channels ----
+
+
+class Transfer:
+    """Carries one side's channels between a buffer of doubles and the FMU.
+
+    Where every channel is a scalar double, the FMU reads or writes the buffer itself: ``function``
+    is then the C function. Otherwise values are copied, and whole arrays are set or got.
+
+    Attributes:
+        view: one double per channel.
+        function, arguments: what to call at every step; returns a status.
+    """
+
+    def __init__(self, calls: Calls, verb: str, channels: Sequence[Channel]) -> None:
+        buffer = (c_double * len(channels))()
+        self.view = memoryview(buffer).cast("B").cast("d")
+        self.function: Callable[..., int] = _nothing
+        self.arguments: tuple[Any, ...] = ()
+        types = [calls.types[channel.variable.kind] for channel in channels]
+        for index, channel in enumerate(channels):
+            self.view[index] = _start(channel)
+        if not channels:
+            return
+        if len(set(types)) == 1 and types[0].type is c_double and _all_scalar(channels):
+            self.function = calls.function(calls.name(verb, types[0].suffix))
+            references = [channel.variable.reference for channel in channels]
+            self.arguments = calls.arguments(references, buffer)
+            return
+        self._groups = [
+            _Group(
+                calls, verb, ctype, [(i, c) for i, c in enumerate(channels) if types[i] == ctype]
+            )
+            for ctype in dict.fromkeys(types)
+        ]
+        self.function = self._set if verb == "Set" else self._get
+
+    def _set(self) -> int:
+        worst = 0
+        for group in self._groups:
+            group.fill(self.view)
+            status = group.function(*group.arguments)
+            if status not in (0, 1):
+                return status
+            worst = max(worst, status)
+        return worst
+
+    def _get(self) -> int:
+        worst = 0
+        for group in self._groups:
+            status = group.function(*group.arguments)
+            if status not in (0, 1):
+                return status
+            group.empty(self.view)
+            worst = max(worst, status)
+        return worst
+
+
+class _Group:
+    """The variables of one C type, with all their elements, in a buffer of their own."""
+
+    def __init__(
+        self, calls: Calls, verb: str, ctype: CType, channels: Sequence[tuple[int, Channel]]
+    ) -> None:
+        variables = list(dict.fromkeys(channel.variable for _, channel in channels))
+        first: dict[str, int] = {}
+        elements: list[Any] = []
+        for variable in variables:
+            first[variable.name] = len(elements)
+            elements += start_list(variable)
+        convert = _converter(ctype)
+        self._values: Any = (ctype.type * len(elements))(*map(convert, elements))
+        self._places = [(i, first[c.variable.name] + c.element) for i, c in channels]
+        self._convert = convert
+        references = [variable.reference for variable in variables]
+        self.function = calls.function(calls.name(verb, ctype.suffix))
+        self.arguments = calls.arguments(references, self._values)
+
+    def fill(self, view: memoryview) -> None:
+        values, convert = self._values, self._convert
+        for index, place in self._places:
+            values[place] = convert(view[index])
+
+    def empty(self, view: memoryview) -> None:
+        values = self._values
+        for index, place in self._places:
+            view[index] = values[place]
+
+
+def _converter(ctype: CType) -> Callable[[float], Any]:
+    """From a double to what the C type holds."""
+    if ctype.type in {c_double, c_float}:
+        return float
+    if ctype.type is c_bool or ctype.suffix == "Boolean":
+        return lambda value: int(value >= 0.5)
+    low, high = bounds(ctype)
+    return lambda value: min(max(round(value), low), high)
+
+
+def _start(channel: Channel) -> float:
+    return float(start_list(channel.variable)[channel.element])
+
+
+def _all_scalar(channels: Iterable[Channel]) -> bool:
+    return all(channel.variable.scalar for channel in channels)
+
+
+def _nothing() -> int:
+    return 0
