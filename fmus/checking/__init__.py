@@ -4,6 +4,7 @@ from fmus.checking.check import CheckReport, check
 from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, identify
 from fmus.checking.manoeuvres import Drivable, Opener, Phase, Trace, drive, replay
+from fmus.checking.opening import opener_of
 from fmus.checking.self_check import Convergence, convergence, require_converged
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "convergence",
     "drive",
     "identify",
+    "opener_of",
     "replay",
     "require_converged",
 ]

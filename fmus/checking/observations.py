@@ -127,7 +127,7 @@ def drives(response: Trace, expected: Expected) -> Finding:
     if gained < -MOVES:
         return Finding(
             name, "fail", f"{text}: it goes the wrong way",
-            f"set `gain = -1.0` in [inputs.{expected.role}], or in [outputs.speed] if that is wrong",
+            f"set `gain = -1.0` in [inputs.{expected.role}] (or in [outputs.speed])",
         )  # fmt: skip
     return Finding(
         name, "fail", f"{text}: it does not move",
