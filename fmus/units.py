@@ -14,10 +14,7 @@ import re
 import unicodedata
 from typing import Final, NamedTuple
 
-from fmus.model import Unit
-
-Dimension = tuple[int, int, int, int, int, int, int, int]
-"""Exponents of kg, m, s, A, K, mol, cd, rad."""
+from fmus.model import Dimension, Unit
 
 NONE: Final[Dimension] = (0, 0, 0, 0, 0, 0, 0, 0)
 MASS: Final[Dimension] = (1, 0, 0, 0, 0, 0, 0, 0)
@@ -197,8 +194,8 @@ def named(name: str) -> Unit:
     return to_si(Unit(name))
 
 
-def in_words(dimension: Dimension | None) -> str:
-    """What a dimension is: "a force"; its exponents where it has no name."""
+def quantity(dimension: Dimension | None) -> str:
+    """What a dimension measures: "a force"; its exponents where it has no name."""
     if dimension is None:
         return "unknown"
     symbols = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
