@@ -1,0 +1,38 @@
+"""The fixture of all tests that need somebody else's FMU."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+ZOO = Path(__file__).parent / "fmu_zoo"
+
+
+def _load_zoo() -> ModuleType:
+    """The package tests/fmu_zoo, which is on no path, under the name ``fmu_zoo``."""
+    if "fmu_zoo" not in sys.modules:
+        spec = importlib.util.spec_from_file_location(
+            "fmu_zoo", ZOO / "__init__.py", submodule_search_locations=[str(ZOO)]
+        )
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        sys.modules["fmu_zoo"] = module
+        spec.loader.exec_module(module)
+    return sys.modules["fmu_zoo"]
+
+
+@pytest.fixture(scope="session")
+def zoo(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> Any:
+    """FMUs of every kind, built on demand (tests/fmu_zoo/README.md is the menu)."""
+    if importlib.util.find_spec("ziglang") is None:
+        pytest.skip("ziglang is not installed: pip install giveway[build]")
+    assert pytestconfig.cache is not None
+    return _load_zoo().Zoo(tmp_path_factory.mktemp("zoo"), pytestconfig.cache.mkdir("fmu_zoo"))

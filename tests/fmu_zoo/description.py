@@ -1,0 +1,342 @@
+"""The model descriptions of the zoo's cars: FMI 1.0, 2.0 and 3.0."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+from xml.etree import ElementTree as Xml
+
+from fmu_zoo.cars import INPUT_ARRAY, LOAD, OUTPUT_ARRAY, QUANTITIES, REFERENCES, input_elements
+
+if TYPE_CHECKING:
+    from fmu_zoo.cars import Car
+
+IDENTIFIER: Final = "car"
+BASE: Final = {  # unit: exponents of base units; one not listed has those of its quantity's own unit
+    "N": "kg1 m1 s-2", "N/s": "kg1 m1 s-3", "m/s2": "m1 s-2", "m/s": "m1 s-1", "m": "m1", "s": "s1",
+    "kg": "kg1", "N.s/m": "kg1 s-1", "N.s2/m2": "kg1 m-1", "1": "", "%": "",
+}  # fmt: skip
+
+
+def describe(car: Car, token: str) -> bytes:
+    """The text of modelDescription.xml."""
+    root = {"1.0": _fmi1, "2.0": _fmi2, "3.0": _fmi3}[car.fmi](car, token)
+    Xml.indent(root)
+    text: bytes = Xml.tostring(root, encoding="UTF-8", xml_declaration=True)
+    return text
+
+
+def _fmi1(car: Car, token: str) -> Xml.Element:
+    root = Xml.Element(
+        "fmiModelDescription",
+        fmiVersion="1.0",
+        modelName="Car",
+        modelIdentifier=IDENTIFIER,
+        guid=token,
+        generationTool="the FMU zoo",
+        variableNamingConvention="structured",
+        numberOfContinuousStates="0",
+        numberOfEventIndicators="0",
+    )
+    units = Xml.SubElement(root, "UnitDefinitions")
+    for name in _units(car):
+        Xml.SubElement(units, "BaseUnit", unit=name)
+    _default_experiment(root, car, startTime="0", stopTime="10")
+    variables = Xml.SubElement(root, "ModelVariables")
+    for quantity in (*car.inputs, *car.outputs, *car.parameters):
+        causality, variability = _part(car, quantity)
+        element = Xml.SubElement(
+            variables,
+            "ScalarVariable",
+            name=car.name(quantity),
+            valueReference=str(REFERENCES[quantity]),
+            causality="internal" if causality == "parameter" else causality,
+            variability="parameter" if causality == "parameter" else variability,
+        )
+        _typed(element, car, quantity)
+    load = Xml.SubElement(
+        variables,
+        "ScalarVariable",
+        name=car.name("load"),
+        valueReference=str(LOAD),
+        causality="internal",
+        variability="parameter",
+    )
+    Xml.SubElement(load, "String", start="empty")
+    implementation = Xml.SubElement(root, "Implementation")
+    standalone = Xml.SubElement(implementation, "CoSimulation_StandAlone")
+    Xml.SubElement(standalone, "Capabilities", _flags(car, "CoSimulation"))
+    return root
+
+
+def _fmi2(car: Car, token: str) -> Xml.Element:
+    root = Xml.Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName="Car",
+        guid=token,
+        generationTool="the FMU zoo",
+        variableNamingConvention="structured",
+        numberOfEventIndicators=str(_indicators(car)),
+    )
+    for interface in car.interfaces:
+        Xml.SubElement(root, interface, _flags(car, interface))
+    _unit_definitions(root, car)
+    _default_experiment(root, car, startTime="0", stopTime="10")
+    variables = Xml.SubElement(root, "ModelVariables")
+    index = {}
+    for quantity in _variables(car):
+        causality, variability = _part(car, quantity)
+        index[quantity] = len(variables) + 1
+        element = Xml.SubElement(
+            variables,
+            "ScalarVariable",
+            name=car.name(quantity),
+            valueReference=str(REFERENCES[quantity]),
+            causality=causality,
+            variability=variability,
+        )
+        if causality in ("output", "local"):
+            element.set("initial", "calculated")
+        typed = _typed(element, car, quantity)
+        if quantity.startswith("rate_"):
+            typed.set("derivative", str(index[f"state_{quantity.removeprefix('rate_')}"]))
+    load = Xml.SubElement(
+        variables,
+        "ScalarVariable",
+        name=car.name("load"),
+        valueReference=str(LOAD),
+        causality="parameter",
+        variability="fixed",
+    )
+    Xml.SubElement(load, "String", start="empty")
+    structure = Xml.SubElement(root, "ModelStructure")
+    states, rates = _states(car), _rates(car)
+    for element_name, quantities in (
+        ("Outputs", car.outputs),
+        ("Derivatives", rates),
+        ("InitialUnknowns", (*car.outputs, *states, *rates)),
+    ):
+        if quantities:
+            unknowns = Xml.SubElement(structure, element_name)
+            for number in sorted(index[quantity] for quantity in quantities):
+                Xml.SubElement(unknowns, "Unknown", index=str(number))
+    return root
+
+
+def _fmi3(car: Car, token: str) -> Xml.Element:
+    root = Xml.Element(
+        "fmiModelDescription",
+        fmiVersion="3.0",
+        modelName="Car",
+        instantiationToken=token,
+        generationTool="the FMU zoo",
+        variableNamingConvention="structured",
+    )
+    for interface in car.interfaces:
+        Xml.SubElement(root, interface, _flags(car, interface))
+    _unit_definitions(root, car)
+    _default_experiment(root, car, startTime="0", stopTime="10")
+    variables = Xml.SubElement(root, "ModelVariables")
+    Xml.SubElement(
+        variables,
+        "Float64",
+        name="time",
+        valueReference="63",
+        causality="independent",
+        variability="continuous",
+    )
+    if car.array:
+        _arrays(variables, car)
+    for quantity in _variables(car):
+        causality, variability = _part(car, quantity)
+        if car.array and causality in ("input", "output"):
+            continue
+        element = Xml.SubElement(
+            variables,
+            car.kind_of(quantity),
+            name=car.name(quantity),
+            valueReference=str(REFERENCES[quantity]),
+            causality=causality,
+            variability=variability,
+        )
+        if causality in ("output", "local"):
+            element.set("initial", "calculated")
+        _attributes(element, car, quantity)
+        if quantity.startswith("rate_"):
+            element.set("derivative", str(REFERENCES[f"state_{quantity.removeprefix('rate_')}"]))
+    load = Xml.SubElement(
+        variables,
+        "String",
+        name=car.name("load"),
+        valueReference=str(LOAD),
+        causality="parameter",
+        variability="fixed",
+    )
+    Xml.SubElement(load, "Start", value="empty")
+    _fmi3_structure(root, car)
+    return root
+
+
+def _fmi3_structure(root: Xml.Element, car: Car) -> None:
+    structure = Xml.SubElement(root, "ModelStructure")
+    references = [REFERENCES[quantity] for quantity in car.outputs]
+    outputs = [OUTPUT_ARRAY] if car.array else references
+    rates = [REFERENCES[quantity] for quantity in _rates(car)]
+    states = [REFERENCES[quantity] for quantity in _states(car)]
+    for name, numbers in (
+        ("Output", outputs),
+        ("ContinuousStateDerivative", rates),
+        ("InitialUnknown", [*outputs, *states, *rates]),
+        ("EventIndicator", [REFERENCES["indicator"]] * _indicators(car)),
+    ):
+        for number in numbers:
+            Xml.SubElement(structure, name, valueReference=str(number))
+
+
+def _arrays(variables: Xml.Element, car: Car) -> None:
+    """The array of inputs ``u`` and the array of outputs ``y``."""
+    real = "Float32" if car.float32 else "Float64"
+    elements = input_elements(car)
+    if car.array == "structural":
+        Xml.SubElement(
+            variables,
+            "UInt64",
+            name=car.name("array_size"),
+            valueReference=str(REFERENCES["array_size"]),
+            causality="structuralParameter",
+            variability="fixed",
+            start=str(len(elements)),
+        )
+    for name, reference, quantities, causality in (
+        ("u", INPUT_ARRAY, elements, "input"),
+        ("y", OUTPUT_ARRAY, car.outputs, "output"),
+    ):
+        element = Xml.SubElement(
+            variables,
+            real,
+            name=name,
+            valueReference=str(reference),
+            causality=causality,
+            variability="continuous",
+        )
+        if causality == "input":
+            element.set("start", " ".join("0" for _ in quantities))
+        units = {car.unit(quantity) for quantity in quantities}
+        if len(units) == 1 and (unit := units.pop()) is not None:
+            element.set("unit", unit[0])
+        dimension = Xml.SubElement(element, "Dimension")
+        if causality == "input" and car.array == "structural":
+            dimension.set("valueReference", str(REFERENCES["array_size"]))
+        else:
+            dimension.set("start", str(len(quantities)))
+
+
+# ---- what the versions have in common ----
+
+
+def _rates(car: Car) -> tuple[str, ...]:
+    return tuple(f"rate_{name}" for name in car.states) if "ModelExchange" in car.interfaces else ()
+
+
+def _states(car: Car) -> tuple[str, ...]:
+    return tuple(rate.replace("rate_", "state_") for rate in _rates(car))
+
+
+def _indicators(car: Car) -> int:
+    return int("ModelExchange" in car.interfaces and car.value("holds") != 0.0)
+
+
+def _variables(car: Car) -> tuple[str, ...]:
+    indicator = ("indicator",) * (_indicators(car) * (car.fmi == "3.0"))
+    return (*car.inputs, *car.outputs, *car.parameters, *_states(car), *_rates(car), *indicator)
+
+
+def _part(car: Car, quantity: str) -> tuple[str, str]:
+    """Causality and variability in the words of FMI 2 and 3."""
+    continuous = car.kind_of(quantity) in ("Real", "Float64", "Float32")
+    changing = "continuous" if continuous else "discrete"
+    if quantity in car.inputs:
+        return "input", changing
+    if quantity in car.outputs:
+        return "output", changing
+    if quantity in car.parameters:
+        return "parameter", "fixed"
+    return "local", changing
+
+
+def _flags(car: Car, interface: str) -> dict[str, str]:
+    whole = car.only_step is None and not car.constant_step
+    if car.fmi == "1.0":
+        flags = {
+            "canHandleVariableCommunicationStepSize": str(whole).lower(),
+            "canBeInstantiatedOnlyOncePerProcess": str(car.once_per_process).lower(),
+        }
+        return flags | dict(car.flags)
+    flags = {
+        "modelIdentifier": IDENTIFIER,
+        "canGetAndSetFMUState" if car.fmi == "3.0" else "canGetAndSetFMUstate": "true",
+    }
+    if car.once_per_process:
+        flags["canBeInstantiatedOnlyOncePerProcess"] = "true"
+    if interface == "CoSimulation":
+        flags["canHandleVariableCommunicationStepSize"] = str(whole).lower()
+        if car.fmi == "3.0" and car.only_step:
+            flags["fixedInternalStepSize"] = repr(car.only_step)
+    elif car.fmi == "3.0":
+        flags["needsCompletedIntegratorStep"] = "true"
+    return flags | dict(car.flags)
+
+
+def _default_experiment(root: Xml.Element, car: Car, **attributes: str) -> None:
+    if car.fmi != "1.0" and (step := car.only_step or car.step):
+        attributes["stepSize"] = repr(step)
+    Xml.SubElement(root, "DefaultExperiment", attributes)
+
+
+def _units(car: Car) -> dict[str, tuple[float, float, str]]:
+    """Each declared unit: factor, offset and the SI unit it is of."""
+    units = {}
+    for quantity in _variables(car):
+        unit = car.unit(quantity)
+        if unit is not None and car.kind_of(quantity) in ("Real", "Float64", "Float32"):
+            of = unit[0] if unit[0] in BASE else QUANTITIES[quantity]
+            units[unit[0]] = (unit[1], unit[2], of)
+    return units
+
+
+def _unit_definitions(root: Xml.Element, car: Car) -> None:
+    units = _units(car)
+    if not units:
+        return
+    definitions = Xml.SubElement(root, "UnitDefinitions")
+    for name, (factor, offset, of) in units.items():
+        unit = Xml.SubElement(definitions, "Unit", name=name)
+        if not car.define_units:
+            continue
+        base = Xml.SubElement(unit, "BaseUnit")
+        for power in BASE[of].split():
+            symbol = power.rstrip("-0123456789")
+            base.set(symbol, power[len(symbol) :])
+        if name not in ("kg",):
+            base.set("factor", repr(factor))
+            base.set("offset", repr(offset))
+
+
+def _typed(element: Xml.Element, car: Car, quantity: str) -> Xml.Element:
+    typed = Xml.SubElement(element, car.kind_of(quantity))
+    _attributes(typed, car, quantity)
+    return typed
+
+
+def _attributes(element: Xml.Element, car: Car, quantity: str) -> None:
+    """Unit and start value."""
+    kind = car.kind_of(quantity)
+    real = kind in ("Real", "Float64", "Float32")
+    unit = car.unit(quantity)
+    if real and unit is not None:
+        element.set("unit", unit[0])
+    if _part(car, quantity)[0] in ("input", "parameter"):
+        raw = car.raw(quantity)
+        boolean = "true" if raw else "false"
+        text = repr(raw) if real else boolean if kind == "Boolean" else str(round(raw))
+        element.set("start", text)

@@ -1,0 +1,78 @@
+"""What an FMU of the zoo can do wrong, by name; source/faults.c does it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+FAULTS: Final = {
+    # it dies
+    "segfault": "writes to address 0",
+    "abort": "calls abort()",
+    "last_words": "prints a line with a colour code to stderr, then calls abort()",
+    "stack_overflow": "calls itself without end",
+    "exit_0": "calls exit(0)",
+    "exit_3": "calls exit(3)",
+    "quick_exit": "calls _Exit(4): no handler runs",
+    "kill_self": "sends SIGKILL to its process",
+    "stop_self": "sends SIGSTOP to its process",
+    "thread_crash": "a thread of its own writes to address 0 after 20 ms",
+    # it does not answer
+    "hang": "loops for ever, busy",
+    "sleep_forever": "sleeps for ever",
+    "slow": "sleeps 50 ms in every step",
+    # it refuses
+    "warning": "returns 'warning' with a message; goes on",
+    "error": "returns 'error' with a message",
+    "fatal": "returns 'fatal' with a message; any call after that aborts",
+    "pending": "returns 'pending'; the step is never done",
+    "unknown_status": "returns 77",
+    "silent_null": "in 'instantiate': returns NULL without a word",
+    "refuse_start_value": "refuses every parameter",
+    "discard_once": "one step ends half-way with 'discard'",
+    "discard_long": "'discard' for steps above 20 ms; its state stays good",
+    "discard_spoiled": "'discard' for steps above 20 ms; the state before must be restored",
+    "discard_always": "'discard' for every step, however short",
+    "discard_creeping": "'discard' after a billionth of every step",
+    "discard_backwards": "'discard', with a last successful time before the step",
+    "discard_nan": "'discard', with NaN as its last successful time",
+    "terminate": "asks to end the simulation",
+    # it tells nonsense
+    "nan": "its speed is NaN",
+    "nan_position": "its position is NaN",
+    "nan_acceleration": "its acceleration is NaN",
+    "nan_rate": "its speed's derivative is NaN",
+    "inf": "its speed is infinite",
+    "huge": "its speed is 1e300",
+    "jump": "its position is 50 m further",
+    "frozen": "nothing moves any more",
+    "chatter": "Model Exchange: it always needs one more event iteration",
+    "memory": "takes 300 MB",
+    # it talks
+    "message_latin1": "a message in Latin-1",
+    "message_null": "a message that is NULL",
+    "message_percent": "a message with per cent signs that are no formats",
+    "message_arguments": "a message with formats and their arguments",
+    "message_control": "a message with escape sequences and line ends",
+    "message_huge": "a message of 1 MB",
+    "message_thread": "a message from another thread",
+    "flood_log": "10,000 messages a step",
+    "flood_stdout": "5 MB a step to stdout",
+    "flood_stderr": "5 MB a step to stderr",
+    # it spoils what belongs to the process
+    "chdir": "goes to the root folder",
+    "litter": "writes litter.txt into the working folder",
+    "setlocale": "another language, with its decimal comma where installed",
+    "environment": "clears the environment variables",
+    "umask": "umask 0777",
+    "trap_floats": "traps floating-point exceptions but 'inexact'",
+    "trap_inexact": "traps all floating-point exceptions",
+    "round_up": "rounds upwards",
+    "ignore_signals": "ignores SIGINT, SIGTERM and SIGCHLD",
+    "replace_handlers": "its own handler for every signal",
+    "close_files": "closes the file descriptors 0 to 20",
+    "write_into_files": "writes noise into the file descriptors 3 to 64",
+    "kill_parent": "sends SIGTERM to its parent process",
+    "fork_child": "a child process that lives on (60 s)",
+    "fork_session": "the same in a session of its own",
+    "thread": "a thread that runs on",
+}
