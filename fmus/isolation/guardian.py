@@ -31,6 +31,10 @@ from fmus.isolation.worker import Order, read_order, serve
 _WATCH: Final = 1000  # [ms] between looks whether the vehicle's process is still there
 _HIGH: Final = 200  # FMUs that close or write to files that are not theirs try low numbers
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
+_DEAF_TO = (  # what an FMU may send to its parent process
+    signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGTERM, signal.SIGALRM,
+    signal.SIGUSR1, signal.SIGUSR2, signal.SIGTSTP,
+)  # fmt: skip
 _DRAIN = 1 << 20  # [bytes] read after a worker's death
 
 
@@ -61,7 +65,8 @@ class _Guardian:
         self._wake, wake = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
         signal.signal(signal.SIGCHLD, lambda _number, _frame: None)
         signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        for number in _DEAF_TO:
+            signal.signal(number, signal.SIG_IGN)
         signal.pthread_sigmask(signal.SIG_SETMASK, ())
         self._poll = select.poll()
         self._poll.register(control, select.POLLIN)
@@ -104,7 +109,8 @@ class _Guardian:
         self._bury()
         self._printed, self._death = PrintedTail(), None
         self._oom_kills = out_of_memory_kills()
-        self._output, output = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
+        self._output, output = os.pipe()
+        os.set_blocking(self._output, False)  # only our end: what is printed shall not be lost
         guardian = os.getpid()
         worker = os.fork()
         if worker == 0:
@@ -171,7 +177,8 @@ def _become_worker(guardian: int, connection: int, output: int) -> socket.socket
         os._exit(1)
     os.setsid()  # signals of the FMU to its process group reach nobody else
     signal.set_wakeup_fd(-1)
-    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    for number in (signal.SIGCHLD, *_DEAF_TO):
+        signal.signal(number, signal.SIG_DFL)
     high = min(_HIGH, resource.getrlimit(resource.RLIMIT_NOFILE)[0] - 1)
     os.dup2(connection, high, inheritable=False)
     nothing = os.open(os.devnull, os.O_RDONLY)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import socket
 import struct
+import weakref
 from time import monotonic
 from typing import Any, Final
 
@@ -45,6 +46,7 @@ class Line:
 
     def __init__(self, connection: socket.socket) -> None:
         self._connection = connection
+        self._closing = weakref.finalize(self, connection.close)
         self._number = 0
         self._timeout: float | None = None
         self._head = bytearray(REPLY.size)
@@ -78,7 +80,7 @@ class Line:
 
     def close(self) -> None:
         """The process ends when it finds the connection closed."""
-        self._connection.close()
+        self._closing()
 
     def _text(self, length: int, timeout: float) -> Text:
         buffer = bytearray(length)

@@ -72,6 +72,8 @@ class IsolatedVehicle:
         self._step_timeout = prepared.step_timeout
         self._steps = 0
         self._line: Line | None = None
+        self._failed = False
+        self._refusal = ""
         self._refuse("has not been started; call start() first")
         temporary = TemporaryDirectory(prefix="vehicle-fmu-", ignore_cleanup_errors=True)
         folder = Path(temporary.name)

@@ -36,7 +36,10 @@ class Order:
 
     def vehicle(self) -> VehicleFmu:
         """The vehicle, its FMU loaded into this process."""
-        return VehicleFmu(self.prepared.path, step_size=self.prepared.step_size)
+        values = {c.name: v for c, v in self.prepared.wiring.start_values.items()}
+        return VehicleFmu(
+            self.prepared.path, step_size=self.prepared.step_size, start_values=values
+        )
 
 
 def read_order(folder: str) -> Order:

@@ -1,0 +1,78 @@
+"""Interpreters that run a part of this package, and their end."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from fmus.errors import FmuCrashError
+from fmus.isolation.burial import PrintedTail
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+IMPORT_TIMEOUT: Final = 120.0  # [s] on the busiest machine
+DEATH_TIMEOUT: Final = 10.0  # [s] a killed process that does not go: the system is in trouble
+_BOOT: Final = (
+    "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
+    "from fmus.isolation.{module} import main; main(*arguments)"
+)
+
+
+def spawn(
+    module: str, *arguments: object, folder: Path, output: Any, pass_fds: Sequence[int] = ()
+) -> subprocess.Popen[bytes]:
+    """An interpreter like this one that runs ``main`` of a module of this package.
+
+    Args:
+        module: its name.
+        arguments: of ``main``: numbers and texts.
+        folder: the vehicle's temporary one.
+        output: where it prints.
+        pass_fds: files that it inherits.
+    """
+    scratch = str(folder / "scratch")
+    values = [a if isinstance(a, int) else str(a) for a in arguments]
+    flags = {
+        "-E": sys.flags.ignore_environment,
+        "-s": sys.flags.no_user_site,
+        "-B": sys.flags.dont_write_bytecode,
+    }
+    given = json.dumps([[str(Path(entry).absolute()) for entry in sys.path], values])
+    # -P: nothing is imported from the working directory before our paths are set
+    return subprocess.Popen(
+        [sys.executable, "-P", *(flag for flag, on in flags.items() if on)]
+        + ["-c", _BOOT.format(module=module), given],
+        stdin=subprocess.DEVNULL,
+        stdout=output,
+        stderr=subprocess.STDOUT,
+        cwd=scratch,
+        env=os.environ | {"TMPDIR": scratch},
+        pass_fds=pass_fds,
+        start_new_session=True,  # Ctrl-C in the terminal is not for it
+        creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # likewise on Windows
+    )
+
+
+def kill_group(process: subprocess.Popen[bytes]) -> None:
+    """Kill a process, and its group where there are groups, and wait for its end."""
+    with suppress(OSError):
+        if sys.platform == "win32":
+            process.kill()
+        else:
+            os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def no_process(path: Path, printed: bytes) -> FmuCrashError:
+    """The error that the FMU can have no process, with the last line that was printed."""
+    tail = PrintedTail()
+    tail.add(printed)
+    reason = tail.last_line() or "it ended at once"
+    return FmuCrashError(f"{path}: no process of its own can be started for the FMU: {reason}")
