@@ -64,6 +64,14 @@ class Identification:
     validation: Trace
     remarks: tuple[str, ...]
 
+    @property
+    def fitted_drives(self) -> list[Drive]:
+        """The tests as they were fitted."""
+        limits = tuple(
+            np.inf if limit is None else limit for limit in (self.drive_limit, self.brake_limit)
+        )
+        return [prepare(trace, (limits[0], limits[1])) for trace in self.tests]
+
 
 def identify(
     opener: Opener,

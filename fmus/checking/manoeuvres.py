@@ -68,7 +68,7 @@ class Phase:
     below: float = np.inf  # [m/s] ends when the speed rises above
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Trace:
     """What a vehicle did: n steps, n + 1 instants.
 

@@ -1,0 +1,148 @@
+"""``giveway fmu check``: a vehicle FMU's dry run as a table, and as a picture."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from fmus import FmuError
+from fmus.bundled import is_bundled
+from fmus.checking import Finding, check, opener_of
+from fmus.checking.self_check import plain
+from fmus.preparation import choose_profile, prepare
+from fmus.text import printable
+from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from fmus.checking import CheckReport
+    from fmus.profile import VehicleProfile
+
+_STYLES = {"pass": "green", "skip": "cyan", "warn": "yellow", "fail": "bold red"}
+
+
+def check_command(
+    path: Path,
+    profile: Path | None = None,
+    *,
+    step: float = 0.05,
+    out: Path | None = None,
+    mass: float = 1000.0,
+    friction: float = 100.0,
+    force_limit: float = 8000.0,
+    speed: float = 4.0,
+) -> int:
+    """Dry-run a vehicle FMU, print what was found, draw its response.
+
+    Args:
+        path: the .fmu file.
+        profile: its profile; None: drafted from its names and units.
+        step: of the controller [s].
+        out: folder of the picture; None: none is drawn.
+        mass: M of the controller's model [kg]; that of a profile's [model] comes first.
+        friction: alpha of it [N.s/m]; likewise.
+        force_limit: u_max [N].
+        speed: of the rolling start [m/s].
+
+    Returns:
+        0 if every test passed, with warnings or without; 1 if one failed.
+
+    Raises:
+        ConfigError: there is no such file, or a value or the profile cannot be used.
+        ResultsError: the picture cannot be written.
+    """
+    require_fmu(path)
+    require_number("--step", step, 0.0, 1.0, "s")
+    require_number("--mass", mass, 0.0, 1e6, "kg")
+    require_number("--friction", friction, -1e-300, 1e6, "N.s/m")
+    require_number("--force-limit", force_limit, 0.0, 1e6, "N")
+    require_number("--speed", speed, -1e-300, 70.0, "m/s")
+    given = profile_in(profile)
+    console = Console()
+    try:
+        chosen = choose_profile(path, given)
+        prepare(path, step_size=step, profile=chosen)
+    except FmuError as error:
+        return _conclude(console, path, [Finding("fits", "fail", plain(error))])
+    with console.status("Driving ...") as status:
+        report = check(
+            opener_of(path, step_size=step, profile=chosen),
+            step_size=step,
+            fmu_step=chosen.fmu.step,
+            profile=chosen,
+            mass=mass,
+            friction=friction,
+            force_limit=force_limit,
+            start_speed=speed,
+            progress=lambda name: status.update(f"Driving: {name} ..."),
+        )
+    findings = [_profile_found(path, profile, chosen), *report.findings]
+    code = _conclude(console, path, findings)
+    if out is not None:
+        _draw(console, report, path, out)
+    return code
+
+
+def _profile_found(path: Path, file: Path | None, profile: VehicleProfile) -> Finding:
+    name = "profile"
+    if file is not None:
+        return Finding(name, "pass", str(file))
+    if is_bundled(path):
+        return Finding(name, "pass", "giveway's own FMU")
+    inputs, outputs = (
+        [
+            f"{role} = {axis.variable}" + (f" [{axis.unit}]" if axis.unit else "")
+            for role, axis in table
+            if axis is not None
+        ]
+        for table in (profile.inputs, profile.outputs)
+    )
+    return Finding(
+        name,
+        "pass",
+        f"drafted from names and units: {printable(', '.join(inputs + outputs))}",
+    )
+
+
+def _conclude(console: Console, path: Path, findings: Sequence[Finding]) -> int:
+    table = Table(
+        title=f"Check of {path.name}", title_justify="left", show_header=False, box=None,
+        pad_edge=False,
+    )  # fmt: skip
+    table.add_column(no_wrap=True)
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold", ratio=1)
+    for finding in findings:
+        text = Text(printable(finding.text, 1000))  # not markup: names may hold brackets
+        if finding.remedy:
+            text.append(f"\n-> {finding.remedy}", style="italic")
+        table.add_row(Text(finding.verdict, style=_STYLES[finding.verdict]), finding.name, text)
+    console.print(table)
+    failed = sum(finding.verdict == "fail" for finding in findings)
+    warned = sum(finding.verdict == "warn" for finding in findings)
+    console.print(_verdict(failed, warned), highlight=False)
+    return 1 if failed else 0
+
+
+def _verdict(failed: int, warned: int) -> str:
+    if failed:
+        return f"{failed} test{'s' * (failed > 1)} failed: a run with this FMU would be wrong."
+    if warned:
+        return f"Passed, with {warned} warning{'s' * (warned > 1)}."
+    return "Passed."
+
+
+def _draw(console: Console, report: CheckReport, path: Path, folder: Path) -> None:
+    from giveway.figures.vehicle_response import check_figure
+
+    verdict = "passed" if report.passed else "failed"
+    figure = check_figure(report, title=f"{printable(path.name, 60)}: check {verdict}")
+    if figure is not None:
+        file = folder / f"{path.stem}_check.png"
+        save_picture(figure, file)
+        console.print(f"Picture in [bold]{file}[/bold]", highlight=False)

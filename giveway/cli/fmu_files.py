@@ -1,0 +1,69 @@
+"""What ``giveway fmu check`` and ``identify`` are asked about: an FMU and its profile."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from fmus import FmuError
+from fmus.profile import read_profile
+from giveway.errors import ConfigError, ResultsError
+from giveway.figures import save_figure
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
+
+    from fmus.profile import VehicleProfile
+
+
+def require_fmu(path: Path) -> None:
+    """Make sure that there is a file to look at.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    if not path.is_file():
+        what = "a folder" if path.is_dir() else "no such file"
+        msg = f"{path}: {what}; expected an FMU, a file like car.fmu"
+        raise ConfigError(msg)
+
+
+def require_number(flag: str, value: float, low: float, high: float, unit: str) -> None:
+    """Make sure that a flag's number is above ``low`` and not above ``high``.
+
+    Raises:
+        ConfigError: it is not.
+    """
+    if not (math.isfinite(value) and low < value <= high):
+        msg = f"{flag} {value:g}: expected a number above {low:g} and up to {high:g} [{unit}]"
+        raise ConfigError(msg)
+
+
+def profile_in(path: Path | None) -> VehicleProfile | None:
+    """The profile that the user names; None without one.
+
+    Raises:
+        ConfigError: it cannot be used.
+    """
+    if path is None:
+        return None
+    try:
+        return read_profile(path)
+    except FmuError as error:
+        raise ConfigError(str(error)) from error
+
+
+def save_picture(figure: Figure, path: Path) -> None:
+    """Write a picture, and the folders that it needs.
+
+    Raises:
+        ResultsError: it cannot be written.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        save_figure(figure, path)
+    except OSError as error:
+        msg = f"{path}: cannot be written ({error.strerror or error}); name another with --out"
+        raise ResultsError(msg) from error

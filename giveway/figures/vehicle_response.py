@@ -1,0 +1,170 @@
+"""How a vehicle FMU responds: the picture of a check, and that of an identification."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from fmus.checking.actuator import mean_force
+from fmus.checking.prediction import position_errors, simulate
+from giveway.figures.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    ORANGE,
+    VERMILION,
+    quiet_grid,
+    styled,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from fmus.checking import CheckReport, Identification, Trace
+
+DASHES = (0, (4, 2))
+MODEL: dict[str, Any] = {"color": BLACK, "linewidth": 0.9, "linestyle": DASHES, "zorder": 4}
+MEASURED: dict[str, Any] = {"color": BLUE, "zorder": 3}
+FINER: dict[str, Any] = {"color": ORANGE, "linewidth": 2.6, "zorder": 2.5}
+LARGEST = 1e30  # what matplotlib can still draw; diverging FMUs go beyond
+ROWS = ("Force [kN]", "Speed [m/s]", "Acceleration [m/s²]", "Position [m]")
+
+
+@styled
+def check_figure(report: CheckReport, *, title: str = "") -> Figure | None:
+    """Force, speed, acceleration and position of the drives of a check; None without any.
+
+    On the left the step response beside the controller's model, on the right the same drive with
+    the FMU's steps and with finer ones, as far as they ran.
+    """
+    columns: list[tuple[str, list[tuple[Trace, dict[str, Any]]]]] = []
+    if "response" in report.traces:
+        drawn = [(report.traces["response"], MEASURED | {"label": "vehicle"})]
+        columns.append(("Drive, coast, brake", drawn))
+    halving = report.convergence
+    if halving is not None and halving.traces and halving.finer is not None:
+        manners = {}
+        if len(halving.traces) == 2:
+            manners[halving.traces[1]] = FINER | {"label": _steps(halving.finer)}
+        manners[halving.traces[0]] = MEASURED | {"label": _steps(halving.step)}
+        columns.append(("Steps halved", list(manners.items())))
+    if not columns:
+        return None
+    width = 4.6 if len(columns) == 1 else 8.2
+    figure = Figure(figsize=(width, 7.2), layout="constrained")
+    grid = figure.subplots(4, len(columns), sharex="col", squeeze=False)
+    for column, (name, drawn) in enumerate(columns):
+        _draw_drive(grid[:, column], drawn, report)
+        grid[0, column].set_title(name)
+        grid[1, column].legend(loc="best")
+        grid[3, column].set_xlabel("Time [s]")
+    for axes, label in zip(grid[:, 0], ROWS, strict=True):
+        axes.set_ylabel(label)
+    figure.align_ylabels(grid[:, 0])
+    figure.suptitle(title)
+    return figure
+
+
+def _steps(step: float) -> str:
+    return f"steps of {1000.0 * step:.4g} ms"
+
+
+def _draw_drive(
+    panels: NDArray[Any], drawn: list[tuple[Trace, dict[str, Any]]], report: CheckReport
+) -> None:
+    force, speed, acceleration, position = panels
+    for axes in panels:
+        quiet_grid(axes)
+    for trace, manner in drawn:
+        for axes, values in (
+            (speed, trace.speed),
+            (position, trace.position - trace.position[0]),
+            (acceleration, trace.acceleration),
+        ):
+            axes.plot(trace.time, np.clip(values, -LARGEST, LARGEST), **manner)
+    trace = drawn[-1][0]
+    _draw_force(force, trace)
+    M, alpha = report.expected.mass, report.expected.friction
+    way, model_speed = simulate(
+        trace.force, trace.step_size, M, alpha, min(max(float(trace.speed[0]), 0.0), 100.0)
+    )
+    speed.plot(trace.time, model_speed, label="controller's model", **MODEL)
+    position.plot(trace.time, way, **MODEL)
+    slope = np.diff(model_speed, prepend=model_speed[0]) / trace.step_size
+    acceleration.plot(trace.time, slope, **MODEL)
+
+
+def _draw_force(axes: Axes, trace: Trace) -> None:
+    axes.axhline(0.0, color=GREY, linewidth=0.8)
+    held = np.append(trace.force, trace.force[-1:]) / 1000.0
+    axes.step(trace.time, held, where="post", color=VERMILION, linewidth=1.2, zorder=3)
+
+
+@styled
+def identification_figure(found: Identification, *, title: str = "") -> Figure:
+    """Measured against fitted: the drive held out, all tests, errors at the horizon."""
+    figure = Figure(figsize=(9.4, 6.4), layout="constrained")
+    grid = figure.add_gridspec(6, 2, width_ratios=(1.9, 1.0))
+    force, speed, acceleration = (figure.add_subplot(grid[2 * i : 2 * i + 2, 0]) for i in range(3))
+    tests, errors = (figure.add_subplot(grid[3 * i : 3 * i + 3, 1]) for i in range(2))
+    for axes in (force, speed, acceleration, tests, errors):
+        quiet_grid(axes)
+    _draw_validation((force, speed, acceleration), found)
+    _draw_tests(tests, found)
+    _draw_errors(errors, found)
+    figure.align_ylabels([force, speed, acceleration])
+    figure.suptitle(title)
+    return figure
+
+
+def _draw_validation(panels: tuple[Axes, Axes, Axes], found: Identification) -> None:
+    force, speed, acceleration = panels
+    trace, model, h = found.validation, found.fit, found.validation.step_size
+    acting = mean_force(trace.force, h, model.lag, model.delay)
+    _draw_force(force, trace)
+    force.plot(trace.time[1:], acting / 1000.0, **MODEL)
+    _, fitted = simulate(acting, h, model.mass, model.friction, float(trace.speed[0]))
+    speed.plot(trace.time, trace.speed, label="measured", **MEASURED)
+    speed.plot(trace.time, fitted, label="fitted, from the start on", **MODEL)
+    speed.legend(loc="best")
+    acceleration.plot(trace.time[1:], np.diff(trace.speed) / h, **MEASURED)
+    acceleration.plot(trace.time[1:], np.diff(fitted) / h, **MODEL)
+    force.set_title("Held out: a drive that was not fitted")
+    for axes, label in zip(panels, ROWS[:3], strict=True):
+        axes.set_ylabel(label)
+    for axes in (force, speed):
+        axes.tick_params(labelbottom=False)
+        axes.sharex(acceleration)
+    acceleration.set_xlabel("Time [s]")
+
+
+def _draw_tests(axes: Axes, found: Identification) -> None:
+    drives = found.fitted_drives
+    measured = np.concatenate([drive.acceleration[drive.used] for drive in drives])
+    fitted = np.concatenate([found.fit.acceleration(drive)[drive.used] for drive in drives])
+    ends = [float(measured.min()), float(measured.max())]
+    axes.plot(ends, ends, **MODEL)
+    axes.plot(fitted, measured, ".", color=BLUE, markersize=3, alpha=0.5, zorder=3)
+    axes.set_title(f"Step tests, R² = {found.fit.r_squared:.4f}")
+    axes.set_xlabel("Fitted acceleration [m/s²]")
+    axes.set_ylabel("Measured [m/s²]")
+
+
+def _draw_errors(axes: Axes, found: Identification) -> None:
+    model = found.model
+    horizon = round(model.horizon / model.time_step)
+    errors = np.sort(position_errors(found.validation, model.mass, model.friction, horizon))
+    share = 100.0 * np.arange(1, errors.size + 1) / max(errors.size, 1)
+    axes.step(errors, share, where="post", **MEASURED)
+    axes.axvline(model.position_error, **MODEL)
+    axes.text(
+        model.position_error, 8.0, f" 95 %: {model.position_error:.2g} m", fontsize=8, ha="left"
+    )
+    axes.set_xlim(0.0, max(1.6 * model.position_error, 1e-3))
+    axes.set_ylim(0.0, 102.0)
+    axes.set_title(f"MPC's prediction, {model.horizon:g} s ahead")
+    axes.set_xlabel("Position error [m]")
+    axes.set_ylabel("Share below [%]")
