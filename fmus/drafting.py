@@ -1,0 +1,306 @@
+"""A vehicle profile drafted from what an FMU says about itself.
+
+Whatever is sure stands in the draft; the rest is written down as a question, in lines that begin
+with ``# ?``. Without questions the draft is a profile that runs.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, Final
+
+from fmus import units
+from fmus.draft import Draft, Entry, Line, toml_value
+from fmus.errors import FmuProfileError
+from fmus.guessing import FORCES, ROLES, alone, guesses
+from fmus.model import Channel, Kind
+from fmus.profile import make_profile
+from fmus.text import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+    from fmus.guessing import Guess
+    from fmus.model import Dimension, Model, Variable
+    from fmus.profile import VehicleProfile
+
+PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}  # [N] of a car of 1000 kg
+CONTROL_STEP: Final = 0.05  # [s] the usual one
+NAMED: Final = 3  # doubts in an error
+
+
+def draft_profile(model: Model) -> Draft:
+    """Guess a profile from names, units and causality."""
+    inputs = [v for v in model.variables.values() if v.causality == "input"]
+    entries, used = _inputs(model, inputs)
+    idle = [v.name for v in inputs if v.name not in used]
+    entries = [_fmu(model), *entries, *_outputs(model), *_initial(model)]
+    return Draft(model, tuple(entries), tuple(_remarks(model, idle if used else [])))
+
+
+def require_confident(draft: Draft, path: Path) -> VehicleProfile:
+    """The profile that a draft is.
+
+    Raises:
+        FmuProfileError: something is open; the message says what, and the lines to write.
+    """
+    doubts = draft.doubts
+    if doubts:
+        more = f"; and {len(doubts) - NAMED} more" if len(doubts) > NAMED else ""
+        msg = (
+            f"{path}: needs a vehicle profile: {'; '.join(doubts[:NAMED])}{more}; 'giveway fmu "
+            f"inspect {path} --draft car.toml' writes the rest"
+        )
+        raise FmuProfileError(msg)
+    return make_profile(draft.values, f"{path}: drafted profile")
+
+
+# ---- how it is stepped ----
+
+
+def _fmu(model: Model) -> Entry:
+    kinds = list(model.interfaces)
+    kind = Kind.CO_SIMULATION if Kind.CO_SIMULATION in kinds else kinds[0]
+    others = ", ".join(other for other in kinds if other != kind)
+    lines = [Line("kind", str(kind), f"the FMU offers {others}, too" if others else "")]
+    interface, step = model.interfaces[kind], model.default_step
+    if interface.fixed_internal_step is not None:
+        lines.append(Line("step", interface.fixed_internal_step, "s, its fixed internal step"))
+    elif kind is Kind.CO_SIMULATION and not interface.variable_step and step is not None:
+        comment = "s, of its default experiment; it takes steps of one length only"
+        lines.append(Line("step", step, comment, sure=_divides(step, CONTROL_STEP)))
+    return Entry("fmu", tuple(lines))
+
+
+def _divides(step: float, whole: float) -> bool:
+    steps = whole / step
+    return steps > 0.5 and math.isclose(steps, round(steps), rel_tol=1e-9)
+
+
+# ---- inputs ----
+
+WAYS: Final = (
+    ("force",),
+    ("drive_force", "brake_force"),
+    ("acceleration",),
+    ("throttle", "brake"),
+    ("speed_setpoint",),
+)
+
+
+def _inputs(model: Model, inputs: Sequence[Variable]) -> tuple[list[Entry], set[str]]:
+    """The way in which the vehicle is driven, and the variables that takes."""
+    ranked = {role: guesses(model, role, inputs) for way in WAYS for role in way}
+    ways = sorted(
+        (way for way in WAYS if all(ranked[role] for role in way) and _distinct(ranked, way)),
+        key=lambda way: -_merit(ranked, way),
+    )
+    if not ways:
+        return [_no_input(ranked, inputs)], set()
+    way = ways[0]
+    rivals = [other for other in ways[1:] if _merit(ranked, other) == _merit(ranked, way)]
+    entries = [_axis("inputs", role, ranked[role]) for role in way]
+    if rivals:
+        other = " and ".join(ranked[role][0].channel.name for role in rivals[0])
+        doubt = f"or is it {' and '.join(rivals[0])} ('{other}')? Choose one way to drive"
+        entries = [_open(entry, doubt) for entry in entries]
+        entries += [_axis("inputs", role, ranked[role], alternative=True) for role in rivals[0]]
+    return entries, {ranked[role][0].channel.variable.name for role in way}
+
+
+def _distinct(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> bool:
+    names = {ranked[role][0].channel.name for role in way}
+    return len(names) == len(way)
+
+
+def _merit(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> float:
+    """The weakest guess counts; two good ones are better than one."""
+    weakest = min(ranked[role][0].score for role in way)
+    fits = min(-1 if ranked[role][0].fits is False else 0 for role in way)
+    both = 1 if len(way) > 1 and way != ("throttle", "brake") else 0
+    return fits * 100.0 + weakest + both
+
+
+def _no_input(ranked: dict[str, list[Guess]], inputs: Sequence[Variable]) -> Entry:
+    for one, other in (("throttle", "brake"), ("drive_force", "brake_force")):
+        for present, missing in ((one, other), (other, one)):
+            if ranked[present] and not ranked[missing]:
+                name = ranked[present][0].channel.name
+                doubt = f"'{name}' is a {present}, but no input is a {missing}; name it"
+                line = Line("variable", "?", "an input of the FMU", sure=False)
+                return Entry(f"inputs.{missing}", (line,), "", printable(doubt), sure=False)
+    names = [printable(v.name, 40) for v in inputs if v.is_real or v.is_integer]
+    has = f"its inputs are {_listed(names)}" if names else "it has no numeric input"
+    doubt = f'no input that drives a vehicle; {has}; add [inputs.force] variable = "..."'
+    lines = (
+        Line("variable", names[0] if len(names) == 1 else "?", _listed(names), sure=False),
+        Line("unit", "?", "N, kN; or another table: docs/vehicles.md", sure=False),
+    )
+    return Entry("inputs.force", lines, "", doubt, sure=False)
+
+
+# ---- outputs ----
+
+
+def _outputs(model: Model) -> list[Entry]:
+    outputs = [v for v in model.variables.values() if v.causality == "output"]
+    inner = [
+        v
+        for v in model.variables.values()
+        if v.causality == "local" and v.variability in {"continuous", "discrete"}
+    ]
+    entries = []
+    speed = guesses(model, "speed", outputs)
+    if speed and speed[0].fits is not False:
+        entries.append(_axis("outputs", "speed", speed))
+    elif hidden := [g for g in guesses(model, "speed", inner) if g.name_score >= 9]:
+        entry = _axis("outputs", "speed", hidden)
+        name = printable(hidden[0].channel.name, 60)
+        doubt = f"no output is a speed; is it the local variable '{name}'? Then write variable = "
+        entries.append(_open(entry, f"{doubt}{toml_value(hidden[0].channel.name)}"))
+    elif speed:
+        entries.append(_axis("outputs", "speed", speed))
+    else:
+        names = [printable(v.name, 40) for v in outputs if v.is_real or v.is_integer]
+        doubt = f"no output is a speed; its outputs are {_listed(names) or 'none'}"
+        lines = (Line("variable", "?", _listed(names), sure=False),)
+        entries.append(Entry("outputs.speed", lines, "", doubt, sure=False))
+    position = [g for g in guesses(model, "position", outputs) if g.fits is not False]
+    if position:
+        entries.append(_axis("outputs", "position", position))
+    acceleration = guesses(model, "measured_acceleration", outputs)
+    if alone(acceleration) and acceleration[0].fits:  # a convenience: not worth a question
+        entries.append(_axis("outputs", "acceleration", acceleration))
+    return entries
+
+
+# ---- the start ----
+
+
+def _initial(model: Model) -> list[Entry]:
+    """Where the FMU is told where it starts; without a sure guess it drives up to its speed."""
+    free = [
+        v
+        for v in model.variables.values()
+        if v.settable and v.causality in {"parameter", "input", "structuralParameter"}
+    ]
+    states = [v for v in model.variables.values() if v.settable and v.causality == "output"]
+    entries = []
+    for quantity, table in (("speed", "initial.speed"), ("position", "initial.position")):
+        ranked = [g for g in guesses(model, f"initial_{quantity}", free) if g.fits is not False]
+        if not ranked:  # the output itself, where it has a start value
+            ranked = [g for g in guesses(model, quantity, states) if g.fits]
+        if not alone(ranked) or ranked[0].name_score < 9:
+            continue
+        entries.append(_axis("initial", quantity, ranked))
+        assert entries[-1].table == table
+    return entries
+
+
+# ---- words ----
+
+
+def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = False) -> Entry:
+    """The table of a role whose best guess comes first."""
+    best = ranked[0]
+    variable, name = best.channel.variable, _channel_name(best.channel)
+    place = f"{table}.{role}"
+    wanted = ROLES[_role_key(table, role)].dimension
+    lines = [Line("variable", name, variable.description)]
+    doubt = ""
+    sure = alone(ranked) and not alternative
+    if not alone(ranked):
+        ties = [g for g in ranked if g.score == best.score]
+        names = _listed([f"'{printable(g.channel.name, 40)}'" for g in ties])
+        doubt = f"which of {names}? write variable = {toml_value(name)} or another"
+    elif variable.size > 1:
+        doubt = f"'{printable(variable.name, 60)}' is an array of {variable.size}; which element?"
+        sure = False
+    pedal = role in {"throttle", "brake"}
+    if best.fits is None:
+        line, question = _unit_question(variable, wanted, pedal=pedal)
+        lines.append(line)
+        doubt = doubt or question
+    elif best.fits is False:
+        line, question = _contradiction(best, variable, role)
+        lines.append(line)
+        doubt = doubt or question
+    else:
+        lines[0] = Line("variable", name, f"{variable.unit}: {variable.description}".rstrip(": "))
+    if pedal:
+        comment = "N at the wheels, fully pressed; giveway fmu identify measures it"
+        lines.append(Line("full_force", PEDAL_FORCE[role], comment, sure=False))
+        doubt = doubt or f"the FMU does not say how strong it is; write full_force = {_force(role)}"
+    if alternative:
+        return Entry(place, tuple(lines), "or else:", "", sure=False)
+    return Entry(place, tuple(lines), "", doubt, sure)
+
+
+def _role_key(table: str, role: str) -> str:
+    if table == "initial":
+        return f"initial_{role}"
+    return "measured_acceleration" if (table, role) == ("outputs", "acceleration") else role
+
+
+def _force(role: str) -> str:
+    return f"{PEDAL_FORCE[role]:g} or what it is [N]"
+
+
+def _unit_question(variable: Variable, wanted: Dimension, *, pedal: bool) -> tuple[Line, str]:
+    common = units.COMMON[wanted]
+    name = printable(variable.name, 60)
+    guess = _unit_in(variable.name, wanted) or common.split(",")[0]
+    if pedal and (variable.maximum or 0.0) > 1.0:
+        guess = "%"
+    if variable.unit:
+        unit = printable(variable.unit, 40)
+        line = Line("unit", "?", f"{common}: nobody knows the FMU's '{unit}'", sure=False)
+        return line, f"'{name}' is in '{unit}', an unknown unit; add unit = \"{guess}\" or its like"
+    line = Line("unit", "?", f"{common}: the FMU does not say", sure=False)
+    return line, f"'{name}' has no unit; add unit = \"{guess}\", or what it is ({common})"
+
+
+def _unit_in(name: str, wanted: Dimension) -> str:
+    """The unit that a name ends with: ``speed_kmh``."""
+    last = re.split(r"[_.\s]", name)[-1]
+    return last if last and units.named(last).dimension == wanted and last != name else ""
+
+
+def _contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, str]:
+    """A name of the role with a unit of something else."""
+    unit, name = printable(variable.unit, 40), printable(variable.name, 60)
+    what = f"'{name}' is in {unit}, {units.quantity(guess.found)}"
+    wanted = ROLES[role].dimension if role in ROLES else units.NONE
+    if role in FORCES and guess.found == units.TORQUE:
+        line = Line("gain", "?", "1/m: 1 over the wheels' radius", sure=False)
+        return line, f"{what}; add gain = 1 / (radius of the wheels [m])"
+    if role in FORCES and guess.found == units.MASS:
+        line = Line("unit", "?", f"{unit} is a mass, not a force; kgf?", sure=False)
+        return line, f'{what}, not a force; add the true unit: unit = "N" (or "kgf")'
+    usual = units.COMMON.get(wanted, "1").split(",")[0]
+    line = Line("unit", "?", f"{unit} is {units.quantity(guess.found)}", sure=False)
+    return line, f'{what}, not {units.quantity(wanted)}; add the true unit: unit = "{usual}"'
+
+
+def _open(entry: Entry, doubt: str) -> Entry:
+    lines = tuple(Line(line.key, line.value, line.comment, sure=False) for line in entry.lines)
+    return Entry(entry.table, lines, entry.why, doubt, sure=False)
+
+
+def _channel_name(channel: Channel) -> str:
+    return channel.name if channel.variable.size > 1 else channel.variable.name
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - 6} more" if len(names) > 6 else ""
+    return f"{', '.join(names[:6])}{more}"
+
+
+def _remarks(model: Model, idle: Sequence[str]) -> Iterable[str]:
+    if idle:
+        names = _listed([f"'{printable(name, 40)}'" for name in idle])
+        yield f"Inputs that keep their start values: {names}; [parameters] sets others."
+    if any(interface.needs_execution_tool for interface in model.interfaces.values()):
+        yield "The FMU needs the tool that made it, installed on this machine."
