@@ -1,6 +1,7 @@
 """Rebuild the shipped FMUs: ``python -m fmus.build [--out DIR]``.
 
-One C source, two FMI versions, five platforms, one compiler (the pinned ``ziglang`` of the extra
+The vehicle (``source/``) and the controller (``controller_source/``): two FMI versions each, five
+platforms, one compiler (the pinned ``ziglang`` of the extra
 ``giveway[build]``), no system compiler. The same bytes come out on every machine: the compiler is
 pinned, nothing of the build folder or the clock enters a binary, and the archive is stored (not
 compressed, which would depend on the zlib at hand) with fixed dates in a fixed order.
@@ -9,24 +10,30 @@ compressed, which would depend on the zlib at hand) with fixed dates in a fixed 
 import argparse
 import hashlib
 import importlib.util
-import struct
 import subprocess
 import sys
 import tempfile
 import uuid
-import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from string import Template
 from typing import Final
 
 from fmus.bundled import FILES, MODEL, FmiVersion
+from fmus.controller_description import (
+    CONTROLLER,
+    CONTROLLER_FILES,
+    ControllerParameters,
+    model_description,
+    token_of,
+)
 from fmus.errors import FmuBuildError
+from fmus.packing import universal_library, without_timestamp, write_archive
 
 ZIG_VERSION: Final = "0.16.0"
 SOURCE: Final = Path(__file__).parent / "source"
-MODEL_FILES: Final = ("plant.h", "plant.c", "instance.h", "instance.c")
+WINDOWS_RUNTIME: Final = "windows_runtime.c"
 FRONT_ENDS: Final[dict[FmiVersion, str]] = {"2.0": "fmi2.c", "3.0": "fmi3.c"}
 
 COMPILE: Final = (
@@ -61,15 +68,58 @@ class Target:
 LINUX_X86: Final = Target("x86_64-linux-gnu.2.17", "x86_64-linux", ".so")
 LINUX_ARM: Final = Target("aarch64-linux-gnu.2.17", "aarch64-linux", ".so")
 WINDOWS: Final = Target(
-    "x86_64-windows-gnu", "x86_64-windows", ".dll", ("-nostdlib", *UCRT), ("windows_runtime.c",)
+    "x86_64-windows-gnu", "x86_64-windows", ".dll", ("-nostdlib", *UCRT), (WINDOWS_RUNTIME,)
 )
 MACOS_X86: Final = Target("x86_64-macos.11.0", "x86_64-darwin", ".dylib")
 MACOS_ARM: Final = Target("aarch64-macos.11.0", "aarch64-darwin", ".dylib")
 TARGETS: Final = (LINUX_X86, LINUX_ARM, WINDOWS, MACOS_X86, MACOS_ARM)
 
 
-def build(out: Path) -> list[Path]:
-    """Build both FMUs into the folder ``out`` and return their paths.
+@dataclass(frozen=True)
+class Recipe:
+    """What one of our models is made of.
+
+    Attributes:
+        model: its name, also that of the libraries.
+        folder: of the sources.
+        files: headers and C files but for the front end, in the order of the archive.
+        archives: the .fmu file per FMI version.
+        flags: more of them for the compiler.
+    """
+
+    model: str
+    folder: Path
+    files: tuple[str, ...]
+    archives: Mapping[FmiVersion, str]
+    flags: tuple[str, ...] = ()
+
+    def read(self, name: str) -> bytes:
+        """A source file, with the line ends that it has in the repository."""
+        return (self.folder / name).read_bytes().replace(b"\r\n", b"\n")
+
+    def c_files(self, version: FmiVersion) -> tuple[str, ...]:
+        """In the order of compilation."""
+        return (*(name for name in self.files if name.endswith(".c")), FRONT_ENDS[version])
+
+
+VEHICLE: Final = Recipe(MODEL, SOURCE, ("plant.h", "plant.c", "instance.h", "instance.c"), FILES)
+REGULATOR: Final = Recipe(
+    CONTROLLER,
+    Path(__file__).parent / "controller_source",
+    tuple(
+        f"{unit}.{kind}"
+        for unit in ("parameters", "speed_problem", "active_set", "refinement", "mpc", "pid")
+        + ("regulator", "instance")
+        for kind in ("h", "c")
+    )
+    + ("snapshot.c",),
+    CONTROLLER_FILES,
+    ("-fno-math-errno",),  # sqrt is the processor's, and no library's
+)
+
+
+def build(out: Path, recipes: Sequence[Recipe] = (VEHICLE,)) -> list[Path]:
+    """Build the FMUs, one per FMI version, into the folder ``out`` and return their paths.
 
     Raises:
         FmuBuildError: the compiler or the FMI headers are missing, or a compilation fails.
@@ -77,15 +127,21 @@ def build(out: Path) -> list[Path]:
     _require_compiler()
     out.mkdir(parents=True, exist_ok=True)
     paths = []
-    for version, file in FILES.items():
-        members = _members(version)
-        path = out / file
-        write_archive(path, members)
-        paths.append(path)
+    for recipe in recipes:
+        for version, file in recipe.archives.items():
+            path = out / file
+            write_archive(path, _members(recipe, version))
+            paths.append(path)
     return paths
 
 
-def compile_library(folder: Path, sources: tuple[str, ...], target: Target, output: str) -> bytes:
+def compile_library(
+    folder: Path,
+    sources: tuple[str, ...],
+    target: Target,
+    output: str,
+    flags: tuple[str, ...] = (),
+) -> bytes:
     """Compile C sources in ``folder`` for a platform and return the shared library's bytes.
 
     Raises:
@@ -94,10 +150,8 @@ def compile_library(folder: Path, sources: tuple[str, ...], target: Target, outp
     objects = []
     for source in (*sources, *target.extra_sources):
         objects.append(f"{Path(source).stem}.{target.folder}.o")
-        headers = ("-I", str(_fmi_headers()))
-        _zig(
-            folder, "cc", "-target", target.zig, *COMPILE, *headers, "-c", source, "-o", objects[-1]
-        )
+        options = (*COMPILE, *flags, "-I", str(_fmi_headers()))
+        _zig(folder, "cc", "-target", target.zig, *options, "-c", source, "-o", objects[-1])
     name = output + target.suffix
     link = ["-target", target.zig, "-shared", "-s", *objects, *target.link, "-o", name]
     if target.suffix == ".dylib":  # else the build's path would be the library's own name
@@ -107,83 +161,67 @@ def compile_library(folder: Path, sources: tuple[str, ...], target: Target, outp
     return without_timestamp(library) if target.suffix == ".dll" else library
 
 
-def write_archive(path: Path, members: Mapping[str, bytes]) -> None:
-    """Write a zip archive whose bytes depend on its members only."""
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as archive:
-        for name, data in members.items():
-            info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
-            info.create_system = 3  # Unix, wherever we are
-            info.external_attr = 0o100644 << 16
-            archive.writestr(info, data)
-
-
-def _members(version: FmiVersion) -> dict[str, bytes]:
+def _members(recipe: Recipe, version: FmiVersion) -> dict[str, bytes]:
     """All files of one FMU, in the order of the archive."""
-    front_end = FRONT_ENDS[version]
-    sources = {name: _read(name) for name in (*MODEL_FILES, front_end)}
-    template = _read(f"modelDescription.fmi{version[0]}.xml")
-    token = _token(template, *sources.values())
-    sources["token.h"] = f'#define MODEL_TOKEN "{token}"\n'.encode()
-    tool = f"giveway, python -m fmus.build with ziglang {ZIG_VERSION}"
-    description = Template(template.decode()).substitute(token=token, tool=tool).encode()
+    sources = {name: recipe.read(name) for name in (*recipe.files, FRONT_ENDS[version])}
+    build_token, description = _describe(recipe, version, sources)
+    sources["token.h"] = f'#define MODEL_TOKEN "{build_token}"\n'.encode()
     with tempfile.TemporaryDirectory() as folder:
-        for name, data in {**sources, "windows_runtime.c": _read("windows_runtime.c")}.items():
+        for name, data in {**sources, "windows_runtime.c": VEHICLE.read(WINDOWS_RUNTIME)}.items():
             Path(folder, name).write_bytes(data)
-        c_files = ("plant.c", "instance.c", front_end)
-        binaries = _LAYOUTS[version](
-            {t: compile_library(Path(folder), c_files, t, MODEL) for t in TARGETS}
-        )
+        c_files = recipe.c_files(version)
+        libraries = {
+            t: compile_library(Path(folder), c_files, t, recipe.model, recipe.flags)
+            for t in TARGETS
+        }
     if version == "3.0":
-        sources["buildDescription.xml"] = _read("buildDescription.xml")
+        sources["buildDescription.xml"] = recipe.read("buildDescription.xml")
+    binaries = _LAYOUTS[version](recipe.model, libraries)
     return {
         "modelDescription.xml": description,
-        "documentation/index.html": _read("documentation.html"),
+        "documentation/index.html": recipe.read("documentation.html"),
         **{f"binaries/{name}": data for name, data in binaries.items()},
         **{f"sources/{name}": data for name, data in sources.items()},
     }
 
 
-def _fmi2_layout(libraries: Mapping[Target, bytes]) -> dict[str, bytes]:
+def _describe(
+    recipe: Recipe, version: FmiVersion, sources: Mapping[str, bytes]
+) -> tuple[str, bytes]:
+    """The token that is compiled in, and modelDescription.xml."""
+    tool = f"giveway, python -m fmus.build with ziglang {ZIG_VERSION}"
+    if recipe is VEHICLE:
+        template = recipe.read(f"modelDescription.fmi{version[0]}.xml")
+        token = _token(template, *sources.values())
+        return token, Template(template.decode()).substitute(token=token, tool=tool).encode()
+    token, parameters = _token(*sources.values()), ControllerParameters()
+    return token, model_description(
+        version,
+        parameters,
+        token=token_of(token, parameters),
+        tool=tool,
+        sources=recipe.c_files(version),
+    )
+
+
+def _fmi2_layout(model: str, libraries: Mapping[Target, bytes]) -> dict[str, bytes]:
     """FMI 2's own folder names; one universal library serves both kinds of Mac."""
     return {
-        f"linux64/{MODEL}.so": libraries[LINUX_X86],
-        f"aarch64-linux/{MODEL}.so": libraries[LINUX_ARM],
-        f"win64/{MODEL}.dll": libraries[WINDOWS],
-        f"darwin64/{MODEL}.dylib": universal_library(libraries[MACOS_X86], libraries[MACOS_ARM]),
+        f"linux64/{model}.so": libraries[LINUX_X86],
+        f"aarch64-linux/{model}.so": libraries[LINUX_ARM],
+        f"win64/{model}.dll": libraries[WINDOWS],
+        f"darwin64/{model}.dylib": universal_library(libraries[MACOS_X86], libraries[MACOS_ARM]),
     }
 
 
-def _fmi3_layout(libraries: Mapping[Target, bytes]) -> dict[str, bytes]:
-    return {f"{t.folder}/{MODEL}{t.suffix}": data for t, data in libraries.items()}
+def _fmi3_layout(model: str, libraries: Mapping[Target, bytes]) -> dict[str, bytes]:
+    return {f"{t.folder}/{model}{t.suffix}": data for t, data in libraries.items()}
 
 
-_LAYOUTS: Final[dict[FmiVersion, Callable[[Mapping[Target, bytes]], dict[str, bytes]]]] = {
+_LAYOUTS: Final[dict[FmiVersion, Callable[[str, Mapping[Target, bytes]], dict[str, bytes]]]] = {
     "2.0": _fmi2_layout,
     "3.0": _fmi3_layout,
 }
-
-
-def without_timestamp(library: bytes) -> bytes:
-    """Clear the link time in a Windows library (TimeDateStamp of its COFF header)."""
-    (header,) = struct.unpack_from("<I", library, 0x3C)
-    return library[: header + 8] + bytes(4) + library[header + 12 :]
-
-
-def universal_library(*slices: bytes) -> bytes:
-    """Join Mach-O libraries of different processors into one (what ``lipo -create`` does).
-
-    The format is ``struct fat_header`` and ``struct fat_arch`` of Apple's <mach-o/fat.h>, big
-    endian; each slice repeats its processor's type and starts on a page of 16 KiB.
-    """
-    page = 1 << 14
-    header = struct.pack(">II", 0xCAFEBABE, len(slices))
-    body = b""
-    for data in slices:
-        processor, subtype = struct.unpack_from("<II", data, 4)
-        offset = page + len(body)
-        header += struct.pack(">IIIII", processor, subtype, offset, len(data), 14)
-        body += data + bytes(-len(data) % page)
-    return header.ljust(page, b"\0") + body
 
 
 def _token(*contents: bytes) -> str:
@@ -192,11 +230,6 @@ def _token(*contents: bytes) -> str:
     for content in contents:
         digest.update(hashlib.sha256(content).digest())
     return f"{{{uuid.uuid5(uuid.NAMESPACE_OID, digest.hexdigest())}}}"
-
-
-def _read(name: str) -> bytes:
-    """A file of the source folder, with the line ends that it has in the repository."""
-    return (SOURCE / name).read_bytes().replace(b"\r\n", b"\n")
 
 
 def _require_compiler() -> None:
@@ -240,7 +273,7 @@ def main() -> None:
         "--out", type=Path, default=Path(__file__).parent, help="folder; default: in place"
     )
     try:
-        for path in build(parser.parse_args().out):
+        for path in build(parser.parse_args().out, (VEHICLE, REGULATOR)):
             digest = hashlib.sha256(path.read_bytes()).hexdigest()
             sys.stdout.write(f"{path}  {path.stat().st_size} bytes  sha256 {digest}\n")
     except FmuBuildError as error:

@@ -27,6 +27,7 @@ Mpc *mpc_create(const Parameters *p) {
                                   .rows = (int)rows,
                                   .decay = 1.0 - p->alpha * p->dt / p->M,
                                   .per_force = p->dt / p->M,
+                                  .d_safe = p->d_safe + p->d_margin,
                                   .lower = take(&place, rows),
                                   .upper = take(&place, rows)};
     mpc->active = (ActiveSet){.values = take(&place, rows),
@@ -60,7 +61,7 @@ static double largest_violation(const SpeedProblem *s, const PlanStart *start, c
         worst = larger(worst, (fabs(u - previous) - p->du_max) / force_tolerance);
         position += p->dt * speed;
         speed = s->decay * speed + s->per_force * u;
-        worst = larger(worst, (position - (start->obstacle[i] - p->d_safe)) / POSITION_TOLERANCE);
+        worst = larger(worst, (position - (start->obstacle[i] - s->d_safe)) / POSITION_TOLERANCE);
         worst = larger(worst, (speed - p->v_max) / SPEED_TOLERANCE);
         worst = larger(worst, (p->v_min - speed) / SPEED_TOLERANCE);
         previous = u;

@@ -54,6 +54,7 @@ static const Check CHECKS[] = {
     {offsetof(Parameters, dt), ABOVE_ZERO, "dt = %g s: expected a time step above 0"},
     {offsetof(Parameters, v_r), ABOVE_ZERO, "v_r = %g m/s: expected a speed above 0"},
     {offsetof(Parameters, d_safe), NOT_BELOW_ZERO, "d_safe = %g m: expected 0 or more"},
+    {offsetof(Parameters, d_margin), NOT_BELOW_ZERO, "d_margin = %g m: expected 0 or more"},
     {offsetof(Parameters, d_buffer), ABOVE_ZERO, "d_buffer = %g m: expected a distance above 0"},
     {offsetof(Parameters, v_min), NOT_BELOW_ZERO, "v_min = %g m/s: expected 0 or more"},
     {offsetof(Parameters, u_max), ABOVE_ZERO, "u_max = %g N: expected a force above 0"},

@@ -13,6 +13,7 @@ typedef struct {
     double dt;       /* [s]        time between two decisions */
     double v_r;      /* [m/s]      desired speed */
     double d_safe;   /* [m]        distance to keep */
+    double d_margin; /* [m]        added to it in plans: how far the vehicle may miss its model */
     double d_buffer; /* [m]        over which the PID's reference speed rises to v_r */
     double v_min;    /* [m/s] */
     double v_max;    /* [m/s] */

@@ -74,7 +74,7 @@ Infeasibility speed_problem_update(SpeedProblem *s, const PlanStart *start) {
     double *const lower = s->lower, *const upper = s->upper;
     const double after_one = start->position + p->dt * start->speed; /* x_1(k+1) */
     s->target = start->reference_speed;
-    if (after_one > x_p[0] - p->d_safe + SLACK) return TOO_CLOSE;
+    if (after_one > x_p[0] - s->d_safe + SLACK) return TOO_CLOSE;
 
     for (int i = 0; i < N; ++i) {
         lower[i] = p->v_min;
@@ -84,7 +84,7 @@ Infeasibility speed_problem_update(SpeedProblem *s, const PlanStart *start) {
     const double strongest = smaller(p->u_max, start->previous_force + p->du_max);
     lower[0] = larger(p->v_min, s->decay * start->speed + s->per_force * weakest);
     upper[0] = smaller(p->v_max, s->decay * start->speed + s->per_force * strongest);
-    upper[0] = smaller(upper[0], (x_p[1] - p->d_safe - after_one) / p->dt);
+    upper[0] = smaller(upper[0], (x_p[1] - s->d_safe - after_one) / p->dt);
     for (int i = N; i < 2 * N - 1; ++i) {
         lower[i] = -s->per_force * p->u_max;
         upper[i] = s->per_force * p->u_max;
@@ -97,7 +97,7 @@ Infeasibility speed_problem_update(SpeedProblem *s, const PlanStart *start) {
     upper[2 * N - 1] -= s->decay * start->speed;
     for (int i = 2; i < N; ++i) {
         lower[3 * N - 4 + i] = -HUGE_VAL;
-        upper[3 * N - 4 + i] = (x_p[i] - p->d_safe - after_one) / p->dt;
+        upper[3 * N - 4 + i] = (x_p[i] - s->d_safe - after_one) / p->dt;
     }
     for (int i = 0; i < s->rows; ++i) {
         lower[i] -= SLACK;

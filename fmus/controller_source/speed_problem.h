@@ -43,6 +43,7 @@ typedef struct {
     int N, rows;
     double decay;     /* a */
     double per_force; /* dt/M */
+    double d_safe;    /* [m] the margin included */
     double target;    /* [m/s] the reference speed, of every step */
     double *lower;    /* (rows,) */
     double *upper;    /* (rows,) */

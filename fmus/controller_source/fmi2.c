@@ -1,0 +1,201 @@
+/* FMI 2.0 for Co-Simulation on top of instance.h. */
+#include "fmi2Functions.h"
+#include "instance.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct {
+    Instance base; /* first, so that the two pointers convert */
+    fmi2CallbackLogger logger;
+    fmi2ComponentEnvironment environment;
+} Component;
+
+static void write_message(const Instance *self, Status status, const char *category, const char *message) {
+    const Component *c = (const Component *)self;
+    if (c->logger == NULL) return;
+    /* To the host it is a printf format. Escaped instead of sent through "%s", it can also be read by
+     * a host that cannot expand formats, as those in languages without C's variable arguments. */
+    char format[2 * MESSAGE_SIZE];
+    char *end = format;
+    for (; *message != '\0'; ++message) {
+        if (*message == '%') *end++ = '%';
+        *end++ = *message;
+    }
+    *end = '\0';
+    c->logger(c->environment, self->name, (fmi2Status)status, category, format);
+}
+
+static fmi2Status unsupported(fmi2Component c, const char *function) {
+    return c == NULL ? fmi2Error : (fmi2Status)instance_error(c, "%s: this model does not offer it", function);
+}
+
+#define REQUIRE(c, function, phases) \
+    if ((c) == NULL || instance_require((c), (function), (phases))) return fmi2Error
+
+/* ---- creation ---- */
+
+const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
+
+const char *fmi2GetVersion(void) { return fmi2Version; }
+
+fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
+                              fmi2String fmuResourceLocation, const fmi2CallbackFunctions *functions,
+                              fmi2Boolean visible, fmi2Boolean loggingOn) {
+    Component *c = calloc(1, sizeof *c);
+    if (c == NULL) return NULL;
+    c->base.write = write_message;
+    if (functions != NULL) {
+        c->logger = functions->logger;
+        c->environment = functions->componentEnvironment;
+    }
+    bool created = instance_create(&c->base, instanceName, fmuGUID, loggingOn);
+    if (created && fmuType != fmi2CoSimulation) {
+        instance_error(&c->base, "fmi2Instantiate: this FMU is for Co-Simulation only");
+        created = false;
+    }
+    if (created) return c;
+    instance_destroy(&c->base);
+    return NULL;
+}
+
+void fmi2FreeInstance(fmi2Component c) { instance_destroy(c); }
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories, const fmi2String categories[]) {
+    if (c == NULL) return fmi2Error;
+    ((Instance *)c)->debug = loggingOn;
+    return fmi2OK;
+}
+
+/* ---- life cycle ---- */
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance, fmi2Real startTime,
+                               fmi2Boolean stopTimeDefined, fmi2Real stopTime) {
+    REQUIRE(c, "fmi2SetupExperiment", CREATED);
+    return (fmi2Status)instance_set_experiment(c, startTime, stopTimeDefined ? stopTime : HUGE_VAL);
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
+    REQUIRE(c, "fmi2EnterInitializationMode", CREATED);
+    return (fmi2Status)instance_enter(c, INITIALISING);
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
+    REQUIRE(c, "fmi2ExitInitializationMode", INITIALISING);
+    return (fmi2Status)instance_exit_initialisation(c);
+}
+
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2Real communicationStepSize,
+                      fmi2Boolean noSetFMUStatePriorToCurrentPoint) {
+    if (c == NULL) return fmi2Error;
+    return (fmi2Status)instance_step(c, "fmi2DoStep", currentCommunicationPoint, communicationStepSize);
+}
+
+fmi2Status fmi2Terminate(fmi2Component c) {
+    return c == NULL ? fmi2Error : (fmi2Status)instance_terminate(c, "fmi2Terminate");
+}
+
+fmi2Status fmi2Reset(fmi2Component c) { return c == NULL ? fmi2Error : (fmi2Status)instance_reset(c, "fmi2Reset"); }
+
+/* ---- variables ---- */
+
+#define TRANSFER(NAME, VALUE, BODY)                                                              \
+    fmi2Status NAME(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, VALUE value[]) { \
+        if (c == NULL) return fmi2Error;                                                         \
+        for (size_t i = 0; i < nvr; ++i)                                                         \
+            if (BODY) return fmi2Error;                                                          \
+        return fmi2OK;                                                                           \
+    }
+
+static Status get_boolean(Instance *self, fmi2ValueReference reference, fmi2Boolean *value) {
+    bool is_true = false;
+    const Status status = instance_get_boolean(self, reference, &is_true);
+    *value = is_true ? fmi2True : fmi2False;
+    return status;
+}
+
+TRANSFER(fmi2GetReal, fmi2Real, instance_get_real(c, vr[i], &value[i]))
+TRANSFER(fmi2SetReal, const fmi2Real, instance_set_real(c, vr[i], value[i]))
+TRANSFER(fmi2GetInteger, fmi2Integer, instance_get_integer(c, vr[i], &value[i]))
+TRANSFER(fmi2SetInteger, const fmi2Integer, instance_set_horizon(c, vr[i], value[i], CREATED | INITIALISING))
+TRANSFER(fmi2GetBoolean, fmi2Boolean, get_boolean(c, vr[i], &value[i]))
+TRANSFER(fmi2SetBoolean, const fmi2Boolean, instance_set_boolean(c, vr[i], value[i] != fmi2False))
+
+/* The model has no strings: asking for none of them is no error. */
+#define ABSENT(NAME, VALUE)                                                                     \
+    fmi2Status NAME(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, VALUE value[]) { \
+        return nvr == 0 ? fmi2OK : unsupported(c, #NAME);                                       \
+    }
+ABSENT(fmi2GetString, fmi2String)
+ABSENT(fmi2SetString, const fmi2String)
+
+/* ---- saved states ---- */
+
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate) {
+    return c == NULL ? fmi2Error : (fmi2Status)instance_save(c, (Snapshot **)FMUstate);
+}
+
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate) {
+    return c == NULL ? fmi2Error : (fmi2Status)instance_restore(c, FMUstate);
+}
+
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate) {
+    if (FMUstate == NULL) return fmi2OK;
+    free(*FMUstate);
+    *FMUstate = NULL;
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t *size) {
+    *size = snapshot_size();
+    return fmi2OK;
+}
+
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[], size_t size) {
+    if (c == NULL) return fmi2Error;
+    return (fmi2Status)snapshot_serialize(c, FMUstate, serializedState, size);
+}
+
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size, fmi2FMUstate *FMUstate) {
+    if (c == NULL) return fmi2Error;
+    return (fmi2Status)snapshot_deserialize(c, serializedState, size, (Snapshot **)FMUstate);
+}
+
+/* ---- what every FMU has to export but this one does not offer ---- */
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference vUnknown_ref[], size_t nUnknown,
+                                        const fmi2ValueReference vKnown_ref[], size_t nKnown, const fmi2Real dvKnown[],
+                                        fmi2Real dvUnknown[]) {
+    return unsupported(c, "fmi2GetDirectionalDerivative");
+}
+
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                       const fmi2Integer order[], const fmi2Real value[]) {
+    return nvr == 0 ? fmi2OK : unsupported(c, "fmi2SetRealInputDerivatives");
+}
+
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
+                                        const fmi2Integer order[], fmi2Real value[]) {
+    return nvr == 0 ? fmi2OK : unsupported(c, "fmi2GetRealOutputDerivatives");
+}
+
+/* Steps are never asynchronous: nothing can be cancelled or pending. */
+fmi2Status fmi2CancelStep(fmi2Component c) { return unsupported(c, "fmi2CancelStep"); }
+
+fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind s, fmi2Status *value) { return fmi2Discard; }
+
+fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind s, fmi2Real *value) {
+    if (c == NULL || s != fmi2LastSuccessfulTime) return fmi2Discard;
+    *value = ((Instance *)c)->now.time;
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind s, fmi2Integer *value) { return fmi2Discard; }
+
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boolean *value) {
+    if (c == NULL || s != fmi2Terminated) return fmi2Discard;
+    *value = fmi2False; /* it never ends a simulation by itself */
+    return fmi2OK;
+}
+
+fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind s, fmi2String *value) { return fmi2Discard; }

@@ -1,0 +1,281 @@
+/* FMI 3.0 for Co-Simulation on top of instance.h. */
+#include "fmi3Functions.h"
+#include "instance.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct {
+    Instance base; /* first, so that the two pointers convert */
+    fmi3LogMessageCallback log;
+    fmi3InstanceEnvironment environment;
+} Component;
+
+static void write_message(const Instance *self, Status status, const char *category, const char *message) {
+    const Component *c = (const Component *)self;
+    if (c->log != NULL) c->log(c->environment, (fmi3Status)status, category, message);
+}
+
+static fmi3Status unsupported(fmi3Instance instance, const char *function) {
+    return instance == NULL ? fmi3Error : (fmi3Status)instance_error(instance, "%s: this model does not offer it", function);
+}
+
+#define REQUIRE(instance, function, phases) \
+    if ((instance) == NULL || instance_require((instance), (function), (phases))) return fmi3Error
+
+/* ---- creation ---- */
+
+const char *fmi3GetVersion(void) { return fmi3Version; }
+
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
+                                         fmi3Boolean visible, fmi3Boolean loggingOn, fmi3Boolean eventModeUsed,
+                                         fmi3Boolean earlyReturnAllowed,
+                                         const fmi3ValueReference requiredIntermediateVariables[],
+                                         size_t nRequiredIntermediateVariables,
+                                         fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage,
+                                         fmi3IntermediateUpdateCallback intermediateUpdate) {
+    Component *c = calloc(1, sizeof *c);
+    if (c == NULL) return NULL;
+    c->base.write = write_message;
+    c->log = logMessage;
+    c->environment = instanceEnvironment;
+    if (instance_create(&c->base, instanceName, instantiationToken, loggingOn)) return c;
+    instance_destroy(&c->base);
+    return NULL;
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
+                                          fmi3Boolean visible, fmi3Boolean loggingOn,
+                                          fmi3InstanceEnvironment instanceEnvironment,
+                                          fmi3LogMessageCallback logMessage) {
+    return NULL;
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3String instantiationToken,
+                                               fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+                                               fmi3InstanceEnvironment instanceEnvironment,
+                                               fmi3LogMessageCallback logMessage, fmi3ClockUpdateCallback clockUpdate,
+                                               fmi3LockPreemptionCallback lockPreemption,
+                                               fmi3UnlockPreemptionCallback unlockPreemption) {
+    return NULL;
+}
+
+void fmi3FreeInstance(fmi3Instance instance) { instance_destroy(instance); }
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
+                               const fmi3String categories[]) {
+    if (instance == NULL) return fmi3Error;
+    ((Instance *)instance)->debug = loggingOn;
+    return fmi3OK;
+}
+
+/* ---- life cycle ---- */
+
+fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance) {
+    REQUIRE(instance, "fmi3EnterConfigurationMode", CREATED);
+    return (fmi3Status)instance_enter(instance, CONFIGURING);
+}
+
+fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance) {
+    REQUIRE(instance, "fmi3ExitConfigurationMode", CONFIGURING);
+    return (fmi3Status)instance_enter(instance, CREATED);
+}
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean toleranceDefined, fmi3Float64 tolerance,
+                                       fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime) {
+    REQUIRE(instance, "fmi3EnterInitializationMode", CREATED);
+    if (instance_set_experiment(instance, startTime, stopTimeDefined ? stopTime : HUGE_VAL)) return fmi3Error;
+    return (fmi3Status)instance_enter(instance, INITIALISING);
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
+    REQUIRE(instance, "fmi3ExitInitializationMode", INITIALISING);
+    return (fmi3Status)instance_exit_initialisation(instance);
+}
+
+fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
+                      fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
+                      fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime) {
+    if (instance == NULL) return fmi3Error;
+    const Status status = instance_step(instance, "fmi3DoStep", currentCommunicationPoint, communicationStepSize);
+    *eventHandlingNeeded = fmi3False;
+    *terminateSimulation = fmi3False;
+    *earlyReturn = fmi3False;
+    *lastSuccessfulTime = ((Instance *)instance)->now.time;
+    return (fmi3Status)status;
+}
+
+fmi3Status fmi3Terminate(fmi3Instance instance) {
+    return instance == NULL ? fmi3Error : (fmi3Status)instance_terminate(instance, "fmi3Terminate");
+}
+
+fmi3Status fmi3Reset(fmi3Instance instance) {
+    return instance == NULL ? fmi3Error : (fmi3Status)instance_reset(instance, "fmi3Reset");
+}
+
+/* ---- variables: scalars, and the array of N predicted positions ---- */
+
+static size_t size_of(const Instance *self, fmi3ValueReference reference) {
+    return reference == OBSTACLE ? (size_t)self->now.parameters.N : 1;
+}
+
+/* Whether the values of these variables are as many as the host says. */
+static bool sizes_agree(const Instance *self, const char *function, const fmi3ValueReference references[], size_t count,
+                        size_t values) {
+    size_t expected = 0;
+    for (size_t i = 0; i < count; ++i) expected += size_of(self, references[i]);
+    if (values == expected) return true;
+    instance_error(self, "%s: %zu values for %zu variables: expected %zu", function, values, count, expected);
+    return false;
+}
+
+#define ARGUMENTS(VALUE) \
+    fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences, VALUE values[], size_t nValues
+
+#define TRANSFER(NAME, VALUE, BODY)                                                                                 \
+    fmi3Status NAME(ARGUMENTS(VALUE)) {                                                                             \
+        if (instance == NULL || !sizes_agree(instance, #NAME, valueReferences, nValueReferences, nValues)) return fmi3Error; \
+        for (size_t i = 0, k = 0; i < nValueReferences; ++i)                                                        \
+            for (size_t element = 0; element < size_of(instance, valueReferences[i]); ++element, ++k)               \
+                if (BODY(instance, valueReferences[i] + (fmi3ValueReference)element, values + k)) return fmi3Error; \
+        return fmi3OK;                                                                                              \
+    }
+
+static Status set_real(Instance *self, unsigned reference, const double *value) {
+    return instance_set_real(self, reference, *value);
+}
+
+static Status get_int32(Instance *self, unsigned reference, fmi3Int32 *value) {
+    int whole = 0;
+    if (reference == PARAMETER_N) return instance_error(self, "value reference %u: the horizon is a UInt64", reference);
+    const Status status = instance_get_integer(self, reference, &whole);
+    *value = whole;
+    return status;
+}
+
+static Status get_uint64(Instance *self, unsigned reference, fmi3UInt64 *value) {
+    if (reference != PARAMETER_N)
+        return instance_error(self, "value reference %u: no UInt64 variable", reference);
+    *value = (fmi3UInt64)self->now.parameters.N;
+    return STATUS_OK;
+}
+
+/* A structural parameter: only in configuration mode. */
+static Status set_uint64(Instance *self, unsigned reference, const fmi3UInt64 *value) {
+    return instance_set_horizon(self, reference, (double)*value, CONFIGURING);
+}
+
+static Status set_boolean(Instance *self, unsigned reference, const fmi3Boolean *value) {
+    return instance_set_boolean(self, reference, *value);
+}
+
+TRANSFER(fmi3GetFloat64, fmi3Float64, instance_get_real)
+TRANSFER(fmi3SetFloat64, const fmi3Float64, set_real)
+TRANSFER(fmi3GetInt32, fmi3Int32, get_int32)
+TRANSFER(fmi3GetUInt64, fmi3UInt64, get_uint64)
+TRANSFER(fmi3SetUInt64, const fmi3UInt64, set_uint64)
+TRANSFER(fmi3GetBoolean, fmi3Boolean, instance_get_boolean)
+TRANSFER(fmi3SetBoolean, const fmi3Boolean, set_boolean)
+
+/* The model has nothing else that could be read or set: asking for none of it is no error. */
+#define ABSENT(NAME, VALUE)                                                     \
+    fmi3Status NAME(ARGUMENTS(VALUE)) {                                         \
+        return nValueReferences == 0 ? fmi3OK : unsupported(instance, #NAME);   \
+    }
+#define ABSENT_TYPE(TYPE) \
+    ABSENT(fmi3Get##TYPE, fmi3##TYPE) \
+    ABSENT(fmi3Set##TYPE, const fmi3##TYPE)
+ABSENT_TYPE(Float32)
+ABSENT_TYPE(Int8)
+ABSENT_TYPE(UInt8)
+ABSENT_TYPE(Int16)
+ABSENT_TYPE(UInt16)
+ABSENT(fmi3SetInt32, const fmi3Int32)
+ABSENT_TYPE(UInt32)
+ABSENT_TYPE(Int64)
+ABSENT_TYPE(String)
+
+/* ---- saved states ---- */
+
+fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *FMUState) {
+    return instance == NULL ? fmi3Error : (fmi3Status)instance_save(instance, (Snapshot **)FMUState);
+}
+
+fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState FMUState) {
+    return instance == NULL ? fmi3Error : (fmi3Status)instance_restore(instance, FMUState);
+}
+
+fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState) {
+    if (FMUState == NULL) return fmi3OK;
+    free(*FMUState);
+    *FMUState = NULL;
+    return fmi3OK;
+}
+
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState FMUState, size_t *size) {
+    *size = snapshot_size();
+    return fmi3OK;
+}
+
+fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState FMUState, fmi3Byte serializedState[], size_t size) {
+    return instance == NULL ? fmi3Error : (fmi3Status)snapshot_serialize(instance, FMUState, serializedState, size);
+}
+
+fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte serializedState[], size_t size,
+                                   fmi3FMUState *FMUState) {
+    if (instance == NULL) return fmi3Error;
+    return (fmi3Status)snapshot_deserialize(instance, serializedState, size, (Snapshot **)FMUState);
+}
+
+/* ---- what every FMU has to export but this one does not offer ---- */
+
+#define UNSUPPORTED(NAME, ...) \
+    fmi3Status NAME(fmi3Instance instance, __VA_ARGS__) { return unsupported(instance, #NAME); }
+#define UNSUPPORTED_PLAIN(NAME) \
+    fmi3Status NAME(fmi3Instance instance) { return unsupported(instance, #NAME); }
+#define REFERENCES(NAME) const fmi3ValueReference NAME[], size_t n##NAME
+
+UNSUPPORTED_PLAIN(fmi3EnterEventMode)
+UNSUPPORTED_PLAIN(fmi3EnterStepMode)
+UNSUPPORTED_PLAIN(fmi3EnterContinuousTimeMode)
+UNSUPPORTED_PLAIN(fmi3EvaluateDiscreteStates)
+UNSUPPORTED(fmi3UpdateDiscreteStates, fmi3Boolean *discreteStatesNeedUpdate, fmi3Boolean *terminateSimulation,
+            fmi3Boolean *nominalsOfContinuousStatesChanged, fmi3Boolean *valuesOfContinuousStatesChanged,
+            fmi3Boolean *nextEventTimeDefined, fmi3Float64 *nextEventTime)
+
+UNSUPPORTED(fmi3GetBinary, REFERENCES(valueReferences), size_t valueSizes[], fmi3Binary values[], size_t nValues)
+UNSUPPORTED(fmi3SetBinary, REFERENCES(valueReferences), const size_t valueSizes[], const fmi3Binary values[], size_t nValues)
+UNSUPPORTED(fmi3GetClock, REFERENCES(valueReferences), fmi3Clock values[])
+UNSUPPORTED(fmi3SetClock, REFERENCES(valueReferences), const fmi3Clock values[])
+UNSUPPORTED(fmi3GetIntervalDecimal, REFERENCES(valueReferences), fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[])
+UNSUPPORTED(fmi3GetIntervalFraction, REFERENCES(valueReferences), fmi3UInt64 counters[], fmi3UInt64 resolutions[],
+            fmi3IntervalQualifier qualifiers[])
+UNSUPPORTED(fmi3GetShiftDecimal, REFERENCES(valueReferences), fmi3Float64 shifts[])
+UNSUPPORTED(fmi3GetShiftFraction, REFERENCES(valueReferences), fmi3UInt64 counters[], fmi3UInt64 resolutions[])
+UNSUPPORTED(fmi3SetIntervalDecimal, REFERENCES(valueReferences), const fmi3Float64 intervals[])
+UNSUPPORTED(fmi3SetIntervalFraction, REFERENCES(valueReferences), const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
+UNSUPPORTED(fmi3SetShiftDecimal, REFERENCES(valueReferences), const fmi3Float64 shifts[])
+UNSUPPORTED(fmi3SetShiftFraction, REFERENCES(valueReferences), const fmi3UInt64 counters[], const fmi3UInt64 resolutions[])
+
+UNSUPPORTED(fmi3GetNumberOfVariableDependencies, fmi3ValueReference valueReference, size_t *nDependencies)
+UNSUPPORTED(fmi3GetVariableDependencies, fmi3ValueReference dependent, size_t elementIndicesOfDependent[],
+            fmi3ValueReference independents[], size_t elementIndicesOfIndependents[], fmi3DependencyKind dependencyKinds[],
+            size_t nDependencies)
+UNSUPPORTED(fmi3GetDirectionalDerivative, REFERENCES(unknowns), REFERENCES(knowns), const fmi3Float64 seed[], size_t nSeed,
+            fmi3Float64 sensitivity[], size_t nSensitivity)
+UNSUPPORTED(fmi3GetAdjointDerivative, REFERENCES(unknowns), REFERENCES(knowns), const fmi3Float64 seed[], size_t nSeed,
+            fmi3Float64 sensitivity[], size_t nSensitivity)
+UNSUPPORTED(fmi3GetOutputDerivatives, REFERENCES(valueReferences), const fmi3Int32 orders[], fmi3Float64 values[],
+            size_t nValues)
+
+UNSUPPORTED(fmi3CompletedIntegratorStep, fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *enterEventMode,
+            fmi3Boolean *terminateSimulation)
+UNSUPPORTED(fmi3SetTime, fmi3Float64 time)
+UNSUPPORTED(fmi3SetContinuousStates, const fmi3Float64 continuousStates[], size_t nContinuousStates)
+UNSUPPORTED(fmi3GetContinuousStateDerivatives, fmi3Float64 derivatives[], size_t nContinuousStates)
+UNSUPPORTED(fmi3GetEventIndicators, fmi3Float64 eventIndicators[], size_t nEventIndicators)
+UNSUPPORTED(fmi3GetContinuousStates, fmi3Float64 continuousStates[], size_t nContinuousStates)
+UNSUPPORTED(fmi3GetNominalsOfContinuousStates, fmi3Float64 nominals[], size_t nContinuousStates)
+UNSUPPORTED(fmi3GetNumberOfEventIndicators, size_t *nEventIndicators)
+UNSUPPORTED(fmi3GetNumberOfContinuousStates, size_t *nContinuousStates)
+UNSUPPORTED(fmi3ActivateModelPartition, fmi3ValueReference clockReference, fmi3Float64 activationTime)
