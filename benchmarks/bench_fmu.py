@@ -1,7 +1,8 @@
 """What a step of the vehicle costs: python benchmarks/bench_fmu.py.
 
 A tick is: set the force, do a step, get position, speed and acceleration. FMPy's own wrappers
-against VehicleFmu, on the shipped FMUs. The variants take turns, so that a busy machine slows all
+against VehicleFmu, and against IsolatedVehicle, which runs the FMU in another process, on the
+shipped FMUs. The variants take turns, so that a busy machine slows all
 of them; medians over the rounds, and ratios within one run.
 """
 
@@ -10,6 +11,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import tempfile
+from itertools import pairwise
 from statistics import median
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -19,6 +21,7 @@ from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Slave
 
 from fmus import VehicleFmu, bundled_fmu
+from fmus.isolation import IsolatedVehicle
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -64,10 +67,16 @@ def fmpy_ticks(version: str) -> Iterator[Callable[[int], float]]:
             slave.freeInstance()
 
 
+def open_one(kind: str, version: str) -> VehicleFmu | IsolatedVehicle:
+    """A vehicle that runs a shipped FMU."""
+    make = IsolatedVehicle if kind == "isolated" else VehicleFmu
+    return make(bundled_fmu(version), step_size=STEP)
+
+
 @contextlib.contextmanager
-def vehicle_ticks(version: str) -> Iterator[Callable[[int], float]]:
-    """Seconds for so many ticks through VehicleFmu."""
-    with VehicleFmu(bundled_fmu(version), step_size=STEP) as vehicle:
+def vehicle_ticks(kind: str, version: str) -> Iterator[Callable[[int], float]]:
+    """Seconds for so many ticks through a vehicle."""
+    with open_one(kind, version) as vehicle:
 
         def ticks(count: int) -> float:
             vehicle.start()
@@ -80,18 +89,16 @@ def vehicle_ticks(version: str) -> Iterator[Callable[[int], float]]:
         yield ticks
 
 
-@contextlib.contextmanager
-def set_up(version: str) -> Iterator[Callable[[int], float]]:
-    """Seconds for so many vehicles made, started and closed."""
-
-    def make(count: int) -> float:
-        start = perf_counter()
-        for _ in range(count):
-            with VehicleFmu(bundled_fmu(version), step_size=STEP) as vehicle:
-                vehicle.start()
-        return perf_counter() - start
-
-    yield make
+def set_up(kind: str, version: str) -> tuple[float, float, float]:
+    """Seconds until a vehicle has been made and started, for another start, and to close it."""
+    times = [perf_counter()]
+    with open_one(kind, version) as vehicle:
+        vehicle.start()
+        times.append(perf_counter())
+        vehicle.start()
+        times.append(perf_counter())
+    first, again, closed = (b - a for a, b in pairwise([*times, perf_counter()]))
+    return first, again, closed
 
 
 def main() -> None:
@@ -99,25 +106,30 @@ def main() -> None:
     parser.add_argument("--ticks", type=int, default=5_000, help="ticks in a round")
     parser.add_argument("--rounds", type=int, default=15)
     options = parser.parse_args()
-    versions = ("2.0", "3.0")
-    kinds = {"FMPy": fmpy_ticks, "VehicleFmu": vehicle_ticks}
+    versions, kinds = ("2.0", "3.0"), ("FMPy", "in-process", "isolated")
     with contextlib.ExitStack() as stack:
         ticks = {
-            (version, kind): stack.enter_context(make(version))
+            (version, kind): stack.enter_context(
+                fmpy_ticks(version) if kind == "FMPy" else vehicle_ticks(kind, version)
+            )
             for version in versions
-            for kind, make in kinds.items()
+            for kind in kinds
         }
-        makers = {version: stack.enter_context(set_up(version)) for version in versions}
         rounds = [
             {variant: run(options.ticks) / options.ticks * 1e6 for variant, run in ticks.items()}
             for _ in range(options.rounds)
         ]
-        made = {version: make(20) / 20 * 1e3 for version, make in makers.items()}
-    print(f"{'':8}{'FMPy':>12}{'VehicleFmu':>14}{'ratio':>8}{'set up':>12}")
+    print(f"{'a tick':10}" + "".join(f"{kind:>15}" for kind in kinds) + f"{'isolation':>15}")
     for version in versions:
-        bare, ours = (median(r[version, kind] for r in rounds) for kind in kinds)
-        ratio = median(r[version, "FMPy"] / r[version, "VehicleFmu"] for r in rounds)
-        print(f"FMI {version:4}{bare:9.2f} us{ours:11.2f} us{ratio:7.1f}x{made[version]:9.2f} ms")
+        columns = "".join(f"{median(r[version, k] for r in rounds):12.2f} us" for k in kinds)
+        added = median(r[version, "isolated"] - r[version, "in-process"] for r in rounds)
+        print(f"FMI {version:6}{columns}{added:+12.2f} us")
+    print(f"\n{'set-up':22}{'first start':>15}{'another':>15}{'close':>15}")
+    for version in versions:
+        for kind in kinds[1:]:
+            made = zip(*(set_up(kind, version) for _ in range(options.rounds)), strict=True)
+            columns = "".join(f"{1e3 * median(times):12.2f} ms" for times in made)
+            print(f"FMI {version:6}{kind:12}{columns}")
 
 
 if __name__ == "__main__":

@@ -66,7 +66,11 @@ class GuardedKeeper:
         arguments = ("guardian", control.fileno(), self._owner, self._folder)
         with control, self._log.open("wb") as log:
             self._process = spawn(
-                *arguments, folder=self._folder, output=log, pass_fds=(control.fileno(),)
+                self._path,
+                *arguments,
+                folder=self._folder,
+                output=log,
+                pass_fds=(control.fileno(),),
             )
 
     def _dismiss(self) -> None:

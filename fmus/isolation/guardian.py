@@ -83,7 +83,7 @@ class _Guardian:
                 elif source == self._wake:
                     os.read(self._wake, 512)
                     self._reap()
-                else:
+                elif source == self._control.fileno():  # and no file closed a moment ago
                     serving = self._obey()
             serving = serving and os.getppid() == self._parent
         self._bury()

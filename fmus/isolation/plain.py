@@ -41,7 +41,7 @@ class PlainKeeper:
         token = secrets.token_hex(16)
         with socket.create_server(("127.0.0.1", 0)) as server:
             arguments = ("worker", server.getsockname()[1], token, self._folder)
-            process = spawn(*arguments, folder=self._folder, output=subprocess.PIPE)
+            process = spawn(self._path, *arguments, folder=self._folder, output=subprocess.PIPE)
             self._process, self._printed = process, PrintedTail()
             self._reader = threading.Thread(target=self._read, args=(process,), daemon=True)
             self._reader.start()

@@ -26,16 +26,25 @@ _BOOT: Final = (
 
 
 def spawn(
-    module: str, *arguments: object, folder: Path, output: Any, pass_fds: Sequence[int] = ()
+    path: Path,
+    module: str,
+    *arguments: object,
+    folder: Path,
+    output: Any,
+    pass_fds: Sequence[int] = (),
 ) -> subprocess.Popen[bytes]:
     """An interpreter like this one that runs ``main`` of a module of this package.
 
     Args:
+        path: of the FMU, named in errors.
         module: its name.
         arguments: of ``main``: numbers and texts.
         folder: the vehicle's temporary one.
         output: where it prints.
         pass_fds: files that it inherits.
+
+    Raises:
+        FmuCrashError: it cannot be started.
     """
     scratch = str(folder / "scratch")
     values = [a if isinstance(a, int) else str(a) for a in arguments]
@@ -46,18 +55,21 @@ def spawn(
     }
     given = json.dumps([[str(Path(entry).absolute()) for entry in sys.path], values])
     # -P: nothing is imported from the working directory before our paths are set
-    return subprocess.Popen(
-        [sys.executable, "-P", *(flag for flag, on in flags.items() if on)]
-        + ["-c", _BOOT.format(module=module), given],
-        stdin=subprocess.DEVNULL,
-        stdout=output,
-        stderr=subprocess.STDOUT,
-        cwd=scratch,
-        env=os.environ | {"TMPDIR": scratch},
-        pass_fds=pass_fds,
-        start_new_session=True,  # Ctrl-C in the terminal is not for it
-        creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # likewise on Windows
-    )
+    try:
+        return subprocess.Popen(
+            [sys.executable, "-P", *(flag for flag, on in flags.items() if on)]
+            + ["-c", _BOOT.format(module=module), given],
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            cwd=scratch,
+            env=os.environ | {"TMPDIR": scratch},
+            pass_fds=pass_fds,
+            start_new_session=True,  # Ctrl-C in the terminal is not for it
+            creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # likewise on Windows
+        )
+    except OSError as error:
+        raise no_process(path, str(error).encode()) from None
 
 
 def kill_group(process: subprocess.Popen[bytes]) -> None:
