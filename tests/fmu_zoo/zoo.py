@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import copy
 import functools
+import subprocess
+import sys
 import uuid
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import tomlkit
@@ -17,8 +20,8 @@ from fmus import build
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
+PYTHON: Final = Path(__file__).parent / "python"
 OLD_FOLDERS: Final = {  # of FMI 1 and 2, by that of FMI 3
     "x86_64-linux": "linux64",
     "aarch64-linux": "aarch64-linux",
@@ -76,6 +79,25 @@ class Zoo:
         key = f"{file} {car}"
         if key not in self._built:
             self._built[key] = self._write(car, file)
+        return self._built[key]
+
+    def python_car(self, fmi: str) -> Path:
+        """The car of python/fmi2_car.py (PythonFMU) or python/fmi3_car.py (PythonFMU3).
+
+        It has the parameters ``mass``, ``friction`` and ``v0``; FMI 2.0: no units, and a parameter
+        ``broken`` with which it raises an exception at 0.2 s; FMI 3.0: kN and km/h.
+        """
+        key = f"python {fmi}"
+        if key not in self._built:
+            packer = {"2.0": "pythonfmu", "3.0": "pythonfmu3"}[fmi]
+            source = PYTHON / f"fmi{fmi[0]}_car.py"
+            folder = self._folder / packer
+            subprocess.run(
+                [sys.executable, "-m", packer, "build", "-f", str(source), "-d", str(folder)],
+                check=True,
+                capture_output=True,
+            )
+            (self._built[key],) = folder.glob("*.fmu")
         return self._built[key]
 
     def profile(self, path: Path) -> dict[str, Any]:
