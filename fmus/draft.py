@@ -27,7 +27,7 @@ class Line:
     sure: bool = True
 
     def __str__(self) -> str:
-        comment = f"  # {printable(self.comment, 120)}" if self.comment else ""
+        comment = f"  # {printable(self.comment, 80)}" if self.comment else ""
         return f"{'' if self.sure else '# ? '}{self.key} = {toml_value(self.value)}{comment}"
 
 
