@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fmus.profile import Value, VehicleProfile
+    from fmus.vehicle import Vehicle
 
 __all__ = ["IsolatedVehicle", "open_vehicle"]
 
@@ -25,7 +26,7 @@ def open_vehicle(
     profile: VehicleProfile | None = None,
     start_values: Mapping[str, Value] | None = None,
     isolated: bool | None = None,
-) -> VehicleFmu | IsolatedVehicle:
+) -> Vehicle:
     """A vehicle that runs an FMU.
 
     Args:
@@ -40,5 +41,5 @@ def open_vehicle(
     """
     if isolated is None:
         isolated = not is_bundled(Path(path))
-    make = IsolatedVehicle if isolated else VehicleFmu
+    make: type[IsolatedVehicle | VehicleFmu] = IsolatedVehicle if isolated else VehicleFmu
     return make(path, step_size=step_size, profile=profile, start_values=start_values)

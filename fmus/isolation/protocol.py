@@ -19,7 +19,7 @@ START: Final = b"strt"  # position [m], speed [m/s]
 STEP: Final = b"step"  # force [N], 0
 QUIT: Final = b"quit"  # 0, 0
 DONE: Final = b"done"  # position [m], speed [m/s], acceleration [m/s2]
-FAILED: Final = b"fail"  # the text is the error
+FAILED: Final = b"fail"  # likewise; the text is the error
 REQUEST: Final = struct.Struct("<4sIdd")  # what, number, two values
 REPLY: Final = struct.Struct("<4sIIddd")  # what, number of the request, size of the text, values
 TEXT_LIMIT: Final = 1 << 16  # [bytes]
@@ -113,11 +113,11 @@ def receive(connection: socket.socket) -> tuple[bytes, int, float, float] | None
 
 def reply(
     connection: socket.socket,
+    kind: bytes,
     number: int,
-    values: tuple[float, float, float] | None,
+    state: tuple[float, float, float],
     text: Text | None = None,
 ) -> None:
-    """Answer a request; without values it has failed."""
+    """Answer a request with DONE or FAILED."""
     body = json.dumps(text).encode() if text else b""
-    kind, numbers = (FAILED, (0.0, 0.0, 0.0)) if values is None else (DONE, values)
-    connection.sendall(REPLY.pack(kind, number, len(body), *numbers) + body)
+    connection.sendall(REPLY.pack(kind, number, len(body), *state) + body)

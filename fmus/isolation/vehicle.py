@@ -13,7 +13,6 @@ from fmus.errors import (
     FmuCrashError,
     FmuError,
     FmuOutputError,
-    FmuStartError,
     FmuStateError,
     FmuStepError,
 )
@@ -70,6 +69,7 @@ class IsolatedVehicle:
         self.warnings: list[str] = []
         self._start_timeout = prepared.start_timeout
         self._step_timeout = prepared.step_timeout
+        self._stretch = prepared.pace.stretch
         self._steps = 0
         self._line: Line | None = None
         self._failed = False
@@ -101,6 +101,7 @@ class IsolatedVehicle:
         """
         if not self._closing.alive:
             raise FmuStateError(self._refusal)
+        self.warnings = []
         self._end()
         self._refuse("has not started; call start() again")
         self._line = Line(self._keeper.begin())
@@ -120,7 +121,7 @@ class IsolatedVehicle:
         if self._refusal:
             raise FmuStateError(self._refusal)
         if not isfinite(force):
-            msg = f"{self.path}: force {force} N at {self.time:g} s; expected a finite number"
+            msg = f"{self.path}: force {force} N at {self.time:.10g} s; expected a finite number"
             raise FmuStepError(msg)
         self._exchange(STEP, force, 0.0, self._step_timeout)
         self._steps += 1
@@ -154,10 +155,10 @@ class IsolatedVehicle:
             if text:
                 self.warnings += _warnings(text)
             if not done:
-                raise _error(self.path, text)
+                raise self._told(text, (x, v, a))
             if not isfinite(x + v + a) and not (isfinite(x) and isfinite(v) and isfinite(a)):
                 msg = f"{self.path}: position {x} m, speed {v} m/s, acceleration {a} m/s2"
-                raise FmuOutputError(f"{msg} at {self.time:g} s; expected finite numbers")
+                raise FmuOutputError(f"{msg} at {self.time:.10g} s; expected finite numbers")
         except FmuError:
             self._fail()
             raise
@@ -169,6 +170,18 @@ class IsolatedVehicle:
             raise
         self.position, self.speed, self.acceleration = x, v, a
 
+    def _told(self, text: Text, state: tuple[float, float, float]) -> FmuError:
+        """The error of the FMU's process: its class by name, and among ours only."""
+        kind = getattr(errors, str(text.get("error")), None)
+        message = printable(text.get("message"), 2000)
+        if not (isinstance(kind, type) and issubclass(kind, FmuError)):
+            return FmuStepError(f"{self.path}: {message}")
+        time = text.get("time")
+        if kind is FmuOutputError and isinstance(time, float):
+            self.time = time
+            self.position, self.speed, self.acceleration = state
+        return kind(message)
+
     def _crash(
         self, what: bytes, force: float, problem: Exception, timeout: float
     ) -> FmuCrashError:
@@ -178,8 +191,8 @@ class IsolatedVehicle:
         when = "while it was loaded and started"
         key = "start_timeout"
         if what == STEP:
-            until = (self._steps + 1) * self.step_size
-            when = f"in the step from {self.time:g} s to {until:g} s under {force:g} N"
+            until = (self._steps + self._stretch) * self.step_size
+            when = f"in the step from {self.time:.10g} s to {until:.10g} s under {force:g} N"
             key = "step_timeout"
         if lost:
             reason = f"the FMU's process {death.cause} {when}{death.last_words}"
@@ -216,7 +229,7 @@ class IsolatedVehicle:
         self._refusal = f"{self.path}: the vehicle {reason}"
 
     def _fail(self) -> None:
-        self._refuse(f"failed at {self.time:g} s; start it again")
+        self._refuse(f"failed at {self.time:.10g} s; start it again")
         self._failed = True
 
 
@@ -228,11 +241,3 @@ def _close(keeper: Keeper, folder: TemporaryDirectory[str]) -> None:
 def _warnings(text: Text) -> list[str]:
     warnings = text.get("warnings")
     return [printable(w, 1000) for w in warnings] if isinstance(warnings, list) else []
-
-
-def _error(path: Path, text: Text) -> FmuError:
-    """The error of the FMU's process; its class by name, among ours only."""
-    kind = getattr(errors, str(text.get("error")), None)
-    if not (isinstance(kind, type) and issubclass(kind, FmuError)):
-        return FmuStartError(f"{path}: {printable(text.get('message'), 2000)}")
-    return kind(printable(text.get("message"), 2000))

@@ -16,7 +16,7 @@ from time import sleep
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from fmus.errors import FmuError
-from fmus.isolation.protocol import LOST, QUIT, START, STEP, Text, receive, reply
+from fmus.isolation.protocol import DONE, FAILED, LOST, QUIT, START, STEP, Text, receive, reply
 from fmus.text import printable
 from fmus.vehicle import VehicleFmu
 
@@ -36,10 +36,7 @@ class Order:
 
     def vehicle(self) -> VehicleFmu:
         """The vehicle, its FMU loaded into this process."""
-        values = {c.name: v for c, v in self.prepared.wiring.start_values.items()}
-        return VehicleFmu(
-            self.prepared.path, step_size=self.prepared.step_size, start_values=values
-        )
+        return VehicleFmu.unpacked(self.prepared, self.folder)
 
 
 def read_order(folder: str) -> Order:
@@ -112,10 +109,7 @@ class _Worker:
             except Exception as error:  # a fault of ours, or an FMU that tampers with Python
                 self._refuse(number, "", f"{type(error).__name__}: {printable(error)}")
             else:
-                vehicle = self._vehicle
-                assert vehicle is not None
-                values = (vehicle.position, vehicle.speed, vehicle.acceleration)
-                reply(self._connection, number, values, text)
+                reply(self._connection, DONE, number, self._state, text)
                 if what == QUIT:
                     return
 
@@ -132,14 +126,22 @@ class _Worker:
 
     def _news(self) -> Text | None:
         """Warnings that have not been told."""
-        warnings: list[str] = getattr(self._vehicle, "warnings", [])
+        warnings = self._vehicle.warnings if self._vehicle is not None else []
         if len(warnings) == self._warned:
             return None
         new = warnings[self._warned :][:_WARNINGS]
         self._warned = len(warnings)
         return {"warnings": [printable(w, _WARNING) for w in new]}
 
+    @property
+    def _state(self) -> tuple[float, float, float]:
+        vehicle = self._vehicle
+        if vehicle is None:
+            return 0.0, 0.0, 0.0
+        return vehicle.position, vehicle.speed, vehicle.acceleration
+
     def _refuse(self, number: int, kind: str, message: str) -> None:
         text: dict[str, Any] = {"error": kind, "message": printable(message, _MESSAGE)}
+        text["time"] = 0.0 if self._vehicle is None else self._vehicle.time
         text |= self._news() or {}
-        reply(self._connection, number, None, text)
+        reply(self._connection, FAILED, number, self._state, text)
