@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from fmus.binaries import this_platform
 from fmus.errors import FmuInterfaceError, FmuPlatformError
-from fmus.fmi._interim import describe, read_model
 from fmus.fmi.co_simulation import CoSimulation
+from fmus.fmi.fmi1 import Fmi1Calls
 from fmus.fmi.fmi2 import Fmi2Calls
 from fmus.fmi.fmi3 import Fmi3Calls
 from fmus.fmi.library import Library
@@ -22,18 +22,19 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import Literal
 
+    from fmus.fmi.calls import Calls
     from fmus.instance import Instance
     from fmus.model import Interface, Model
 
-__all__ = ["describe", "load", "read_model"]
+__all__ = ["load"]
 
-_CALLS = {"2.0": Fmi2Calls, "3.0": Fmi3Calls}
+_CALLS: dict[str, type[Calls]] = {"1.0": Fmi1Calls, "2.0": Fmi2Calls, "3.0": Fmi3Calls}
 
 
 def load(
     model: Model,
-    interface: Interface | None = None,
-    folder: Path | None = None,
+    interface: Interface,
+    folder: Path,
     *,
     solver: Literal["cvode", "rk4"] | None = None,
     tolerance: float | None = None,
@@ -54,10 +55,6 @@ def load(
         FmuInterfaceError: this version and kind cannot be run.
         FmuPlatformError: the binary cannot be loaded, or lacks a function that it must have.
     """
-    if interface is None or folder is None:  # until fmus/vehicle.py is on the new instances
-        from fmus.fmi import _interim
-
-        return _interim.load(model)  # type: ignore[arg-type, return-value]
     if model.fmi_version not in _CALLS:
         msg = f"{model.path}: FMI {model.fmi_version}; expected 1.0, 2.0 or 3.0; export it again"
         raise FmuInterfaceError(msg)

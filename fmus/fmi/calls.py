@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from fmus.instance import STATUS_NAMES, WARNING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from fmus.fmi.library import Function, Library
@@ -219,8 +219,7 @@ class Stepper:
     do_step: Function
     arguments: tuple[Any, ...]
     flags: Any  # indexable
-    progress: Any  # () -> Progress
-    repeat: Any  # (bool) -> None: FMI 1 wants to know that a step is done again
+    progress: Callable[[], Progress]  # after a step that was not simply done
 
 
 def named(status: int) -> str:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from ctypes import c_double
 from typing import TYPE_CHECKING
 
+from fmus.errors import FmuPlatformError
 from fmus.fmi.calls import CallFailedError
 from fmus.fmi.running import RunningInstance
 from fmus.instance import DISCARD, ENDED, WARNING
@@ -16,7 +17,7 @@ from fmus.instance import DISCARD, ENDED, WARNING
 if TYPE_CHECKING:
     from ctypes import c_void_p
 
-    from fmus.fmi.calls import Calls, Stepper
+    from fmus.fmi.calls import Calls
     from fmus.fmi.values import Transfer
     from fmus.instance import Tick
 
@@ -38,8 +39,8 @@ class CoSimulation(RunningInstance):
         super().__init__(calls, tolerance)
         self._rewinds = rewinds and calls.interface.saves_state
         self._start, self._step = c_double(), c_double()
-        for name in ("DoStep",):
-            calls.function(calls.name(name))
+        self._before: c_void_p | None = None  # state before the last step
+        calls.function(calls.name("DoStep"))
 
     def make_tick(self, into: Transfer, out: Transfer) -> Tick:  # noqa: D102 - as in the base
         set_inputs, set_arguments = into.function, into.arguments
@@ -48,7 +49,6 @@ class CoSimulation(RunningInstance):
         self._stepper = stepper = self.calls.stepper(start, step)
         do_step, arguments, flags = stepper.do_step, stepper.arguments, stepper.flags
         look, complete = self.look, self._complete
-        self._before: c_void_p | None = None
         save = self._save if self._rewinds else None
 
         def tick(time: float, size: float) -> int:
@@ -72,7 +72,7 @@ class CoSimulation(RunningInstance):
         if self._rewinds:
             try:
                 self._before = self.calls.save(self._before)
-            except CallFailedError:  # it can do less than it says
+            except (CallFailedError, FmuPlatformError):  # it can do less than it says
                 self._rewinds = False
                 self._before = None
 
@@ -106,9 +106,10 @@ class CoSimulation(RunningInstance):
             if progress.ended:
                 return ENDED
             reached = progress.reached
-            if reached is None or not time + NEGLIGIBLE * size < reached:
+            nothing = NEGLIGIBLE * size
+            if reached is None or not time + nothing < reached <= end + nothing:
                 return DISCARD
-            if reached >= end - NEGLIGIBLE * size:
+            if reached >= end - nothing:
                 return WARNING
             time = reached
             status = self._do(time, end)
@@ -120,7 +121,7 @@ class CoSimulation(RunningInstance):
         return self.look(self._stepper.do_step(*self._stepper.arguments))
 
     def stop(self) -> None:  # noqa: D102
-        if getattr(self, "_before", None) is not None:
+        if self._before is not None:
             self.free_state(self._before)
             self._before = None
         super().stop()

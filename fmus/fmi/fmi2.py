@@ -145,7 +145,7 @@ class Fmi2Calls(Calls):
 
         rollback_possible = c_int(0)  # noSetFMUStatePriorToCurrentPoint = false
         arguments = (self.component, start, step, rollback_possible)
-        return Stepper(self.function("fmi2DoStep"), arguments, (0,), progress, lambda _: None)
+        return Stepper(self.function("fmi2DoStep"), arguments, (0,), progress)
 
     # ---- Model Exchange ----
 

@@ -83,7 +83,8 @@ class Fmi3Calls(Calls):
         self.component = c_void_p(component)
 
     def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102
-        structural, others = [], []
+        structural: list[Setting] = []
+        others: list[Setting] = []
         for one in setting:
             causality = self.model.variables[one.name].causality
             (structural if causality == "structuralParameter" else others).append(one)
@@ -137,7 +138,7 @@ class Fmi3Calls(Calls):
 
         arguments = (self.component, start, step, c_bool(False), *report)
         seen = memoryview(flags).cast("B").cast("H")  # both flags in one look
-        return Stepper(self.function("fmi3DoStep"), arguments, seen, progress, lambda _: None)
+        return Stepper(self.function("fmi3DoStep"), arguments, seen, progress)
 
     # ---- Model Exchange ----
 
@@ -147,8 +148,8 @@ class Fmi3Calls(Calls):
     def update_discrete_states(self) -> EventInfo:  # noqa: D102
         again, end, nominals, values, defined = (c_bool() for _ in range(5))
         time = c_double()
-        flags = (again, end, nominals, values, defined, time)
-        self.call("fmi3UpdateDiscreteStates", *map(byref, flags))
+        flags = (again, end, nominals, values, defined)
+        self.call("fmi3UpdateDiscreteStates", *map(byref, flags), byref(time))
         return EventInfo(
             again=again.value,
             ended=end.value,

@@ -43,7 +43,11 @@ def _convention() -> tuple[int, int, int, int]:
 
 
 _SKIPPED, _INTEGERS, _DOUBLES, _STACK = _convention()
-_EXTRA = (*[c_uint64] * (_SKIPPED + _INTEGERS), *[c_double] * _DOUBLES, *[c_uint64] * _STACK)
+_EXTRA: tuple[Any, ...] = (
+    *[c_uint64] * (_SKIPPED + _INTEGERS),
+    *[c_double] * _DOUBLES,
+    *[c_uint64] * _STACK,
+)
 _FORMATTED = CFUNCTYPE(None, c_void_p, c_void_p, c_int, c_void_p, c_void_p, *_EXTRA)
 _PLAIN = CFUNCTYPE(None, c_void_p, c_int, c_void_p, c_void_p)
 

@@ -6,7 +6,7 @@ from abc import abstractmethod
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from fmus.errors import FmuStartError, FmuStateError
+from fmus.errors import FmuPlatformError, FmuStartError, FmuStateError
 from fmus.fmi.calls import CallFailedError, named
 from fmus.fmi.values import Transfer, settings
 from fmus.instance import ERROR, FATAL, PENDING, WARNING, Instance
@@ -34,6 +34,7 @@ class RunningInstance(Instance):
         self.tolerance = tolerance
         self.journal = calls.journal
         self._initialised = False
+        self._get_outputs: Transfer
         self._worst = 0  # status since the instance was made
         self._idle = self.tick
 
@@ -108,7 +109,7 @@ class RunningInstance(Instance):
     def save(self) -> Any:  # noqa: D102 - as in Instance
         try:
             return self.calls.save()
-        except CallFailedError as error:
+        except (CallFailedError, FmuPlatformError) as error:
             raise self._refusal("does not save its state", error) from error
 
     def restore(self, state: Any) -> None:  # noqa: D102
@@ -117,20 +118,22 @@ class RunningInstance(Instance):
             raise FmuStateError(msg)
         try:
             self.calls.restore(state)
-        except CallFailedError as error:
+        except (CallFailedError, FmuPlatformError) as error:
             raise self._refusal("does not return to the saved state", error) from error
         self._worst = 0
         status = self.look(self._get_outputs.function(*self._get_outputs.arguments))
         if status > WARNING:
-            error = CallFailedError("the reading of its outputs", status)
-            raise self._refusal("does not return to the saved state", error)
+            unread = CallFailedError("the reading of its outputs", status)
+            raise self._refusal("does not return to the saved state", unread)
 
     def free_state(self, state: Any) -> None:  # noqa: D102
         if self.calls.component and self._worst != FATAL:
-            with suppress(CallFailedError):  # nothing is left to do for a state that stays
+            with suppress(
+                CallFailedError, FmuPlatformError
+            ):  # nothing is left to do for a state that stays
                 self.calls.free_state(state)
 
-    def _refusal(self, what: str, error: CallFailedError) -> FmuStateError:
+    def _refusal(self, what: str, error: Exception) -> FmuStateError:
         reason = self.journal.take() or str(error)
         return FmuStateError(f"{self.path}: the FMU {what}: {reason}; start the vehicle again")
 

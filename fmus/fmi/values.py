@@ -191,12 +191,12 @@ class _Group:
         self.function = calls.function(calls.name(verb, ctype.suffix))
         self.arguments = calls.arguments(references, self._values)
 
-    def fill(self, view: memoryview) -> None:
+    def fill(self, view: memoryview[float]) -> None:
         values, convert = self._values, self._convert
         for index, place in self._places:
             values[place] = convert(view[index])
 
-    def empty(self, view: memoryview) -> None:
+    def empty(self, view: memoryview[float]) -> None:
         values = self._values
         for index, place in self._places:
             view[index] = values[place]

@@ -1,0 +1,199 @@
+"""The continuous part of a Model Exchange FMU, as a solver sees it: x' = f(t, x), z = g(t, x)."""
+
+from __future__ import annotations
+
+from ctypes import byref, c_double, c_size_t, c_void_p
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from fmus.fmi.calls import CallFailedError
+from fmus.instance import DISCARD, WARNING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from fmus.fmi.calls import Calls
+
+
+class IntegrationError(Exception):
+    """The solver cannot go on; the message says why and when."""
+
+
+class UndefinedError(Exception):
+    """The FMU has no finite derivatives at a trial point: a smaller step may avoid it."""
+
+
+class ContinuousSystem:
+    """The right-hand side and the event indicators of an FMU in continuous-time mode.
+
+    Attributes:
+        nx: number of continuous states.
+        nz: number of event indicators.
+    """
+
+    def __init__(self, calls: Calls) -> None:
+        self.nx, self.nz = counts(calls)
+        self._component = calls.component
+        self._names = names = calls.exchange_names()
+        self._set_time = calls.function(names["set_time"])
+        self._time = c_double()
+        self._size, self._number = c_size_t(self.nx), c_size_t(self.nz)
+        self._z = np.zeros(self.nz)
+        if self.nx:
+            self._set_states = calls.function(names["set_states"])
+            self._get_states = calls.function(names["get_states"])
+            self._get_derivatives = calls.function(names["get_derivatives"])
+            self._get_nominals = calls.function(names["get_nominals"])
+        if self.nz:
+            self._get_indicators = calls.function(names["get_indicators"])
+
+    def states(self) -> NDArray[np.float64]:
+        """The FMU's states now."""
+        x = np.zeros(self.nx)
+        if self.nx:
+            status = self._get_states(self._component, x.ctypes.data_as(c_void_p), self._size)
+            self._require(status, "get_states")
+        if not np.isfinite(x).all():
+            msg = f"state {_first_odd(x)} of {self.nx} is {x[_first_odd(x) - 1]}"
+            raise IntegrationError(msg)
+        return x
+
+    def nominals(self) -> NDArray[np.float64]:
+        """The states' sizes; what is no positive number counts as 1."""
+        x = np.ones(self.nx)
+        if self.nx:
+            status = self._get_nominals(self._component, x.ctypes.data_as(c_void_p), self._size)
+            if status not in (0, WARNING):
+                return np.ones(self.nx)
+        x = np.abs(x)
+        return np.where(np.isfinite(x) & (x > 0.0), x, 1.0)
+
+    def set_time(self, time: float) -> None:
+        """Tell the FMU the time [s]."""
+        self._time.value = time
+        self._require(self._set_time(self._component, self._time), "set_time")
+
+    def set(self, time: float, x: NDArray[np.float64]) -> None:
+        """Bring the FMU to a point of its trajectory."""
+        self.set_time(time)
+        if self.nx:
+            self._put(x.ctypes.data)
+
+    def derivatives(self, time: float, x: int, slope: int) -> None:
+        """Write x' to an address.
+
+        Args:
+            time: [s].
+            x: address of the states.
+            slope: address for the derivatives.
+
+        Raises:
+            UndefinedError: the FMU discards this point.
+            CallFailedError: the FMU fails.
+        """
+        self.set_time(time)
+        self._put(x)
+        status = self._get_derivatives(self._component, c_void_p(slope), self._size)
+        self._require(status, "get_derivatives")
+
+    def signs(self, time: float, x: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which event indicators are above 0: an event is a change of these (FMI 2.0.4, 3.1.1)."""
+        if not self.nz:
+            return self._z > 0.0
+        self.set(time, x)
+        pointer = self._z.ctypes.data_as(c_void_p)
+        status = self._get_indicators(self._component, pointer, self._number)
+        self._require(status, "get_indicators")
+        if not np.isfinite(self._z).all():
+            odd = _first_odd(self._z)
+            msg = f"event indicator {odd} of {self.nz} is {self._z[odd - 1]} at {time:.9g} s"
+            raise IntegrationError(msg)
+        return self._z > 0.0
+
+    def undefined(self, slope: NDArray[np.float64], time: float) -> str:
+        """Which derivative is no finite number, in words; empty if all are."""
+        if np.isfinite(slope).all():
+            return ""
+        odd = _first_odd(slope)
+        return f"derivative {odd} of {self.nx} is {slope[odd - 1]} at {time:.9g} s"
+
+    def _put(self, x: int) -> None:
+        status = self._set_states(self._component, c_void_p(x), self._size)
+        self._require(status, "set_states")
+
+    def _require(self, status: int, what: str) -> None:
+        if status == DISCARD:
+            msg = f"{self._names[what]} discards this point"
+            raise UndefinedError(msg)
+        if status not in (0, WARNING):
+            raise CallFailedError(self._names[what], status)
+
+
+class Solver(Protocol):
+    """What integrates a continuous system.
+
+    Attributes:
+        x: the states at the end of the last step.
+    """
+
+    x: NDArray[np.float64]
+
+    def restart(self, time: float, x: NDArray[np.float64], nominals: NDArray[np.float64]) -> None:
+        """Begin anew, after an event or with new inputs."""
+
+    def step(self, stop: float) -> float:
+        """One internal step, not beyond ``stop`` [s]; returns where it ends [s].
+
+        Raises:
+            IntegrationError: there is no step that is small enough.
+            CallFailedError: the FMU fails.
+        """
+
+    def at(self, time: float) -> NDArray[np.float64]:
+        """The states at a time within the last step."""
+
+    def close(self) -> None:
+        """Free everything."""
+
+
+def locate(
+    crossed: Callable[[float], bool], before: float, after: float, resolution: float
+) -> float:
+    """When a crossing happens [s]: bisection, up to ``resolution`` after it.
+
+    Args:
+        crossed: whether it has happened at a time between ``before`` and ``after``.
+        before: [s] when it has not.
+        after: [s] when it has.
+        resolution: [s].
+    """
+    while after - before > resolution:
+        middle = before + 0.5 * (after - before)
+        if not before < middle < after:
+            break
+        if crossed(middle):
+            after = middle
+        else:
+            before = middle
+    return after
+
+
+def counts(calls: Calls) -> tuple[int, int]:
+    """Continuous states and event indicators: FMI 3's depend on structural parameters."""
+    found = [calls.model.states, calls.model.event_indicators]
+    if calls.model.fmi_version == "3.0":
+        for index, name in enumerate(
+            ("fmi3GetNumberOfContinuousStates", "fmi3GetNumberOfEventIndicators")
+        ):
+            number = c_size_t()
+            function = calls.library.optional(name)
+            if function is not None and function(calls.component, byref(number)) in (0, WARNING):
+                found[index] = number.value
+    return found[0], found[1]
+
+
+def _first_odd(values: NDArray[np.float64]) -> int:
+    return int(np.argmin(np.isfinite(values))) + 1

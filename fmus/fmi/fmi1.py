@@ -1,0 +1,198 @@
+"""FMI 1.0: functions' names begin with the model's identifier; booleans are characters."""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import Structure, byref, c_byte, c_char_p, c_double, c_int, c_void_p
+from typing import TYPE_CHECKING, ClassVar
+
+from fmus.fmi.calls import (
+    CallFailedError,
+    Calls,
+    CType,
+    EventInfo,
+    Progress,
+    Setting,
+    Stepper,
+    allocators,
+)
+from fmus.fmi.messages import formatted_receiver
+from fmus.instance import ERROR, WARNING
+from fmus.model import Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from fmus.fmi.library import Library
+    from fmus.instance import Journal
+    from fmus.model import Interface, Model
+
+_LAST_SUCCESSFUL_TIME = c_int(2)  # fmiStatusKind
+_LONGEST_WAIT = c_double(0.0)  # [ms] of a tool for its start; 0: as long as it takes
+
+
+class _Callbacks(Structure):  # passed by value
+    _fields_: ClassVar = [
+        ("logger", c_void_p),
+        ("allocateMemory", c_void_p),
+        ("freeMemory", c_void_p),
+        ("stepFinished", c_void_p),
+    ]
+
+
+class _ModelCallbacks(Structure):  # those of Model Exchange end earlier
+    _fields_: ClassVar = _Callbacks._fields_[:3]
+
+
+class _EventInfo(Structure):
+    _fields_: ClassVar = [
+        ("iterationConverged", c_byte),
+        ("stateValueReferencesChanged", c_byte),
+        ("stateValuesChanged", c_byte),
+        ("terminateSimulation", c_byte),
+        ("upcomingTimeEvent", c_byte),
+        ("nextEventTime", c_double),
+    ]
+
+    def read(self) -> EventInfo:
+        return EventInfo(
+            again=not self.iterationConverged,
+            ended=bool(self.terminateSimulation),
+            nominals_changed=bool(self.stateValueReferencesChanged),
+            next_time=self.nextEventTime if self.upcomingTimeEvent else None,
+        )
+
+
+class Fmi1Calls(Calls):
+    """The functions of FMI 1.0."""
+
+    types: ClassVar[Mapping[str, CType]] = {
+        "Real": CType(c_double, "Real"),
+        "Integer": CType(c_int, "Integer"),
+        "Enumeration": CType(c_int, "Integer"),
+        "Boolean": CType(c_byte, "Boolean"),
+        "String": CType(c_char_p, "String"),
+    }
+
+    def __init__(
+        self, library: Library, model: Model, interface: Interface, folder: Path, journal: Journal
+    ) -> None:
+        super().__init__(library, model, interface, folder, journal)
+        self._receiver = formatted_receiver(journal)
+        self._exchange = interface.kind == Kind.MODEL_EXCHANGE
+        logger = ctypes.cast(self._receiver, c_void_p)
+        self._callbacks: Structure = (
+            _ModelCallbacks(logger, *allocators())
+            if self._exchange
+            else _Callbacks(logger, *allocators(), None)
+        )
+        self._first: EventInfo | None = None  # of the initialisation
+        if self._exchange:
+            names = ("InstantiateModel", "Initialize", "Terminate", "FreeModelInstance")
+        else:
+            names = ("InstantiateSlave", "InitializeSlave", "TerminateSlave", "FreeSlaveInstance")
+        make, self._initialise, self._terminate, free = map(self.name, names)
+        self._make = make
+        self._instantiate = library.instantiator(make)
+        self._free = library.function(free)
+        for name in (self._initialise, self._terminate):
+            self.function(name)
+
+    def instantiate(self) -> None:  # noqa: D102 - as in Calls
+        name, guid = (c_char_p(t.encode()) for t in (self.interface.identifier, self.model.guid))
+        logging = c_byte(1)  # for the reason of a failure: some FMUs give it only then
+        if self._exchange:
+            component = self._instantiate(name, guid, self._callbacks, logging)
+        else:
+            component = self._instantiate(
+                name,
+                guid,
+                c_char_p(self.folder.resolve().as_uri().encode()),
+                c_char_p(b"application/x-fmu-sharedlibrary"),
+                _LONGEST_WAIT,
+                c_byte(0),  # not visible
+                c_byte(0),  # not interactive
+                self._callbacks,
+                logging,
+            )
+        if not component:
+            raise CallFailedError(self._make, ERROR)
+        self.component = c_void_p(component)
+
+    def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102
+        for one in setting:
+            self.apply(one)
+
+    def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:  # noqa: D102
+        self.configure(inputs)
+        if not self._exchange:
+            self.call(self._initialise, c_double(0.0), c_byte(0), c_double(0.0))  # no stop time
+            return
+        self.call(self.name("SetTime"), c_double(0.0))
+        info = _EventInfo()
+        controlled = c_byte(tolerance is not None)
+        self.call(self._initialise, controlled, c_double(tolerance or 0.0), byref(info))
+        self._first = info.read()
+
+    def terminate(self) -> None:  # noqa: D102
+        self.call(self._terminate)
+
+    def free(self) -> None:  # noqa: D102
+        self._free(self.component)
+        self.component = None
+
+    def name(self, verb: str, suffix: str = "") -> str:  # noqa: D102
+        return f"{self.interface.identifier}_fmi{verb}{suffix}"
+
+    def state_names(self) -> tuple[str, str, str]:  # noqa: D102
+        return self.name("GetFMUstate"), self.name("SetFMUstate"), self.name("FreeFMUstate")
+
+    # ---- Co-Simulation ----
+
+    def stepper(self, start: c_double, step: c_double) -> Stepper:  # noqa: D102
+        reached = c_double()
+        real_status = self.library.optional(self.name("GetRealStatus"))
+
+        def progress() -> Progress:
+            status = (
+                ERROR
+                if real_status is None
+                else real_status(self.component, _LAST_SUCCESSFUL_TIME, byref(reached))
+            )
+            return Progress(reached.value if status in (0, WARNING) else None, False)
+
+        new_step = c_byte(1)
+        arguments = (self.component, start, step, new_step)
+        return Stepper(self.function(self.name("DoStep")), arguments, (0,), progress)
+
+    # ---- Model Exchange ----
+
+    def enter_event_mode(self) -> None:
+        """FMI 1 has no modes."""
+
+    def update_discrete_states(self) -> EventInfo:  # noqa: D102
+        if self._first is not None:  # the initialisation was the first update
+            first, self._first = self._first, None
+            return first
+        info = _EventInfo()
+        self.call(self.name("EventUpdate"), c_byte(0), byref(info))
+        return info.read()
+
+    def enter_continuous_time_mode(self) -> None:
+        """FMI 1 has no modes."""
+
+    def completed_step(self) -> tuple[bool, bool]:  # noqa: D102
+        event = c_byte()
+        self.call(self.name("CompletedIntegratorStep"), byref(event))
+        return bool(event.value), False
+
+    def exchange_names(self) -> Mapping[str, str]:  # noqa: D102
+        return {
+            "set_time": self.name("SetTime"),
+            "set_states": self.name("SetContinuousStates"),
+            "get_states": self.name("GetContinuousStates"),
+            "get_derivatives": self.name("GetDerivatives"),
+            "get_indicators": self.name("GetEventIndicators"),
+            "get_nominals": self.name("GetNominalContinuousStates"),
+        }

@@ -1,0 +1,254 @@
+"""Model Exchange: the FMU gives derivatives and event indicators, the solver is ours.
+
+One step of the co-simulation is: event mode with the new inputs, then continuous time up to the
+first of a state event, a time event, an event that the FMU wants after an integrator's step, and
+the end of the step; event mode again; and so on (FMI 2.0.4, section 3.2; FMI 3.0.1, section 3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from fmus.errors import FmuInterfaceError
+from fmus.fmi import cvode
+from fmus.fmi.calls import CallFailedError
+from fmus.fmi.continuous import ContinuousSystem, IntegrationError, Solver, UndefinedError, locate
+from fmus.fmi.runge_kutta import RungeKutta
+from fmus.fmi.running import RunningInstance
+from fmus.instance import ENDED, ERROR, WARNING
+
+if TYPE_CHECKING:
+    from fmus.fmi.calls import Calls
+    from fmus.fmi.values import Transfer
+    from fmus.instance import Tick
+
+TOLERANCE = 1e-6  # relative
+RESOLUTION = 1e-12  # of times, relative to the greater of the time and 1 s
+ROUNDS = 100  # of one event iteration
+EVENTS = 1000  # in one step
+INTERNAL_STEPS = 20_000  # in one step
+DENSE = 500  # states up to which CVode's dense Jacobian is affordable
+
+
+class _EndedError(Exception):
+    """The FMU wants the simulation to end."""
+
+
+@dataclass(frozen=True, eq=False)
+class _SavedState:
+    handle: Any
+    next_event: float | None
+
+
+class ModelExchange(RunningInstance):
+    """An FMU that is integrated.
+
+    Args:
+        calls: the FMU's functions.
+        tolerance: relative, of the solver; None: :data:`TOLERANCE`.
+        solver: None: CVode where it runs.
+
+    Raises:
+        FmuInterfaceError: CVode does not run here.
+        FmuPlatformError: a function is missing.
+    """
+
+    def __init__(
+        self, calls: Calls, tolerance: float | None, solver: Literal["cvode", "rk4"] | None
+    ) -> None:
+        super().__init__(calls, TOLERANCE if tolerance is None else tolerance)
+        if solver == "cvode" and not cvode.available():
+            msg = (
+                f"{self.path}: solver cvode does not run on this platform; "
+                'write `solver = "rk4"` under [fmu] of the profile'
+            )
+            raise FmuInterfaceError(msg)
+        self._wanted = solver
+        self._solver: Solver | None = None
+        self._next_event: float | None = None
+        self._update_nominals = False
+        for what in ("set_time", *(("get_derivatives",) if calls.model.states else ())):
+            calls.function(calls.exchange_names()[what])
+
+    def prepare(self) -> None:  # noqa: D102 - as in RunningInstance
+        try:
+            self._system = ContinuousSystem(self.calls)
+            self._iterate(0.0)
+            self.calls.enter_continuous_time_mode()
+            self._solver = self._make_solver()
+            self._nominals = self._system.nominals()
+        except _EndedError:
+            self.journal.add(ERROR, "it wants to end the simulation at its start")
+            msg = "the event iteration"
+            raise CallFailedError(msg, ENDED) from None
+        except (IntegrationError, UndefinedError) as error:
+            self.journal.add(ERROR, str(error))
+            msg = "the initialisation"
+            raise CallFailedError(msg, ERROR) from error
+
+    def make_tick(self, into: Transfer, out: Transfer) -> Tick:  # noqa: D102
+        set_inputs, set_arguments = into.function, into.arguments
+        get_outputs, get_arguments = out.function, out.arguments
+
+        def tick(time: float, size: float) -> int:
+            try:
+                self._begin(time)
+                status = self.look(set_inputs(*set_arguments))
+                if status > WARNING:
+                    return status
+                self._run(time, time + size)
+            except _EndedError:
+                return ENDED
+            except CallFailedError as error:
+                self.journal.add(ERROR, str(error))
+                return self.look(error.status)
+            except (IntegrationError, UndefinedError) as error:
+                self.journal.add(ERROR, str(error))
+                return self.look(ERROR)
+            return self.look(get_outputs(*get_arguments))
+
+        return tick
+
+    # ---- one step ----
+
+    def _begin(self, time: float) -> None:
+        """Event mode at the start of a step, before the inputs are set."""
+        upcoming = self._next_event
+        if upcoming is not None and 0.0 < upcoming - time <= _resolution(time):
+            time = upcoming  # it was left over from the last step
+        self.calls.enter_event_mode()
+        self._system.set_time(time)
+
+    def _run(self, time: float, end: float) -> None:
+        """From event mode at the start of a step to continuous-time mode at its end."""
+        system, solver, start = self._system, self._solver, time
+        assert solver is not None
+        negligible = _resolution(end)
+        self._settle(time)
+        events = 0
+        while end - time > negligible:
+            upcoming = self._next_event
+            timed = upcoming is not None and upcoming < end - negligible
+            stop = upcoming if timed and upcoming is not None else end
+            time, happened = self._integrate(time, stop)
+            if happened or (timed and time >= stop - negligible):
+                events += 1
+                if events > EVENTS:
+                    msg = (
+                        f"more than {EVENTS} events between {start:.9g} s and {time:.9g} s: "
+                        "it chatters"
+                    )
+                    raise IntegrationError(msg)
+                self.calls.enter_event_mode()
+                self._settle(time)
+        system.set(end, solver.x)
+
+    def _settle(self, time: float) -> None:
+        """The event iteration, then continuous time with the solver at its start."""
+        self._iterate(time)
+        self.calls.enter_continuous_time_mode()
+        if self._update_nominals:
+            self._nominals = self._system.nominals()
+        assert self._solver is not None
+        self._solver.restart(time, self._system.states(), self._nominals)
+
+    def _iterate(self, time: float) -> None:
+        """Update the discrete states until nothing changes any more."""
+        for _ in range(ROUNDS):
+            info = self.calls.update_discrete_states()
+            self._update_nominals |= info.nominals_changed
+            if info.ended:
+                raise _EndedError
+            if not info.again:
+                break
+        else:
+            msg = f"its event iteration at {time:.9g} s has not ended after {ROUNDS} rounds"
+            raise IntegrationError(msg)
+        upcoming = info.next_time
+        # One that is over has been dealt with just now: some FMUs forget to take it back.
+        later = upcoming is not None and upcoming > time + _resolution(time)
+        self._next_event = upcoming if later else None
+
+    def _integrate(self, time: float, stop: float) -> tuple[float, bool]:
+        """Continuous time up to ``stop`` or to an event: where it ended, and whether by an event.
+
+        The FMU is then at that point.
+        """
+        system, solver = self._system, self._solver
+        assert solver is not None
+        if stop - time <= _resolution(stop):
+            system.set_time(stop)
+            return stop, False
+        start = time
+        before = system.signs(time, solver.x)
+        for _ in range(INTERNAL_STEPS):
+            after = solver.step(stop)
+            crossed = (system.signs(after, solver.x) != before).any()
+            if crossed:
+                after = self._first_crossing(time, after, before)
+                x = solver.at(after).copy()
+                solver.restart(after, x, self._nominals)
+            system.set(after, solver.x)
+            time = after
+            if self._completed() or crossed:
+                return time, True
+            if time >= stop:
+                return stop, False
+        msg = (
+            f"more than {INTERNAL_STEPS} internal steps between {start:.9g} s and {time:.9g} s; "
+            'it is stiff: use `solver = "cvode"`, or a greater `tolerance`, under [fmu]'
+        )
+        raise IntegrationError(msg)
+
+    def _first_crossing(self, time: float, after: float, before: Any) -> float:
+        """When an event indicator changes its sign within the solver's last step [s]."""
+        system, solver = self._system, self._solver
+        assert solver is not None
+
+        def crossed(moment: float) -> bool:
+            return bool((system.signs(moment, solver.at(moment)) != before).any())
+
+        return locate(crossed, time, after, _resolution(after))
+
+    def _completed(self) -> bool:
+        if not self.interface.completed_step_needed:
+            return False
+        event, end = self.calls.completed_step()
+        if end:
+            raise _EndedError
+        return event
+
+    def _make_solver(self) -> Solver:
+        self._close_solver()
+        system, tolerance = self._system, self.tolerance or TOLERANCE
+        able = system.nx > 0 and (self._wanted == "cvode" or system.nx <= DENSE)
+        if self._wanted != "rk4" and able and cvode.available():
+            return cvode.Cvode(system, tolerance)
+        return RungeKutta(system, tolerance)
+
+    # ---- states and end ----
+
+    def save(self) -> Any:  # noqa: D102
+        return _SavedState(super().save(), self._next_event)
+
+    def restore(self, state: Any) -> None:  # noqa: D102
+        super().restore(state.handle)
+        self._next_event = state.next_event
+
+    def free_state(self, state: Any) -> None:  # noqa: D102
+        super().free_state(state.handle)
+
+    def stop(self) -> None:  # noqa: D102
+        super().stop()
+        self._close_solver()
+
+    def _close_solver(self) -> None:
+        if self._solver is not None:
+            self._solver.close()
+            self._solver = None
+
+
+def _resolution(time: float) -> float:
+    """The difference below which two times are the same [s]."""
+    return RESOLUTION * max(1.0, abs(time))
