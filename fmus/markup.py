@@ -125,5 +125,5 @@ def _walk(
         msg = f"{where}: not well-formed XML: {printable(error)}; export the model again"
         raise FmuFileError(msg) from None
     except (LookupError, ValueError) as error:  # an encoding that nobody knows
-        msg = f"{where}: its encoding cannot be read: {printable(error)}; expected UTF-8"
+        msg = f"{where}: {printable(error)}; expected UTF-8; export the model again"
         raise FmuFileError(msg) from None
