@@ -123,11 +123,12 @@ def make_command(profile: VehicleProfile, wires: Sequence[Wire], step_size: floa
         wire = wires[0]
         return ForceCommand(wire.scale, wire.shift, inputs.block_reverse)
     if inputs.drive_force is not None:
-        return SplitForceCommand(*wires)
+        return SplitForceCommand(wires[0], wires[1])
     if inputs.acceleration is not None:
         return AccelerationCommand(wires[0], M, alpha, inputs.block_reverse)
     if inputs.throttle is not None and inputs.brake is not None:
-        return PedalCommand(*wires, inputs.throttle.full_force, inputs.brake.full_force)
+        full_drive, full_brake = inputs.throttle.full_force, inputs.brake.full_force
+        return PedalCommand(wires[0], wires[1], full_drive, full_brake)
     assert inputs.speed_setpoint is not None  # the profile has one of the five
     lead = inputs.speed_setpoint.lead or step_size
     return SetpointCommand(wires[0], M, alpha, lead)

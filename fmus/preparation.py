@@ -9,8 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import inf, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
+from fmus.bundled import BUNDLED_PROFILE, is_bundled
 from fmus.commands import Command, make_command
 from fmus.errors import FmuProfileError, FmuVariableError
 from fmus.pace import Pace, make_pace
@@ -45,6 +46,7 @@ class Prepared:
         binary: this platform's binary in the archive.
         solver: of Model Exchange; None: the best there is.
         tolerance: of Model Exchange, relative; None: the default.
+        rewinds: whether a step that the FMU discards may be done again in smaller ones.
         speed_limit: [m/s] beyond which the FMU is at fault.
         position_jump: [m] likewise.
         frozen_time: [s] without a change that are worth a warning.
@@ -62,8 +64,9 @@ class Prepared:
     bounds: tuple[Bound, ...]
     step_size: float
     binary: str
-    solver: str | None
+    solver: Literal["cvode", "rk4"] | None
     tolerance: float | None
+    rewinds: bool
     speed_limit: float
     position_jump: float
     frozen_time: float
@@ -113,7 +116,7 @@ def prepare(
         msg = f"{path}: step size {step_size:g} s; expected a number above 0"
         raise FmuVariableError(msg)
     model = read_model(path)
-    profile = choose_profile(model, profile)
+    profile = _chosen(model, profile)
     wiring = wire(model, profile, start_values)
     inverse, fitted = profile.inverse_map, profile.model
     return Prepared(
@@ -126,6 +129,7 @@ def prepare(
         binary=binary_of(model, wiring.interface),
         solver=profile.fmu.solver,
         tolerance=profile.fmu.tolerance,
+        rewinds=profile is not BUNDLED_PROFILE,  # keeping the state costs time at every step
         speed_limit=profile.limits.speed,
         position_jump=profile.limits.position_jump,
         frozen_time=profile.limits.frozen_time,
@@ -137,16 +141,21 @@ def prepare(
     )
 
 
-def choose_profile(model: Model, profile: VehicleProfile | None) -> VehicleProfile:
+def choose_profile(path: Path, profile: VehicleProfile | None) -> VehicleProfile:
     """The profile to drive an FMU by: the one given, ours, or a draft that leaves no doubt.
 
     Raises:
+        FmuFileError: the file is missing, or no readable FMU.
         FmuProfileError: there is doubt; the message says which lines to add.
     """
+    from fmus.fmi.reading import read_model
+
+    return _chosen(read_model(path), profile)
+
+
+def _chosen(model: Model, profile: VehicleProfile | None) -> VehicleProfile:
     if profile is not None:
         return profile
-    from fmus.bundled import BUNDLED_PROFILE, is_bundled
-
     if is_bundled(model.path):
         return BUNDLED_PROFILE
     from fmus.drafting import draft_profile, require_confident

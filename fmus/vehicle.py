@@ -1,40 +1,75 @@
 """A vehicle whose longitudinal motion is an FMU: a force in; position, speed, acceleration out."""
 
-import os
-from collections.abc import Mapping
+from __future__ import annotations
+
+import tempfile
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from math import isfinite
 from pathlib import Path
-from types import TracebackType
-from typing import Any, NoReturn, Self
+from typing import TYPE_CHECKING, Any, NoReturn, Protocol, Self
 
 from fmus import fmi
-from fmus.errors import (
-    FmuOutputError,
-    FmuStartError,
-    FmuStateError,
-    FmuStepError,
-    FmuVariableError,
-)
-from fmus.instance import STATUS_NAMES, WARNING, Tick
-from fmus.model import Variable
+from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
+from fmus.instance import STATUS_NAMES, WARNING
+from fmus.motion import Motion
+from fmus.pace import between
+from fmus.preparation import Prepared, prepare, unpack
+from fmus.run_up import run_up
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+    from types import TracebackType
+
+    from fmus.model import Channel
+    from fmus.profile import Value, VehicleProfile
+
+_START_FIT = 0.02  # [m/s], and share, by which the first speed may differ from the one asked for
 
 
-@dataclass(frozen=True)
-class VehicleVariables:
-    """The names that an FMU gives to what a vehicle needs; the defaults are the shipped FMUs'."""
+class Vehicle(Protocol):
+    """What giveway drives, in this process or in one of its own.
 
-    force: str = "force"  # [N] input
-    position: str = "position"  # [m] output
-    speed: str = "speed"  # [m/s] output
-    acceleration: str = "acceleration"  # [m/s2] output
-    initial_position: str | None = "s0"  # [m] parameter; None: the FMU starts where it starts
-    initial_speed: str | None = "v0"  # [m/s] parameter; None likewise
+    Attributes:
+        path: of the FMU.
+        position: [m] as of the last step.
+        speed: [m/s] as of the last step.
+        acceleration: [m/s2] as of the last step.
+        time: [s] k times the step size, never a running sum.
+    """
+
+    path: Path
+    position: float
+    speed: float
+    acceleration: float
+    time: float
 
     @property
-    def outputs(self) -> tuple[str, str, str]:
-        """Position, speed, acceleration."""
-        return self.position, self.speed, self.acceleration
+    def step_size(self) -> float:
+        """[s]."""
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the user should know of this FMU."""
+
+    def start(self, *, position: float = 0.0, speed: float = 0.0) -> None:
+        """Begin (again) at time 0, at a position [m] and a speed [m/s]."""
+
+    def step(self, force: float) -> None:
+        """Hold ``force`` [N] for one step."""
+
+    def close(self) -> None:
+        """Free everything."""
+
+    def __enter__(self) -> Self: ...
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,25 +78,28 @@ class SavedState:
 
     step: int
     handle: Any = field(repr=False)
+    motion: tuple[float, float, float] = field(repr=False)
 
 
 class VehicleFmu:
-    """Runs a vehicle FMU (FMI 2.0 or 3.0, Co-Simulation) in steps of fixed size.
+    """Runs a vehicle FMU in this process, in steps of fixed size.
 
     ``position`` [m], ``speed`` [m/s], ``acceleration`` [m/s2] and ``time`` [s] are plain floats, as
     of the last step. The time after k steps is k times the step size, never a running sum.
 
     Args:
         path: the .fmu file.
-        step_size: [s].
-        variables: what the FMU calls its force, position, speed and acceleration.
+        step_size: of the controller [s].
+        profile: which variable plays which part; None: the shipped FMUs' own, or a draft from
+            names and units if it leaves no doubt.
         start_values: further start values by variable name, set at every :meth:`start`.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.
-        FmuInterfaceError: it is not for Co-Simulation with FMI 2.0 or 3.0.
+        FmuInterfaceError: it has no interface that can be run here.
         FmuPlatformError: it has no binary for this platform, or none that can be loaded.
         FmuVariableError: a variable is missing, or is not what it is used for.
+        FmuProfileError: the profile does not fit, or there is none where one is needed.
     """
 
     def __init__(
@@ -69,81 +107,207 @@ class VehicleFmu:
         path: str | os.PathLike[str],
         *,
         step_size: float,
-        variables: VehicleVariables | None = None,
-        start_values: Mapping[str, float | bool] | None = None,
+        profile: VehicleProfile | None = None,
+        start_values: Mapping[str, Value] | None = None,
     ) -> None:
-        self.path = Path(path)
-        self.variables = VehicleVariables() if variables is None else variables
+        prepared = prepare(path, step_size=step_size, profile=profile, start_values=start_values)
+        with ExitStack() as stack:  # what has been set up is undone if the rest fails
+            folder = stack.enter_context(
+                tempfile.TemporaryDirectory(prefix="vehicle-fmu-", ignore_cleanup_errors=True)
+            )
+            unpack(prepared, Path(folder))
+            self._set_up(prepared, Path(folder), stack)
+
+    @classmethod
+    def unpacked(cls, prepared: Prepared, folder: Path) -> Self:
+        """The vehicle of an FMU that has been unpacked into ``folder``, which stays."""
+        vehicle = cls.__new__(cls)
+        with ExitStack() as stack:
+            vehicle._set_up(prepared, folder, stack)
+        return vehicle
+
+    def _set_up(self, prepared: Prepared, folder: Path, stack: ExitStack) -> None:
+        self.path = prepared.path
+        self.prepared = prepared
         self.position = self.speed = self.acceleration = self.time = 0.0
-        if not (isfinite(step_size) and step_size > 0.0):
-            msg = f"{self.path}: step size {step_size:g} s; expected a number above 0"
-            raise FmuVariableError(msg)
-        self._step_size = step_size
-        self._steps = 0
-        self._model = model = fmi.read_model(self.path)
-        self._force = model.role(self.variables.force, "input").reference
-        outputs = [model.role(name, "output").reference for name in self.variables.outputs]
-        self._output_references = outputs
-        self._start_values = {
-            model.settable(name, value): value for name, value in (start_values or {}).items()
-        }
-        self._initial = {
-            "position": self._initial_variable(self.variables.initial_position),
-            "speed": self._initial_variable(self.variables.initial_speed),
-        }
+        self._step_size = prepared.step_size
+        self._pace = prepared.pace
+        self._command = prepared.command
+        self._motion = Motion(prepared)
+        self._ends = ((0.0, 0.0), (0.0, 0.0))  # position, speed round an FMU step that is longer
+        self._steps = self._earlier = 0  # since time 0, and in the run-up before it
         self._saved: set[SavedState] = set()
-        self._tick: Tick
         self._closed = False
+        self._refusal = ""
         self._refuse("has not been started; call start() first")
-        self._instance = fmi.load(model)
-        self._outputs = self._instance.outputs
+        self._instance = fmi.load(
+            prepared.model,
+            prepared.wiring.interface,
+            folder,
+            solver=prepared.solver,
+            tolerance=prepared.tolerance,
+            rewinds=prepared.rewinds,
+        )
+        stack.callback(self._instance.close)
+        self._resources = stack.pop_all()
 
     @property
     def step_size(self) -> float:
         """[s]."""
         return self._step_size
 
+    @property
+    def warnings(self) -> list[str]:
+        """What the user should know of this FMU, since its last start."""
+        return self._motion.warnings
+
+    # --- start ---------------------------------------------------------------------------------
+
     def start(self, *, position: float = 0.0, speed: float = 0.0) -> None:
         """Begin (again) at time 0 with a new instance of the FMU.
 
         Args:
             position: [m].
-            speed: [m/s].
+            speed: [m/s]; an FMU without a parameter for it is driven up to it before time 0.
 
         Raises:
-            FmuStartError: the FMU refuses its start values.
-            FmuOutputError: an output is not a finite number.
+            FmuStartError: the FMU refuses its start values, or does not start at this speed.
+            FmuOutputError: an output is not a number that a car can have.
             FmuStateError: the vehicle has been closed.
         """
         if self._closed:
             raise FmuStateError(self._refusal)
-        values = dict(self._start_values)
-        values |= self._initial_value("position", position)
-        values |= self._initial_value("speed", speed)
+        for quantity, value in (("position", position), ("speed", speed)):
+            if not isfinite(value):
+                msg = f"{self.path}: start at a {quantity} of {value}; expected a finite number"
+                raise FmuStartError(msg)
         self._stop()
         self._refuse("has not started; call start() again")
-        self._instance.start(values)
-        self._run_from(0)
+        self._steps = self._earlier = 0
+        self.time = 0.0
+        wiring = self.prepared.wiring
+        self._instance.start(
+            self._start_values(position, speed),
+            [wire.channel for wire in wiring.inputs],
+            [wire.channel for wire in wiring.outputs],
+        )
+        self._inputs = self._instance.inputs
+        self._outputs = self._instance.outputs
+        self._tick = self._instance.tick
+        self._motion = motion = Motion(self.prepared)
+        motion.begin(self._outputs)
+        self._refusal = ""
+        self._show(motion)
+        try:
+            self._reach(speed)
+        except FmuStartError:
+            self._fail()
+            raise
+        if wiring.initial_position is None or wiring.output("position") is None or self._earlier:
+            motion.count_from(position)
+        self._show(motion)
+        self._ends = ((0.0, 0.0), (self.position, self.speed))
+
+    def _start_values(self, position: float, speed: float) -> dict[Channel, Value]:
+        """What the FMU is to start with; its inputs are those of no force."""
+        wiring = self.prepared.wiring
+        at_rest = memoryview(bytearray(8 * len(wiring.inputs))).cast("d")
+        self._command.apply(0.0, speed, at_rest)
+        values: dict[Channel, Value] = {}
+        for wire, value in zip(wiring.inputs, at_rest, strict=True):
+            if wire.channel.variable.settable and wire.channel.variable.is_real:
+                values[wire.channel] = value
+        values |= wiring.start_values
+        for initial, value in (
+            (wiring.initial_position, position),
+            (wiring.initial_speed, speed),
+        ):
+            if initial is not None:
+                values[initial.channel] = initial.to_raw(value)
+        return values
+
+    def _reach(self, speed: float) -> None:
+        """Be at the speed asked for, or get there before time 0.
+
+        Raises:
+            FmuStartError: it cannot be had.
+        """
+        if abs(self.speed - speed) <= max(_START_FIT, _START_FIT * abs(speed)):
+            return
+        name, initial = self._motion.names["speed"], self.prepared.wiring.initial_speed
+        if initial is not None:
+            msg = (
+                f"{self.path}: {initial.channel.name} was set to start at {speed:g} m/s, but "
+                f"{name} = {self.speed:.6g} m/s; check the units of both, or leave out [initial.speed]"
+            )
+            raise FmuStartError(msg)
+        if not self.prepared.run_up or speed < 0.0:
+            msg = (
+                f"{self.path}: {name} starts at {self.speed:.6g} m/s and not at {speed:g} m/s; "
+                "name the FMU's parameter for it, [initial.speed] variable = ..., or start at this "
+                "speed (--ego-initial-speed)"
+            )
+            raise FmuStartError(msg)
+        duration = run_up(self, speed)
+        self._earlier, self._steps = self._steps, 0
+        self.time = 0.0
+        self.warnings.append(
+            f"{self.path.name}: no parameter for the initial speed: driven up to {self.speed:.3g} "
+            f"m/s in {duration:.3g} s before the start"
+        )
+
+    # --- steps ---------------------------------------------------------------------------------
 
     def step(self, force: float) -> None:
         """Hold ``force`` [N] for one step; the results are in the attributes.
 
         Raises:
             FmuStepError: the force is not a finite number, or the FMU does not do the step.
-            FmuOutputError: an output is not a finite number.
+            FmuOutputError: an output is not a number that a car can have.
             FmuStateError: the vehicle is not running.
         """
+        if self._refusal:
+            raise FmuStateError(self._refusal)
         if not isfinite(force):
-            msg = f"{self.path}: force {force} N at {self.time:g} s; expected a finite number"
+            msg = f"{self.path}: force {force} N at {self.time:.10g} s; expected a finite number"
             raise FmuStepError(msg)
-        status = self._tick(force, self.time)
-        if status > WARNING:
-            self._step_failed(force, status)
+        pace, motion, done = self._pace, self._motion, self._earlier + self._steps
+        if done % pace.stretch == 0:
+            self._drive(force, done)
         self._steps += 1
         self.time = self._steps * self._step_size
-        self.position, self.speed, self.acceleration = self._outputs
-        if not isfinite(self.position + self.speed + self.acceleration):
-            self._require_finite()
+        if pace.stretch > 1:
+            share = (done % pace.stretch + 1) / pace.stretch
+            self.position, self.speed = between(*self._ends, pace.step, share)
+            self.acceleration = motion.acceleration
+        else:
+            self.position, self.speed, self.acceleration = motion.state
+
+    def _drive(self, force: float, done: int) -> None:
+        """One step of the controller in those of the FMU; or the FMU's one, if that is longer."""
+        pace, motion, tick = self._pace, self._motion, self._tick
+        self._command.apply(force, motion.speed, self._inputs)
+        motion.keep_bounds(self._inputs)
+        h, substeps = pace.step, pace.substeps
+        first = done // pace.stretch * substeps
+        for number in range(first, first + substeps):
+            status = tick(number * h, h)
+            if status > WARNING:
+                self._step_failed(force, status)
+        end = (self._steps + pace.stretch) * self._step_size
+        try:
+            motion.follow(self._outputs, force, substeps * h, end)
+        except FmuOutputError:
+            self.time = end
+            self._show(motion)
+            self._fail()
+            raise
+        self._ends = (self._ends[1], (motion.position, motion.speed))
+
+    def _show(self, motion: Motion) -> None:
+        self.position, self.speed, self.acceleration = motion.state
+
+    # --- saved states --------------------------------------------------------------------------
 
     def save_state(self) -> SavedState:
         """The complete state of the FMU now, to return to with :meth:`restore_state`.
@@ -153,10 +317,13 @@ class VehicleFmu:
         """
         if self._refusal:
             raise FmuStateError(self._refusal)
-        if not self._model.saves_state:
+        if not self.prepared.wiring.interface.saves_state:
             msg = f"{self.path}: the FMU cannot save its state; expected canGetAndSetFMUstate"
             raise FmuStateError(msg)
-        state = SavedState(self._steps, self._instance.save())
+        if self._steps % self._pace.stretch:
+            msg = f"{self.path}: within a step of the FMU its state cannot be saved; step on"
+            raise FmuStateError(msg)
+        state = SavedState(self._steps, self._instance.save(), self._motion.state)
         self._saved.add(state)
         return state
 
@@ -168,7 +335,13 @@ class VehicleFmu:
         """
         self._require_saved(state)
         self._instance.restore(state.handle)
-        self._run_from(state.step)
+        self._refusal = ""
+        self._steps = state.step
+        self.time = state.step * self._step_size
+        motion = self._motion
+        motion.position, motion.speed, motion.acceleration = state.motion
+        self._show(motion)
+        self._ends = ((0.0, 0.0), (self.position, self.speed))
 
     def free_state(self, state: SavedState) -> None:
         """Free a saved state; :meth:`start` and :meth:`close` free those that are left.
@@ -180,13 +353,23 @@ class VehicleFmu:
         self._saved.remove(state)
         self._instance.free_state(state.handle)
 
+    def _require_saved(self, state: SavedState) -> None:
+        if state not in self._saved:
+            msg = (
+                f"{self.path}: the saved state of step {state.step} is not this vehicle's or has "
+                "been freed (start() frees all); save a new one"
+            )
+            raise FmuStateError(msg)
+
+    # --- end -----------------------------------------------------------------------------------
+
     def close(self) -> None:
         """Free everything, also the temporary folder; nothing happens the second time."""
         if not self._closed:
             self._closed = True
             self._refuse("has been closed; make a new one")
             self._stop()
-            self._instance.close()
+            self._resources.close()
 
     def __enter__(self) -> Self:
         return self
@@ -199,15 +382,6 @@ class VehicleFmu:
     ) -> None:
         self.close()
 
-    def _run_from(self, step: int) -> None:
-        """Go on from the FMU's present state, which is that after ``step`` steps."""
-        self._steps = step
-        self.time = step * self._step_size
-        self._tick = self._instance.link(self._force, self._output_references, self._step_size)
-        self._refusal = ""
-        self.position, self.speed, self.acceleration = self._outputs
-        self._require_finite()
-
     def _stop(self) -> None:
         for state in self._saved:
             self._instance.free_state(state.handle)
@@ -215,56 +389,17 @@ class VehicleFmu:
         self._instance.stop()
 
     def _refuse(self, reason: str) -> None:
-        """Let every further step raise, so that those that run need no test for it."""
-        message = self._refusal = f"{self.path}: the vehicle {reason}"
-
-        def refuse(_force: float, _time: float) -> int:
-            raise FmuStateError(message)
-
-        self._tick = refuse
+        self._refusal = f"{self.path}: the vehicle {reason}"
 
     def _fail(self) -> None:
-        self._refuse(f"failed at {self.time:g} s; start it again or restore a saved state")
+        self._refuse(f"failed at {self.time:.10g} s; start it again or restore a saved state")
 
     def _step_failed(self, force: float, status: int) -> NoReturn:
         self._fail()
         said = self._instance.journal.take() or "without a message"
+        end = (self._steps + self._pace.stretch) * self._step_size
         msg = (
-            f"{self.path}: no step from {self.time:g} s to {self.time + self._step_size:g} s under "
-            f"{force:g} N: the FMU returned '{STATUS_NAMES[status]}', {said}"
+            f"{self.path}: no step from {self.time:.10g} s to {end:.10g} s under {force:g} N: the "
+            f"FMU returned '{STATUS_NAMES[status]}', {said}"
         )
         raise FmuStepError(msg)
-
-    def _require_finite(self) -> None:
-        for name, value in zip(self.variables.outputs, self._outputs, strict=True):
-            if not isfinite(value):
-                self._fail()
-                msg = (
-                    f"{self.path}: {name} = {value} at {self.time:g} s; expected a finite number; "
-                    "check the FMU's parameters and the step size"
-                )
-                raise FmuOutputError(msg)
-
-    def _require_saved(self, state: SavedState) -> None:
-        if state not in self._saved:
-            msg = (
-                f"{self.path}: the saved state of step {state.step} is not this vehicle's or has "
-                "been freed (start() frees all); save a new one"
-            )
-            raise FmuStateError(msg)
-
-    def _initial_variable(self, name: str | None) -> Variable | None:
-        return None if name is None else self._model.settable(name, 0.0)
-
-    def _initial_value(self, quantity: str, value: float) -> dict[Variable, float | bool]:
-        variable = self._initial[quantity]
-        if variable is not None:
-            self._model.settable(variable.name, value)  # the value, too, must be fit for it
-            return {variable: value}
-        if value == 0.0:
-            return {}
-        msg = (
-            f"{self.path}: cannot start at a {quantity} of {value:g}: name the FMU's parameter in "
-            f"VehicleVariables(initial_{quantity}=...), or start at 0"
-        )
-        raise FmuStartError(msg)

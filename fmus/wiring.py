@@ -106,10 +106,14 @@ def wire(
             for role in _OUTPUTS
             if (axis := getattr(outputs, role)) is not None
         ),
-        initial_speed=initial.speed and _wire(model, "initial", "speed", initial.speed),
-        initial_position=initial.position and _wire(model, "initial", "position", initial.position),
+        initial_speed=_initial(model, "speed", initial.speed),
+        initial_position=_initial(model, "position", initial.position),
         start_values=_start_values(model, {**profile.parameters, **(start_values or {})}),
     )
+
+
+def _initial(model: Model, role: str, axis: Axis | None) -> Wire | None:
+    return None if axis is None else _wire(model, "initial", role, axis)
 
 
 def _interface(model: Model, wanted: str | None) -> Interface:

@@ -8,6 +8,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+from giveway import mismatch
 from giveway.assembly import Parts, assemble
 from giveway.configfile import dump_toml
 from giveway.errors import GivewayError
@@ -28,9 +29,13 @@ from giveway.results import (
 from giveway.run_result import RunResult, results_of_egos
 from giveway.simulation import Ending, Loop, Progress, Watcher
 from giveway.supervised import STDERR_FILE
+from giveway.vehicles import model_margin
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from giveway.config import RunConfig
+    from giveway.run_result import EgoResult
     from sumo_scenarios import Scenario
 
 __all__ = ["RunResult", "run", "run_layers", "simulate"]
@@ -208,7 +213,8 @@ def _result(
 ) -> RunResult:
     """What the loop has left behind."""
     tables = recorder.tables()
-    remarks = (*parts.all_remarks, *loop.remarks)
+    egos = results_of_egos(parts.config, tables, ending, loop.endings)
+    remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos))
     if recorder.journal.failure:
         remarks = (*remarks, recorder.journal.failure)
     return RunResult(
@@ -217,7 +223,7 @@ def _result(
         ending=ending,
         error=error,
         time=tables.time,
-        egos=results_of_egos(parts.config, tables, ending, loop.endings),
+        egos=egos,
         crowd_track=tables.crowd_track(),
         background_track=tables.background_track(),
         timings=tables.timings(),
@@ -239,3 +245,14 @@ def _result(
         road=parts.sumo.lanes.areas(),
         remarks=remarks,
     )
+
+
+def _mismatches(parts: Parts, egos: Sequence[EgoResult]) -> list[str]:
+    """Of vehicles that are not ours and that the controller's model does not describe."""
+    foreign = {driver.id: driver for driver in parts.drivers if not driver.description["bundled"]}
+    remarks = [
+        mismatch.remark(ego, parts.time_step, model_margin(ego.config))
+        for ego in egos
+        if ego.id in foreign
+    ]
+    return [text for text in remarks if text]

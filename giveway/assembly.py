@@ -18,6 +18,7 @@ from giveway.spawn import PREFIX, Spawned, spawn
 from giveway.sumo import SumoSession
 from giveway.sumo_types import all_types, inserted_type
 from giveway.tracks import VehicleShape
+from giveway.vehicles import require_vehicles
 from giveway.walkways import WalkNetwork
 from giveway.yielding import Yielding
 from giveway.zone import Zone
@@ -71,6 +72,7 @@ class Parts:
             f"ego '{name}': its {count} stop(s) are left out; the vehicle FMU drives on"
             for name, count in self.sumo.vehicles.dropped_stops.items()
         ]
+        remarks += [f"ego '{d.id}': {text}" for d in self.drivers for text in d.vehicle.warnings]
         unconnected = 0 if self.exchange is None else self.exchange.unconnected
         if unconnected:
             remarks.append(
@@ -115,6 +117,7 @@ def assemble(
     _require_distinct(egos)
     step_length = _whole_milliseconds(config.sumo.step_length or files.step_length)
     time_step = _time_step(config.time_step, step_length)
+    require_vehicles(egos, time_step)
     regulators = [make_regulator(ego, time_step) for ego in egos]
     walkers = not zone.nowhere and not (zone.follows_egos and not egos)
     moved = bool(egos) or bool(config.crowd.pedestrians) or walkers

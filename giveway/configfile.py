@@ -116,7 +116,12 @@ def read_toml_text(text: str, origin: str) -> Layer:
 
 def _anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
     """``values`` with those files that exist relative to ``folder`` named absolutely."""
-    for table, key in ((values, "scenario"), (values.get("vehicle"), "fmu")):
+    vehicles = [values.get("vehicle")]
+    if isinstance(values.get("egos"), list):
+        vehicles += [ego.get("vehicle") for ego in values["egos"] if isinstance(ego, dict)]
+    places: list[tuple[Any, str]] = [(values, "scenario")]
+    places += [(vehicle, key) for vehicle in vehicles for key in ("fmu", "profile")]
+    for table, key in places:
         if isinstance(table, dict) and isinstance(table.get(key), str):
             named = Path(table[key])
             is_path = len(named.parts) > 1 or named.suffix  # a bare word is a bundled name

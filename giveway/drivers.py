@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
-from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from controller import (
     ControllerError,
@@ -15,17 +13,16 @@ from controller import (
     PidParameters,
     Regulator,
 )
-from fmus import FmuError, VehicleFmu, bundled_fmu, describe
+from fmus import FmuError
 from giveway.ego import Driver
 from giveway.errors import ControlError, VehicleError
+from giveway.vehicles import model_margin, open_for
 from pedestrian_model import PRESETS, Predictor
 
 if TYPE_CHECKING:
     from contextlib import ExitStack
 
     from giveway.config import RunConfig
-
-_BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
 
 
 def make_regulator(config: RunConfig, time_step: float) -> Regulator:
@@ -64,7 +61,7 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator:
             MpcParameters(
                 horizon=config.mpc.horizon,
                 reference_speed=regulation.reference_speed,
-                safe_distance=regulation.safe_distance,
+                safe_distance=regulation.safe_distance + model_margin(config),
                 speed_min=config.mpc.speed_min,
                 speed_max=config.mpc.speed_max,
                 force_limit=config.mpc.force_limit,
@@ -92,26 +89,11 @@ def make_driver(
         VehicleError: the FMU cannot be loaded.
     """
     parameters = PRESETS[config.crowd.preset]
-    vehicle = _vehicle(config, time_step, stack)
+    try:
+        vehicle, description = open_for(config, time_step, stack)
+    except FmuError as error:
+        raise VehicleError(str(error)) from error
     predictor = None
     if config.controller == "mpc":
         predictor = Predictor(parameters, time_step, config.mpc.horizon)
-    return Driver(
-        config, vehicle, _description(vehicle), regulator, predictor, parameters.max_speed
-    )
-
-
-def _vehicle(config: RunConfig, time_step: float, stack: ExitStack) -> VehicleFmu:
-    settings = config.vehicle
-    bundled = _BUNDLED.get(settings.fmu)
-    path = Path(settings.fmu) if bundled is None else bundled_fmu(bundled)
-    start_values = {"M": settings.mass, "alpha": settings.friction, "exact": settings.exact}
-    try:
-        return stack.enter_context(VehicleFmu(path, step_size=time_step, start_values=start_values))
-    except FmuError as error:
-        raise VehicleError(str(error)) from error
-
-
-def _description(vehicle: VehicleFmu) -> dict[str, object]:
-    """What the manifest says of the FMU."""
-    return dataclasses.asdict(describe(vehicle.path))
+    return Driver(config, vehicle, description, regulator, predictor, parameters.max_speed)

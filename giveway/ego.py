@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from controller import Decision, Regulator
-    from fmus import VehicleFmu
+    from fmus import Vehicle
     from giveway.config import RunConfig
     from giveway.ego_path import EgoPath, Pose
     from giveway.lights import Lights
@@ -45,7 +45,7 @@ class Driver:
     """
 
     config: RunConfig
-    vehicle: VehicleFmu
+    vehicle: Vehicle
     description: dict[str, object]
     regulator: Regulator
     predictor: Predictor | None

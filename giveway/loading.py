@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fmus import FmuError, read_profile
 from giveway.config import RunConfig
 from giveway.configfile import Layer, build_config, merge, read_toml
-from giveway.errors import ConfigError, ScenarioError
+from giveway.errors import ConfigError, ScenarioError, VehicleError
 from sumo_scenarios import ScenarioError as UnknownScenario
 from sumo_scenarios import available, find
 
@@ -39,7 +40,42 @@ def load(layers: Sequence[Layer]) -> tuple[RunConfig, Scenario]:
         layer = read_toml(scenario.settings_file)
         settings = {key: value for key, value in layer.values.items() if key != "description"}
         own = [Layer(layer.origin, settings)]
-    return _placed(build_config([*own, *layers]), scenario), scenario
+    layers = [*own, *layers]
+    config = build_config([*_identified(layers), *layers])
+    return _placed(_each_identified(config), scenario), scenario
+
+
+def _identified(layers: Sequence[Layer]) -> list[Layer]:
+    """What the profile of the run's vehicle knows of it: the lowest layer.
+
+    Raises:
+        VehicleError: the profile cannot be used.
+    """
+    vehicle = merge(layers).get("vehicle")
+    profile = vehicle.get("profile") if isinstance(vehicle, Mapping) else None
+    return [Layer(str(profile), {"vehicle": _model_in(profile)})] if profile else []
+
+
+def _each_identified(config: RunConfig) -> RunConfig:
+    """``config`` in which those entries of ``egos`` that name an FMU have what belongs to it."""
+    entries = []
+    for entry in config.egos:
+        vehicle = entry.get("vehicle")
+        if isinstance(vehicle, Mapping) and {"fmu", "profile"} & set(vehicle):
+            profile = vehicle.get("profile", "")
+            known = _model_in(profile) if profile else {}
+            entry = {**entry, "vehicle": {"profile": profile, **known, **vehicle}}
+        entries.append(entry)
+    return config.model_copy(update={"egos": tuple(entries)})
+
+
+def _model_in(profile: object) -> dict[str, float]:
+    """M and alpha as identified; empty if they have not been."""
+    try:
+        model = read_profile(Path(str(profile))).model
+    except FmuError as error:
+        raise VehicleError(str(error)) from error
+    return {} if model is None else {"mass": model.mass, "friction": model.friction}
 
 
 def _require_one_ego(layer: Layer) -> None:
@@ -64,11 +100,12 @@ def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
     """``config`` with absolute paths, so that it means the same from any folder."""
     if config.scenario not in available():
         config = config.model_copy(update={"scenario": str(scenario.config_file)})
-    fmu = Path(config.vehicle.fmu)
-    if fmu.is_file():
-        vehicle = config.vehicle.model_copy(update={"fmu": str(fmu.absolute())})
-        config = config.model_copy(update={"vehicle": vehicle})
-    return config
+    vehicle = config.vehicle
+    files = {
+        key: Path(getattr(vehicle, key)) for key in ("fmu", "profile") if getattr(vehicle, key)
+    }
+    absolute = {key: str(path.absolute()) for key, path in files.items() if path.is_file()}
+    return config.model_copy(update={"vehicle": vehicle.model_copy(update=absolute)})
 
 
 def as_layer(config: RunConfig | dict[str, Any] | str | Path) -> Layer:

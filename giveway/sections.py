@@ -111,11 +111,32 @@ class VehicleConfig(Section):
     """The vehicle FMU, its body, and the plant parameters that the MPC shares with it."""
 
     fmu: str = option(
-        "fmi2", None, "vehicle FMU: 'fmi2' or 'fmi3' (bundled), or a path", flag="--vehicle"
+        "fmi2",
+        None,
+        "vehicle FMU: 'fmi2' or 'fmi3' (bundled), or a path",
+        flag="--vehicle",
+        min_length=1,
     )
-    mass: float = option(1000.0, "kg", "M of M s'' + alpha s' = u", gt=0, le=1e6)
-    friction: float = option(100.0, "N.s/m", "alpha of M s'' + alpha s' = u", ge=0, le=1e6)
-    exact: bool = option(False, None, "exact discretisation instead of the paper's forward Euler")
+    profile: str = option(
+        "",
+        None,
+        "vehicle profile (TOML) of an FMU of your own; none: drafted from its names and units",
+        flag="--profile",
+    )
+    isolation: Literal["auto", "process", "none"] = option(
+        "auto", None, "where the FMU runs: in a process of its own (auto: unless bundled), or ours"
+    )
+    mass: float = option(
+        1000.0,
+        "kg",
+        "M of the controller's M s'' + alpha s' = u; a profile may know it",
+        gt=0,
+        le=1e6,
+    )
+    friction: float = option(100.0, "N.s/m", "alpha of it; likewise", ge=0, le=1e6)
+    exact: bool = option(
+        False, None, "the bundled FMU solves exactly instead of by the paper's forward Euler"
+    )
     length: float | None = option(
         None, "m", "body length; none: 5 m, or SUMO's when taken over", gt=0, le=50
     )

@@ -1,0 +1,149 @@
+"""An ego's vehicle FMU: from the configuration to one that is ready to start."""
+
+from __future__ import annotations
+
+import dataclasses
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from fmus import (
+    FmuError,
+    Vehicle,
+    VehicleProfile,
+    bundled_fmu,
+    choose_profile,
+    describe,
+    is_bundled,
+    open_vehicle,
+    prepare,
+    read_profile,
+)
+from fmus.checking import opener_of, require_converged
+from giveway.departures import DEFAULT_SPEED
+from giveway.errors import VehicleError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from contextlib import ExitStack
+
+    from giveway.config import RunConfig
+    from giveway.sections import VehicleConfig
+
+_CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
+_converged: set[tuple[str, str, float]] = set()  # what has passed the self-check in this process
+_BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
+
+
+def fmu_path(settings: VehicleConfig) -> Path:
+    """The .fmu file that a configuration names."""
+    version = _BUNDLED.get(settings.fmu)
+    return Path(settings.fmu) if version is None else bundled_fmu(version)
+
+
+def require_vehicles(egos: Sequence[RunConfig], time_step: float) -> None:
+    """Make sure, before anything runs, that every FMU can be read and its profile fits.
+
+    Args:
+        egos: the configuration of each.
+        time_step: of the co-simulation [s].
+
+    Raises:
+        VehicleError: one cannot be driven.
+    """
+    for config in egos:
+        path = fmu_path(config.vehicle)
+        try:
+            prepare(path, step_size=time_step, profile=_profile(config.vehicle))
+        except FmuError as error:
+            raise VehicleError(str(error)) from error
+
+
+def open_for(
+    config: RunConfig, time_step: float, stack: ExitStack
+) -> tuple[Vehicle, dict[str, object]]:
+    """The vehicle of one ego, and what the manifest says of it.
+
+    An FMU that is not ours is first driven for some seconds in full and in half steps.
+
+    Args:
+        config: of this ego alone.
+        time_step: of the co-simulation [s].
+        stack: closes the vehicle.
+
+    Raises:
+        FmuError: it cannot be loaded, or its steps do not converge.
+    """
+    settings = config.vehicle
+    path, profile = fmu_path(settings), _profile(settings)
+    ours = is_bundled(path)
+    start_values: dict[str, Any] = {}
+    if ours and profile is None:
+        start_values = {
+            "M": settings.mass,
+            "alpha": settings.friction,
+            "exact": settings.exact,
+        }
+    isolated = {"auto": None, "process": True, "none": False}[settings.isolation]
+
+    if not ours:
+        profile = choose_profile(path, profile)
+        if profile.fmu.self_check:
+            _require_converged(path, profile, config, time_step, isolated)
+    vehicle = open_vehicle(
+        path,
+        step_size=time_step,
+        profile=profile,
+        start_values=start_values,
+        isolated=isolated,
+    )
+    stack.callback(vehicle.close)
+    described: dict[str, object] = dataclasses.asdict(describe(path))
+    described["bundled"] = ours
+    described["isolated"] = not ours if isolated is None else isolated
+    if profile is not None:
+        described["profile"] = profile.model_dump(exclude_unset=True)
+    return vehicle, described
+
+
+def _require_converged(
+    path: Path,
+    profile: VehicleProfile,
+    config: RunConfig,
+    time_step: float,
+    isolated: bool | None,
+) -> None:
+    """Drive an FMU for some seconds in its full steps and in smaller ones, once per process.
+
+    Raises:
+        FmuError: its steps do not converge, or it fails.
+    """
+    key = (sha256(path.read_bytes()).hexdigest(), profile.model_dump_json(), time_step)
+    if key not in _converged:
+        force = min(_CHECK_FORCE, config.mpc.force_limit)
+        speed = DEFAULT_SPEED if config.ego.initial_speed is None else config.ego.initial_speed
+        require_converged(
+            opener_of(path, step_size=time_step, profile=profile, isolated=isolated),
+            profile.fmu.step or time_step,
+            path=path,
+            force=force,
+            start_speed=speed,
+        )
+        _converged.add(key)
+
+
+def model_margin(config: RunConfig) -> float:
+    """What the MPC keeps beyond the safe distance [m]: what the identified model is wrong by.
+
+    Raises:
+        VehicleError: the profile cannot be read.
+    """
+    try:
+        profile = _profile(config.vehicle)
+    except FmuError as error:
+        raise VehicleError(str(error)) from error
+    return 0.0 if profile is None or profile.model is None else profile.model.position_error
+
+
+def _profile(settings: VehicleConfig) -> VehicleProfile | None:
+    return read_profile(Path(settings.profile)) if settings.profile else None
