@@ -44,6 +44,8 @@ def mean_force(
     if delay <= 0.0:
         return np.diff(impulse) / step
     whole = int(delay / step)
+    if whole >= force.size:
+        return np.zeros_like(force)
     part = delay - whole * step  # [s] of the step before that still acts
     shifted = np.zeros_like(impulse)
     shifted[whole + 1 :] = _impulse_at(force, lagged, impulse, lag, step - part)[

@@ -8,6 +8,7 @@ it is linear in 1 / M and alpha / M; the two are found by a search that minimise
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,6 +26,7 @@ STANDSTILL = 0.05  # [m/s] below it brakes may hold the vehicle: not in the fit
 SETTLING = 1.0  # [s] at the begin: what acted before the start is unknown
 LONGEST_LAG = 2.0  # [s] of the search
 LONGEST_DELAY = 1.0  # [s] of the search
+FINENESS = 1e-3  # of a step, to which lag and dead time are found
 NOTICEABLE = 0.02  # a lag or a dead time must better the residual by this share
 EXACT = 1e-9  # [m/s2] a residual of mere rounding
 NORMAL_95 = 1.96  # half width of the interval of 95 %, in standard errors
@@ -104,11 +106,12 @@ def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
     if sum(int(drive.used.sum()) for drive in drives) < 10:
         return None
 
+    @cache
     def cost(lag: float, delay: float) -> float:
         return _solve(drives, lag, delay).residual
 
     best = simplest = (0.0, 0.0)
-    if actuator:
+    if actuator and cost(0.0, 0.0) > EXACT:
         best = _search(cost, drives[0].step)
         candidates = [(0.0, 0.0), _line_search(cost, 0), _line_search(cost, 1), best]
         enough = max(cost(*best) * (1.0 + NOTICEABLE), EXACT)
@@ -181,7 +184,7 @@ def _search(cost: Callable[[float, float], float], step: float) -> tuple[float, 
     delays = [0.0, *np.geomspace(step / 2, LONGEST_DELAY, 9)]
     best = min(((a, b) for a in lags for b in delays), key=lambda pair: cost(*pair))
     reach = [max(best[0] * 0.6, step / 4), max(best[1] * 0.6, step / 2)]
-    for _ in range(26):
+    while reach[0] + reach[1] > FINENESS * step:
         around = [
             (max(0.0, best[0] + i * reach[0]), max(0.0, best[1] + j * reach[1]))
             for i in (-1, 0, 1)
@@ -204,7 +207,7 @@ def _line_search(cost: Callable[[float, float], float], axis: int) -> tuple[floa
     grid = np.concatenate(([0.0], np.geomspace(longest / 200, longest, 25)))
     at = int(np.argmin([cost(*pair(float(value))) for value in grid]))
     low, high = float(grid[max(at - 1, 0)]), float(grid[min(at + 1, grid.size - 1)])
-    for _ in range(40):
+    while high - low > FINENESS * longest / 200:
         third = (high - low) / 3.0
         if cost(*pair(low + third)) <= cost(*pair(high - third)):
             high -= third

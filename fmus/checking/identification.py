@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
+    from numpy.typing import NDArray
+
     from fmus.checking.manoeuvres import Opener
 
 LEVELS = (0.1, 0.25, 0.5, 1.0)  # of the largest force of the tests
@@ -284,11 +286,29 @@ def _resistance(found: Fit, drives: Sequence[Drive]) -> list[str]:
     better = float(np.sqrt(np.mean((measured - X / scale @ theta) ** 2)))
     if better > 0.7 * found.residual or found.residual - better < 0.005 or theta[0] <= 0.0:
         return []
-    force, viscous, constant, quadratic = theta / scale
     fastest = float(speed.max())
     worst = float(np.sqrt(np.mean(left[speed > 0.8 * fastest] ** 2)))
+    terms = _terms(theta[1:] / scale[1:] * scale[0] / theta[0], fastest)
     return [
-        f"its resistance is not alpha v: {constant / force:.0f} N + {viscous / force:.3g} N.s/m v "
-        f"+ {quadratic / force:.3g} N.s²/m² v² fits better; near {fastest:.0f} m/s the MPC's model "
-        f"misses {worst:.2g} m/s²"
+        f"its resistance is not alpha v: {terms} fits better; near {fastest:.0f} m/s the MPC's "
+        f"model misses {worst:.2g} m/s²"
     ]
+
+
+def _terms(resistance: NDArray[np.float64], fastest: float) -> str:
+    """A sum in words, without the terms that hardly matter at any speed.
+
+    Args:
+        resistance: viscous [N.s/m], constant [N] and quadratic [N.s2/m2].
+        fastest: [m/s].
+    """
+    viscous, constant, quadratic = resistance.tolist()
+    terms = (
+        (constant, 1.0, "N"),
+        (viscous, fastest, "N.s/m v"),
+        (quadratic, fastest**2, "N.s²/m² v²"),
+    )
+    most = max(abs(factor) * size for factor, size, _ in terms)
+    return " + ".join(
+        f"{factor:.3g} {unit}" for factor, size, unit in terms if abs(factor) * size > 0.02 * most
+    )
