@@ -177,8 +177,8 @@ def _become_worker(guardian: int, connection: int, output: int) -> socket.socket
         os._exit(1)
     os.setsid()  # signals of the FMU to its process group reach nobody else
     signal.set_wakeup_fd(-1)
-    for number in (signal.SIGCHLD, *_DEAF_TO):
-        signal.signal(number, signal.SIG_DFL)
+    for deaf in (signal.SIGCHLD, *_DEAF_TO):
+        signal.signal(deaf, signal.SIG_DFL)
     high = min(_HIGH, resource.getrlimit(resource.RLIMIT_NOFILE)[0] - 1)
     os.dup2(connection, high, inheritable=False)
     nothing = os.open(os.devnull, os.O_RDONLY)
