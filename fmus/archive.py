@@ -16,6 +16,7 @@ import zipfile
 import zlib
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
@@ -24,10 +25,12 @@ from fmus.markup import guard
 from fmus.text import printable
 
 if TYPE_CHECKING:
+    import os
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
 DESCRIPTION: Final = "modelDescription.xml"
+ROOT: Final = "fmiModelDescription"
 MAX_MEMBERS: Final = 50_000
 MAX_DIRECTORY: Final = 5 << 20  # [bytes] of the archive's own list of members
 MAX_TOTAL: Final = 4 << 30  # [bytes] unpacked
@@ -55,10 +58,18 @@ class Archive:
 def open_archive(path: Path) -> Archive:
     """Examine an FMU's archive; only its model description is read into memory.
 
+    The last ones are remembered, until their files change: preparing a vehicle asks repeatedly.
+
     Raises:
         FmuArchiveError: hostile, damaged or beyond all measure.
         FmuFileError: missing, unreadable, no zip archive or without a model description.
     """
+    status = _require_file(path)
+    return _open(path, (status.st_ino, status.st_size, status.st_mtime_ns))
+
+
+@lru_cache(maxsize=2)
+def _open(path: Path, _state: tuple[int, int, int]) -> Archive:
     with _reading(path) as archive:
         members = _examined(path, archive.infolist())
         info = members.get(DESCRIPTION)
@@ -68,7 +79,7 @@ def open_archive(path: Path) -> Archive:
             msg = f"{path}: {DESCRIPTION} of {_megabytes(info.file_size)}"
             raise _beyond(msg, _megabytes(MAX_DESCRIPTION))
         description = archive.read(info)
-        guard(description, f"{path}: {DESCRIPTION}")
+        guard(description, f"{path}: {DESCRIPTION}", ROOT)
         if sum(member.file_size for member in members.values()) <= CHECKED_AT_ONCE:
             for member in members.values():
                 _drain(archive, member)
@@ -133,7 +144,6 @@ class _CautiousFile(io.FileIO):
 @contextmanager
 def _reading(path: Path) -> Iterator[zipfile.ZipFile]:
     """The zip file; whatever zipfile says of a broken one becomes one of our errors."""
-    _require_file(path)
     try:
         with _CautiousFile(path) as file, zipfile.ZipFile(file) as archive:
             yield archive
@@ -153,22 +163,21 @@ def _reading(path: Path) -> Iterator[zipfile.ZipFile]:
         raise FmuFileError(msg) from None
 
 
-def _require_file(path: Path) -> None:
+def _require_file(path: Path) -> os.stat_result:
     try:
         status = path.stat()
     except (OSError, ValueError) as error:
         missing = isinstance(error, (FileNotFoundError, NotADirectoryError, ValueError))
         reason = "no such file" if missing else getattr(error, "strerror", "") or "cannot be read"
-        msg = f"{path}: {reason}; expected an FMU (.fmu)"
+        raise FmuFileError(f"{path}: {reason}; expected an FMU (.fmu)") from None
+    if stat.S_ISDIR(status.st_mode):
+        msg = f"{path}: a folder; expected an FMU: a zip archive of its contents (.fmu)"
+    elif not stat.S_ISREG(status.st_mode):
+        msg = f"{path}: not a regular file; expected an FMU (.fmu)"
+    elif status.st_size == 0:
+        msg = f"{path}: empty; expected an FMU; copy or export it again"
     else:
-        if stat.S_ISDIR(status.st_mode):
-            msg = f"{path}: a folder; expected an FMU: a zip archive of its contents (.fmu)"
-        elif not stat.S_ISREG(status.st_mode):
-            msg = f"{path}: not a regular file; expected an FMU (.fmu)"
-        elif status.st_size == 0:
-            msg = f"{path}: empty; expected an FMU; copy or export it again"
-        else:
-            return
+        return status
     raise FmuFileError(msg)
 
 

@@ -6,7 +6,15 @@ import platform
 import struct
 import sys
 from dataclasses import dataclass
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+from fmus.archive import open_archive, read_start
+from fmus.errors import FmuPlatformError
+from fmus.text import printable
+
+if TYPE_CHECKING:
+    from fmus.archive import Archive
+    from fmus.model import Interface, Model
 
 SYSTEMS: Final = {"linux": "linux", "win32": "windows", "cygwin": "windows", "darwin": "darwin"}
 SUFFIXES: Final = {"linux": ".so", "windows": ".dll", "darwin": ".dylib"}
@@ -56,6 +64,52 @@ def this_platform() -> Platform:
     if processor in X86 or (processor == "x86_64" and sys.maxsize <= 1 << 32):
         processor = "x86"
     return Platform(processor, SYSTEMS.get(sys.platform, sys.platform))
+
+
+def binary_of(model: Model, interface: Interface) -> str:
+    """The archive's member that is this platform's library for an interface.
+
+    Raises:
+        FmuPlatformError: there is none that could be loaded here.
+    """
+    archive = open_archive(model.path)
+    here = this_platform()
+    misfits = []
+    for folder in here.folders(model.fmi_version):
+        member = f"binaries/{folder}/{interface.identifier}{here.suffix}"
+        if member not in archive.members:
+            continue
+        fault = misfit(read_start(archive, member, START), here)
+        if not fault:
+            return member
+        misfits.append(f"{member} {fault}")
+    if misfits:
+        what = f"{misfits[0]}; expected a library for {here}; export the FMU for {here}"
+        raise FmuPlatformError(f"{model.path}: {what}")
+    raise FmuPlatformError(f"{model.path}: {_no_binary(model, interface, archive)}")
+
+
+def platforms_of(archive: Archive) -> tuple[str, ...]:
+    """The folders that hold binaries."""
+    names = (name.split("/") for name in archive.members if name.startswith("binaries/"))
+    return tuple(sorted({parts[1] for parts in names if len(parts) > 2}))
+
+
+def _no_binary(model: Model, interface: Interface, archive: Archive) -> str:
+    """Why there is none, and what to do."""
+    here = this_platform()
+    folders = here.folders(model.fmi_version)
+    what = f"no binaries/{folders[0]}/{interface.identifier}{here.suffix} for this platform"
+    places = {f"binaries/{folder}" for folder in folders}
+    misnamed = [name for name in archive.members if name.rpartition("/")[0] in places]
+    if misnamed:
+        return f"{what}, but {printable(misnamed[0], 100)}; export the model again"
+    if model.platforms:
+        has = printable(", ".join(model.platforms))
+        return f"{what}; the FMU has binaries for: {has}; export it for {here}"
+    if any(name.startswith("sources/") and name.endswith(".c") for name in archive.members):
+        return f"{what}, only C sources; compile them: fmpy compile {model.path}"
+    return f"{what}; the FMU has binaries for: none; export it for {here}"
 
 
 def misfit(start: bytes, wanted: Platform) -> str:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 MAX_DEPTH: Final = 64  # of elements; FMI's own go to 6, annotations are free
-MAX_ELEMENTS: Final = 1_000_000  # 50,000 variables make 150,000
-MAX_ATTRIBUTE: Final = 4 << 20  # [characters]; a list of dependencies can be long
+MAX_ELEMENTS: Final = 600_000  # 50,000 variables make 150,000
+MAX_ATTRIBUTES: Final = 100  # of an element; FMI's have at most 20
 
 
 @dataclass(slots=True)
@@ -49,44 +49,58 @@ class Element:
         return next(self.every(*tags), None)
 
 
-def guard(data: bytes, where: str) -> None:
+def guard(data: bytes, where: str, root: str) -> None:
     """Refuse what no model description has; keeps nothing.
 
     Args:
         data: the XML file.
         where: named in errors.
+        root: the first element's name.
 
     Raises:
         FmuArchiveError: a document type, or beyond all measure.
-        FmuFileError: not well-formed.
+        FmuFileError: not well-formed, or another first element.
     """
-    _walk(data, where, lambda *_element: None, lambda: None)
+    _walk(data, where, root, None, lambda _tag: None)
 
 
-def parse(data: bytes, where: str) -> Element:
-    """The root element.
+def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
+    """The first element, with those descendants whose names are among ``kept``.
 
     Raises:
         FmuArchiveError: a document type, or beyond all measure.
-        FmuFileError: not well-formed.
+        FmuFileError: not well-formed, or another first element.
     """
     top = Element("", {}, 0)
     open_elements = [top]
+    skipped = 0  # levels below an element that is left out
 
     def start(tag: str, attributes: dict[str, str], line: int) -> None:
+        nonlocal skipped
+        if skipped or (tag not in kept and tag != root):
+            skipped += 1
+            return
         element = Element(tag, attributes, line)
         open_elements[-1].children.append(element)
         open_elements.append(element)
 
-    _walk(data, where, start, lambda: open_elements.pop())
+    def end(_tag: str) -> None:
+        nonlocal skipped
+        if skipped:
+            skipped -= 1
+        else:
+            open_elements.pop()
+
+    _walk(data, where, root, start, end)
     return top.children[0]
 
 
 def _walk(
     data: bytes,
     where: str,
-    start: Callable[[str, dict[str, str], int], None],
-    end: Callable[[], object],
+    root: str,
+    start: Callable[[str, dict[str, str], int], None] | None,
+    end: Callable[[str], None],
 ) -> None:
     parser = expat.ParserCreate()
     depth = count = 0
@@ -97,21 +111,25 @@ def _walk(
 
     def on_start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal depth, count
+        if not count and tag != root:
+            line = parser.CurrentLineNumber
+            what = f"<{printable(tag, 60)}> instead of <{root}>; export the model again"
+            raise FmuFileError(f"{where}, line {line}: {what}")
         depth += 1
         count += 1
         if depth > MAX_DEPTH:
             refuse(f"more than {MAX_DEPTH} elements within each other")
         if count > MAX_ELEMENTS:
             refuse(f"more than {MAX_ELEMENTS} elements")
-        for value in attributes.values():
-            if len(value) > MAX_ATTRIBUTE:
-                refuse(f"an attribute of more than {MAX_ATTRIBUTE} characters")
-        start(tag, attributes, parser.CurrentLineNumber)
+        if len(attributes) > MAX_ATTRIBUTES:
+            refuse(f"an element with {len(attributes)} attributes")
+        if start is not None:
+            start(tag, attributes, parser.CurrentLineNumber)
 
-    def on_end(_tag: str) -> None:
+    def on_end(tag: str) -> None:
         nonlocal depth
         depth -= 1
-        end()
+        end(tag)
 
     def on_doctype(*_declaration: object) -> None:
         refuse("a document type (<!DOCTYPE ...>); a model description has none")

@@ -11,26 +11,34 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from fmus.archive import DESCRIPTION, open_archive, read_start
-from fmus.binaries import START, misfit, this_platform
-from fmus.errors import FmuInterfaceError, FmuPlatformError
-from fmus.fmi.variables import broken, number, read_variables, whole
+from fmus.archive import DESCRIPTION, ROOT, open_archive
+from fmus.binaries import binary_of, platforms_of
+from fmus.errors import FmuInterfaceError
+from fmus.fmi.variables import VARIABLE_TAGS, broken, number, read_variables, whole
 from fmus.markup import parse
 from fmus.model import FmuDescription, Interface, Kind, Model, Unit
 from fmus.text import printable
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from fmus.archive import Archive
     from fmus.markup import Element
     from fmus.model import Variable
 
-ROOT: Final = "fmiModelDescription"
+__all__ = ["binary_of", "describe", "findings", "model_of", "read_model"]
+
 VERSIONS: Final = re.compile(r"(1\.0|2\.0|3\.0)(\.\d+)?")
 TAGS: Final = {Kind.CO_SIMULATION: "CoSimulation", Kind.MODEL_EXCHANGE: "ModelExchange"}
 TRUE: Final = frozenset({"true", "1"})
+KEPT: Final = VARIABLE_TAGS | {
+    *("CoSimulation", "ModelExchange", "ScheduledExecution", "DefaultExperiment"),
+    *("Implementation", "CoSimulation_StandAlone", "CoSimulation_Tool", "Capabilities"),  # FMI 1
+    *("UnitDefinitions", "Unit", "BaseUnit", "ModelStructure"),
+    *("Outputs", "Derivatives", "InitialUnknowns", "Unknown"),  # FMI 2
+    *("Output", "ContinuousStateDerivative", "InitialUnknown", "EventIndicator"),  # FMI 3
+}
 BASE: Final = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -47,7 +55,7 @@ def read_model(path: Path) -> Model:
 def model_of(archive: Archive) -> Model:
     """As :func:`read_model`, of an archive that is open already."""
     path, where = archive.path, f"{archive.path}: {DESCRIPTION}"
-    root = parse(archive.description, where)
+    root = parse(archive.description, where, ROOT, KEPT)
     version = _version(root, path)
     guid = root.attributes.get("instantiationToken" if version == "3.0" else "guid")
     if guid is None:
@@ -69,7 +77,7 @@ def model_of(archive: Archive) -> Model:
         interfaces=interfaces,
         variables=variables,
         units=_units(root, version, where),
-        platforms=tuple(sorted({m.split("/")[1] for m in archive.members if _is_binary(m)})),
+        platforms=platforms_of(archive),
         states=states,
         event_indicators=indicators,
         default_step=_positive(where, experiment, "stepSize"),
@@ -85,7 +93,8 @@ def describe(path: str | os.PathLike[str]) -> FmuDescription:
         FmuInterfaceError: a version of FMI that cannot be run.
     """
     archive = open_archive(Path(path))
-    root = parse(archive.description, f"{archive.path}: {DESCRIPTION}")
+    where = f"{archive.path}: {DESCRIPTION}"
+    root = parse(archive.description, where, ROOT, frozenset())
     version = _version(root, archive.path)
     return FmuDescription(
         name=root.get("modelName"),
@@ -94,29 +103,6 @@ def describe(path: str | os.PathLike[str]) -> FmuDescription:
         generation_tool=root.get("generationTool"),
         sha256=archive.sha256,
     )
-
-
-def binary_of(model: Model, interface: Interface) -> str:
-    """The archive's member that is this platform's library for an interface.
-
-    Raises:
-        FmuPlatformError: there is none that could be loaded here.
-    """
-    archive = open_archive(model.path)
-    here = this_platform()
-    misfits = []
-    for folder in here.folders(model.fmi_version):
-        member = f"binaries/{folder}/{interface.identifier}{here.suffix}"
-        if member not in archive.members:
-            continue
-        fault = misfit(read_start(archive, member, START), here)
-        if not fault:
-            return member
-        misfits.append(f"{member} {fault}")
-    if misfits:
-        what = f"{misfits[0]}; expected a library for {here}; export the FMU for {here}"
-        raise FmuPlatformError(f"{model.path}: {what}")
-    raise FmuPlatformError(f"{model.path}: {_no_binary(model, interface, archive)}")
 
 
 def findings(path: Path) -> list[str]:
@@ -131,8 +117,6 @@ def findings(path: Path) -> list[str]:
 
 def _version(root: Element, path: Path) -> str:
     where = f"{path}: {DESCRIPTION}"
-    if root.tag != ROOT:
-        raise broken(where, root, f"<{printable(root.tag, 60)}> instead of <{ROOT}>")
     text = root.attributes.get("fmiVersion")
     if text is None:
         raise broken(where, root, "no fmiVersion")
@@ -273,30 +257,3 @@ def _positive(where: str, element: Element | None, name: str) -> float | None:
     """A number that helps only if it is positive."""
     value = number(where, element, name) if element else None
     return value if value is not None and 0.0 < value < math.inf else None
-
-
-# ---- binaries ----
-
-
-def _is_binary(member: str) -> bool:
-    return member.startswith("binaries/") and member.count("/") > 1
-
-
-def _no_binary(model: Model, interface: Interface, archive: Archive) -> str:
-    here = this_platform()
-    folder = here.folders(model.fmi_version)[0]
-    what = f"no binaries/{folder}/{interface.identifier}{here.suffix} for this platform"
-    misnamed = _libraries(archive, here.folders(model.fmi_version))
-    if misnamed:
-        return f"{what}, but {printable(misnamed[0], 100)}; export the model again"
-    if model.platforms:
-        has = printable(", ".join(model.platforms))
-        return f"{what}; the FMU has binaries for: {has}; export it for {here}"
-    if any(name.startswith("sources/") and name.endswith(".c") for name in archive.members):
-        return f"{what}, only C sources; compile them: fmpy compile {model.path}"
-    return f"{what}; the FMU has binaries for: none; export it for {here}"
-
-
-def _libraries(archive: Archive, folders: Sequence[str]) -> list[str]:
-    places = {f"binaries/{folder}" for folder in folders}
-    return [name for name in archive.members if name.rpartition("/")[0] in places]

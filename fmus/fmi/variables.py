@@ -16,6 +16,12 @@ if TYPE_CHECKING:
 
 OTHER_TYPES: Final = frozenset({"Boolean", "String", "Binary", "Clock"})
 TYPES: Final = REAL_TYPES | INTEGER_TYPES | OTHER_TYPES
+VARIABLE_TAGS: Final = (
+    TYPES
+    | {f"{kind}Type" for kind in TYPES}
+    | {"ModelVariables", "ScalarVariable", "Dimension", "Alias", "Start"}
+    | {"TypeDefinitions", "SimpleType", "Type"}
+)  # all elements that tell of variables
 BOOLEANS: Final = frozenset({"true", "false", "1", "0"})
 PARAMETERS: Final = frozenset({"parameter", "calculatedParameter", "structuralParameter"})
 FREE: Final = frozenset({"parameter", "structuralParameter", "input"})  # settable before the start
@@ -78,15 +84,6 @@ def read_variables(root: Element, version: str, where: str) -> dict[str, Variabl
             lines[name] = element.line
             variables[name] = variable if name == variable.name else _renamed(variable, name)
     return variables
-
-
-def references(root: Element, where: str) -> set[int]:
-    """All value references of an FMI 3 model."""
-    return {
-        _reference(where, element)
-        for element in _children(root, "ModelVariables")
-        if element.tag in TYPES
-    }
 
 
 def _elements(root: Element, version: str, where: str) -> Iterator[tuple[Element, Element]]:

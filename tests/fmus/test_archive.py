@@ -319,6 +319,7 @@ def test_very_many_members(archive):
 
 # ---- the model description as XML ----
 
+OPEN, CLOSE = b"<fmiModelDescription>", b"</fmiModelDescription>"
 LAUGHS = b"""<?xml version="1.0"?><!DOCTYPE lolz [<!ENTITY lol "lol">
 <!ENTITY lol2 "&lol;&lol;&lol;&lol;&lol;&lol;&lol;&lol;&lol;&lol;">
 <!ENTITY lol3 "&lol2;&lol2;&lol2;&lol2;&lol2;&lol2;&lol2;&lol2;&lol2;&lol2;">]>
@@ -359,20 +360,27 @@ def test_a_model_description_that_is_no_xml(archive, xml):
 
 
 def test_elements_within_elements_without_end(archive):
-    path = archive(description=b"<a>" * 100_000)
+    path = archive(description=OPEN + b"<a>" * 100_000)
     with refused(FmuArchiveError, path, "64 elements within each other"):
         open_archive(path)
 
 
 def test_elements_without_number(archive):
-    path = archive(description=b"<a>" + b"<b/>" * 1_000_001 + b"</a>")
-    with refused(FmuArchiveError, path, "1000000 elements"):
+    path = archive(description=OPEN + b"<b/>" * 600_000 + CLOSE)
+    with refused(FmuArchiveError, path, "600000 elements"):
         open_archive(path)
 
 
-def test_an_attribute_without_end(archive):
-    path = archive(description=b'<a b="' + bytes(range(65, 91)) * 200_000 + b'"/>')
-    with refused(FmuArchiveError, path, "attribute"):
+def test_attributes_without_number(archive):
+    attributes = b" ".join(b'a%d=""' % n for n in range(5000))
+    path = archive(description=OPEN + b"<Unit " + attributes + b"/>" + CLOSE)
+    with refused(FmuArchiveError, path, "5000 attributes"):
+        open_archive(path)
+
+
+def test_another_first_element(archive):
+    path = archive(description=b'<?xml version="1.0"?>\n<svg/>')
+    with refused(FmuFileError, path, "line 2", "<svg>", "fmiModelDescription"):
         open_archive(path)
 
 
@@ -386,21 +394,21 @@ def test_what_an_fmu_says_cannot_steer_the_terminal(archive):
 # ---- memory ----
 
 HUGE = """
-import resource, sys, zipfile
+import sys
 from pathlib import Path
 from fmus.archive import open_archive
 from fmus.errors import FmuFileError
-before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 try:
     open_archive(Path(sys.argv[1]))
 except FmuFileError as error:
-    grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
-    sys.exit(0 if grown < 150 * 1024 else f"{grown} KiB")
+    status = Path("/proc/self/status").read_text()  # ru_maxrss would count the parent, too
+    most = int(status.partition("VmHWM:")[2].split()[0])
+    sys.exit(0 if most < 200 * 1024 else f"{most} KiB")
 sys.exit("not refused")
 """
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="ru_maxrss in KiB")
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize("kind", ["bomb", "members", "description", "elements"])
 def test_a_refusal_takes_little_memory(archive, kind):
     if kind == "bomb":
@@ -408,9 +416,9 @@ def test_a_refusal_takes_little_memory(archive, kind):
     elif kind == "members":
         path = archive(*((str(n), b"") for n in range(50_000)))
     elif kind == "description":
-        path = archive(description=b"<a>" + b" " * (96 * MEGABYTE) + b"</a>")
+        path = archive(description=OPEN + b" " * (96 * MEGABYTE) + CLOSE)
     else:
-        path = archive(description=b"<a>" + b'<b c="d"/>' * 1_000_001 + b"</a>")
+        path = archive(description=OPEN + b'<b c="d"/>' * 600_000 + CLOSE)
     command = [sys.executable, "-c", textwrap.dedent(HUGE), path]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
