@@ -21,11 +21,11 @@ from string import Template
 from typing import Final
 
 from fmus.bundled import FILES, MODEL, FmiVersion
-from fmus.controller_description import (
+from fmus.controller_description import model_description
+from fmus.controller_parameters import (
     CONTROLLER,
     CONTROLLER_FILES,
     ControllerParameters,
-    model_description,
     token_of,
 )
 from fmus.errors import FmuBuildError

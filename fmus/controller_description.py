@@ -1,109 +1,28 @@
-"""What the controller FMU says of itself: its parameters, its variables, modelDescription.xml."""
+"""What the controller FMU says of itself: modelDescription.xml, in both versions of FMI."""
 
 from __future__ import annotations
 
 import dataclasses
-import math
-import struct
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import quoteattr
 
-from fmus.errors import FmuVariableError
+from fmus.controller_parameters import (
+    CONTROLLER,
+    FAR_AWAY,
+    HORIZON_MAX,
+    MAY_BE_ZERO,
+    REALS,
+    ControllerParameters,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from fmus.bundled import FmiVersion
 
-CONTROLLER: Final = "LongitudinalController"
-CONTROLLER_FILES: Final[dict[FmiVersion, str]] = {
-    "2.0": f"{CONTROLLER}.fmi2.fmu",
-    "3.0": f"{CONTROLLER}.fmi3.fmu",
-}
-HORIZON_MAX: Final = 200  # [steps] HORIZON_MAX of parameters.h
-FAR_AWAY: Final = 1e9  # [m] [m/s] nobody is in front, there is no limit: FAR_AWAY of instance.c
-
 _FIRST_PARAMETER: Final = 10  # value references: PARAMETER_M ...
 _OBSTACLE: Final = 100  # ... and OBSTACLE of instance.h
-
-
-def _parameter(default: float, symbol: str, unit: str | None, description: str) -> Any:
-    metadata = {"symbol": symbol, "unit": unit, "description": description}
-    return field(default=default, metadata=metadata)
-
-
-@dataclass(frozen=True, slots=True)
-class ControllerParameters:
-    """Start values of an exported controller (Yang & Özgüner 2019, table 1).
-
-    The order is that of ``Parameters`` in parameters.h. K_p is not the printed 300, which
-    contradicts the paper's own steady-state error.
-
-    Raises:
-        FmuVariableError: a value is out of range.
-    """
-
-    mass: float = _parameter(1000.0, "M", "kg", "Mass of the vehicle as the MPC sees it")
-    friction: float = _parameter(100.0, "alpha", "N.s/m", "Its viscous friction coefficient")
-    time_step: float = _parameter(0.05, "dt", "s", "Time between two decisions")
-    reference_speed: float = _parameter(4.0, "v_r", "m/s", "Desired speed")
-    safe_distance: float = _parameter(8.0, "d_safe", "m", "Distance to keep to the obstacle")
-    margin: float = _parameter(
-        0.0, "d_margin", "m", "Added to d_safe in plans: how far the vehicle may miss the model"
-    )
-    buffer_distance: float = _parameter(
-        10.0, "d_buffer", "m", "Distance over which the PID's reference speed rises to v_r"
-    )
-    speed_min: float = _parameter(0.0, "v_min", "m/s", "Lowest speed of a plan")
-    speed_max: float = _parameter(20.0, "v_max", "m/s", "Highest speed of a plan")
-    force_limit: float = _parameter(8000.0, "u_max", "N", "Largest force, either way")
-    force_rate_limit: float = _parameter(
-        1000.0, "du_max", "N", "Largest change of a plan's force from one step to the next"
-    )
-    proportional_gain: float = _parameter(2400.0, "K_p", "N.s/m", "Proportional gain of the PID")
-    integral_gain: float = _parameter(10.0, "K_i", "N/m", "Integral gain of the PID")
-    derivative_gain: float = _parameter(100.0, "K_d", "N.s2/m", "Derivative gain of the PID")
-    horizon: int = _parameter(15, "N", None, "Horizon of the MPC in steps of dt")
-    mpc: bool = _parameter(
-        True, "mpc", None, "true: the MPC, with the PID as its fallback; false: the PID alone"
-    )
-
-    def __post_init__(self) -> None:
-        for entry in dataclasses.fields(self)[:_REALS]:
-            value = getattr(self, entry.name)
-            may_be_zero = entry.metadata["symbol"] in _MAY_BE_ZERO
-            good = math.isfinite(value) and (value >= 0.0 if may_be_zero else value > 0.0)
-            expected = f"a finite number {'>=' if may_be_zero else '>'} 0"
-            _require(good, entry.name, value, f"{expected} [{entry.metadata['unit']}]")
-        expected = f"more than speed_min = {self.speed_min:g} [m/s]"
-        _require(self.speed_max > self.speed_min, "speed_max", self.speed_max, expected)
-        whole = isinstance(self.horizon, int) and 2 <= self.horizon <= HORIZON_MAX
-        _require(whole, "horizon", self.horizon, f"a whole number from 2 to {HORIZON_MAX} [steps]")
-        lost = self.friction * self.time_step / self.mass
-        expected = "at most 1, or forward Euler is unstable; lower friction or time_step"
-        _require(lost <= 1.0 or not self.mpc, "friction * time_step / mass", lost, expected)
-
-
-_REALS: Final = 14  # parameters before the horizon
-_MAY_BE_ZERO: Final = frozenset({"alpha", "d_safe", "d_margin", "v_min", "K_p", "K_i", "K_d"})
-
-
-def _require(good: bool, name: str, value: object, expected: str) -> None:
-    if not good:
-        msg = f"controller FMU: {name} = {value}: expected {expected}"
-        raise FmuVariableError(msg)
-
-
-def token_of(build: str, parameters: ControllerParameters) -> str:
-    """The GUID or instantiation token of an export.
-
-    The binaries are the same for all exports, and the only text of the model description that a
-    host hands over to them is this one: so the start values travel in it, bit by bit.
-    """
-    values = dataclasses.astuple(parameters)
-    return f"{build};{''.join(struct.pack('>d', float(value)).hex() for value in values)}"
-
 
 # ---- variables ----
 
@@ -196,7 +115,7 @@ def _parameters(version: FmiVersion, parameters: ControllerParameters) -> Iterat
         symbol, value = entry.metadata["symbol"], getattr(parameters, entry.name)
         kind = {"N": "whole", "mpc": "boolean"}.get(symbol, "real")
         structural = symbol == "N" and version == "3.0"
-        low = 2 if symbol == "N" else 0.0 if symbol in _MAY_BE_ZERO else None
+        low = 2 if symbol == "N" else 0.0 if symbol in MAY_BE_ZERO else None
         # In FMI 2 there are as many inputs as were exported; the array of FMI 3 follows N.
         high = (HORIZON_MAX if structural else value) if symbol == "N" else None
         yield _Variable(
@@ -215,7 +134,9 @@ def _parameters(version: FmiVersion, parameters: ControllerParameters) -> Iterat
 def variables_of(version: FmiVersion, parameters: ControllerParameters) -> list[_Variable]:
     """All variables in the order of the model description."""
     own = list(_parameters(version, parameters))
-    return [_TIME, *_INPUTS, *_obstacles(version, parameters.horizon), *_OUTPUTS, *own]
+    # FMI 2 can do without time; FMI Library reports as an error that it has no start value.
+    time = [_TIME] if version == "3.0" else []
+    return [*time, *_INPUTS, *_obstacles(version, parameters.horizon), *_OUTPUTS, *own]
 
 
 # ---- XML ----
@@ -236,7 +157,7 @@ _TYPES: Final[dict[FmiVersion, dict[str, str]]] = {
 }
 
 
-def _attributes(values: dict[str, object]) -> str:
+def _attributes(values: Mapping[str, object]) -> str:
     """XML attributes; those that are None are left out."""
     return "".join(f" {k}={quoteattr(_text(v))}" for k, v in values.items() if v is not None)
 
@@ -250,7 +171,7 @@ def _text(value: object) -> str:
 
 
 def _element(version: FmiVersion, v: _Variable) -> str:
-    common = {
+    common: dict[str, object] = {
         "name": v.name,
         "valueReference": v.reference,
         "causality": v.causality,
@@ -259,14 +180,14 @@ def _element(version: FmiVersion, v: _Variable) -> str:
         "description": v.description,
     }
     start = v.start if not v.elements else " ".join([_text(v.start)] * v.elements)
-    values = {"unit": v.unit, "min": v.low, "max": v.high, "start": start}
+    values: dict[str, object] = {"unit": v.unit, "min": v.low, "max": v.high, "start": start}
     kind = "UInt64" if v.causality == "structuralParameter" else _TYPES[version][v.kind]
     if version == "2.0":
         inner = f"<{kind}{_attributes(values)}/>"
         return f"    <ScalarVariable{_attributes(common)}>{inner}</ScalarVariable>"
     if not v.elements:
         return f"    <{kind}{_attributes(common | values)}/>"
-    dimension = f'<Dimension valueReference="{_FIRST_PARAMETER + _REALS}"/>'
+    dimension = f'<Dimension valueReference="{_FIRST_PARAMETER + REALS}"/>'
     return f"    <{kind}{_attributes(common | values)}>{dimension}</{kind}>"
 
 

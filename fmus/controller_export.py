@@ -7,12 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 from xml.etree import ElementTree
 
-from fmus.controller_description import (
-    CONTROLLER_FILES,
-    ControllerParameters,
-    model_description,
-    token_of,
-)
+from fmus.controller_description import model_description
+from fmus.controller_parameters import CONTROLLER_FILES, ControllerParameters, token_of
 from fmus.errors import FmuBuildError, FmuFileError
 from fmus.packing import write_archive
 
@@ -77,7 +73,7 @@ def _with_parameters(
     return model_description(
         version,
         wanted,
-        token=token_of(token.partition(";")[0], wanted),
+        token=token_of(token.partition("}")[0] + "}", wanted),
         tool=root.get("generationTool") or "",
         sources=tuple(file.get("name") or "" for file in root.iter("File")),
     )

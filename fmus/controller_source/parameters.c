@@ -6,22 +6,48 @@
 #include <stdint.h>
 #include <string.h>
 
+/* K_p is not the printed 300, which contradicts the paper's own steady-state error. */
+static const Parameters PAPER = {.M = 1000.0,
+                                 .alpha = 100.0,
+                                 .dt = 0.05,
+                                 .v_r = 4.0,
+                                 .d_safe = 8.0,
+                                 .d_margin = 0.0,
+                                 .d_buffer = 10.0,
+                                 .v_min = 0.0,
+                                 .v_max = 20.0,
+                                 .u_max = 8000.0,
+                                 .du_max = 1000.0,
+                                 .K_p = 2400.0,
+                                 .K_i = 10.0,
+                                 .K_d = 100.0,
+                                 .N = 15.0,
+                                 .mpc = 1.0};
+
 /* ---- start values ----
  *
  * One binary serves every export. What differs, the start values, has to be known to the binary as well
  * as to modelDescription.xml; a host hands over exactly one text of that file at instantiation, the GUID
- * or instantiation token. So they travel in it, bit by bit, and no file has to be found and read.
+ * or instantiation token. So they travel in it, bit by bit, and no file has to be found and read: after
+ * the build's own token, for each value that is not the paper's, a letter ('a' is M) and DIGITS digits of
+ * base 64. The text stays short, as some hosts name a folder by it.
  */
+enum { DIGITS = 11, LAST_BITS = 64 - 6 * (DIGITS - 1) };
+
+static int digit_value(char c) {
+    if (c >= 'A' && c <= 'Z') return c - 'A';
+    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+    if (c >= '0' && c <= '9') return c - '0' + 52;
+    return c == '-' ? 62 : c == '_' ? 63 : -1;
+}
+
+/* The first 64 bits of the digits, the highest first. */
 static bool read_double(const char *digits, double *value) {
     uint64_t bits = 0;
-    for (int i = 0; i < 16; ++i) {
-        const char c = digits[i];
-        if (c >= '0' && c <= '9')
-            bits = bits << 4 | (uint64_t)(c - '0');
-        else if (c >= 'a' && c <= 'f')
-            bits = bits << 4 | (uint64_t)(c - 'a' + 10);
-        else
-            return false;
+    for (int i = 0; i < DIGITS; ++i) {
+        const int digit = digit_value(digits[i]);
+        if (digit < 0) return false;
+        bits = i < DIGITS - 1 ? bits << 6 | (uint64_t)digit : bits << LAST_BITS | (uint64_t)digit >> (6 - LAST_BITS);
     }
     memcpy(value, &bits, sizeof *value);
     return true;
@@ -29,11 +55,15 @@ static bool read_double(const char *digits, double *value) {
 
 bool parameters_from_token(const char *token, Parameters *p) {
     const size_t build = strlen(MODEL_TOKEN);
-    if (token == NULL || strlen(token) != build + 1 + 16 * PARAMETER_COUNT) return false;
-    if (strncmp(token, MODEL_TOKEN ";", build + 1) != 0) return false;
+    if (token == NULL || strncmp(token, MODEL_TOKEN, build) != 0) return false;
     double values[PARAMETER_COUNT];
-    for (int i = 0; i < PARAMETER_COUNT; ++i)
-        if (!read_double(token + build + 1 + 16 * i, &values[i])) return false;
+    memcpy(values, &PAPER, sizeof values);
+    const char *entry = token + build;
+    for (size_t left = strlen(entry); left > 0; left -= 1 + DIGITS, entry += 1 + DIGITS) {
+        const int which = *entry - 'a';
+        if (left < 1 + DIGITS || which < 0 || which >= PARAMETER_COUNT) return false;
+        if (!read_double(entry + 1, &values[which])) return false;
+    }
     memcpy(p, values, sizeof values);
     return true;
 }

@@ -6,7 +6,7 @@
 
 enum { HORIZON_MIN = 2, HORIZON_MAX = 200 };
 
-/* The order is that of the values in the token and of the value references from PARAMETER_M on. */
+/* The order is that of the letters in the token and of the value references from PARAMETER_M on. */
 typedef struct {
     double M;        /* [kg]       mass of the model */
     double alpha;    /* [N.s/m]    viscous friction of the model */
@@ -28,8 +28,7 @@ typedef struct {
 
 enum { PARAMETER_COUNT = sizeof(Parameters) / sizeof(double) };
 
-/* Reads the start values that follow MODEL_TOKEN: ";" and PARAMETER_COUNT doubles of 16 hexadecimal digits
- * each. False where the text is none of ours. */
+/* Start values: those of the paper, but for what follows MODEL_TOKEN in the token. False where it is none of ours. */
 bool parameters_from_token(const char *token, Parameters *p);
 
 /* What is wrong with the parameters, as a printf format of one value (in *value); NULL: nothing. */
