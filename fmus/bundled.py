@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 from typing import Final, Literal
 
-from fmus.profile import Axis, Fmu, Initial, Inputs, Outputs, VehicleProfile
+from fmus.profile import Axis, Fmu, Initial, Inputs, Limits, Outputs, VehicleProfile
 
 FmiVersion = Literal["2.0", "3.0"]
 
@@ -21,6 +21,7 @@ BUNDLED_PROFILE: Final = VehicleProfile(
         acceleration=Axis(variable="acceleration"),
     ),
     initial=Initial(position=Axis(variable="s0"), speed=Axis(variable="v0")),
+    limits=Limits(speed=1e9, position_jump=1e9),  # whatever it is asked for, it computes
 )
 
 

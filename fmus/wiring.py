@@ -265,11 +265,17 @@ def _misfit(variable: Variable, value: bool | float | str) -> str:
         return f"'{variable.name}' is {variable.kind}; expected a number, text, true or false"
     if isinstance(value, bool | str) or not isfinite(value):
         return "expected a finite number"
-    low = -float("inf") if variable.minimum is None else variable.minimum
-    high = float("inf") if variable.maximum is None else variable.maximum
-    if not low <= value <= high:
-        return f"expected {low:g} to {high:g} {variable.unit}".rstrip()
-    return ""
+    return _out_of_range(variable, value)
+
+
+def _out_of_range(variable: Variable, value: float) -> str:
+    low, high = variable.minimum, variable.maximum
+    allowed = ""
+    if low is not None and value < low:
+        allowed = f"at least {low:g}"
+    elif high is not None and value > high:
+        allowed = f"at most {high:g}"
+    return f"expected {allowed} {variable.unit}".rstrip() if allowed else ""
 
 
 def _listed(names: Iterable[str]) -> str:

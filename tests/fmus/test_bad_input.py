@@ -8,7 +8,8 @@ import re
 import pytest
 
 import fmus
-from fmus import FmuError, VehicleFmu, VehicleVariables, describe
+from fmus import FmuError, VehicleFmu, describe
+from fmus.bundled import BUNDLED_PROFILE
 
 H = 0.05  # [s]
 
@@ -75,10 +76,23 @@ def test_damaged_inside(fmu, tmp_path):
 # ---- interface and platform ----
 
 
-def test_model_exchange_only(remake):
+def test_a_kind_that_the_binary_does_not_have(remake):
     path = remake(edit=lambda xml: re.sub("(</?)CoSimulation", r"\1ModelExchange", xml))
-    with refused(fmus.FmuInterfaceError, path, "Co-Simulation"):
-        VehicleFmu(path, step_size=H)
+    profile = BUNDLED_PROFILE
+    try:
+        with VehicleFmu(path, step_size=H, profile=profile) as vehicle:
+            vehicle.start()
+    except FmuError as error:
+        assert str(path) in str(error)
+    else:
+        pytest.fail("a Co-Simulation binary ran as Model Exchange")
+
+
+def test_a_kind_that_the_description_does_not_have(fmu):
+    values = BUNDLED_PROFILE.model_dump(exclude_none=True) | {"fmu": {"kind": "model-exchange"}}
+    profile = fmus.make_profile(values, "test")
+    with refused(fmus.FmuInterfaceError, fmu, "kind = 'model-exchange'", "has co-simulation only"):
+        VehicleFmu(fmu, step_size=H, profile=profile)
 
 
 def test_no_binary_for_this_platform(remake):
@@ -97,19 +111,23 @@ def test_a_binary_that_cannot_be_loaded(remake):
 
 
 @pytest.mark.parametrize(
-    ("variables", "named"),
+    ("role", "name", "named"),
     [
-        (VehicleVariables(speed="sped"), ("sped", "did you mean", "speed")),
-        (VehicleVariables(force="Force"), ("Force", "did you mean", "force")),
-        (VehicleVariables(position="where_it_is"), ("where_it_is",)),
-        (VehicleVariables(force="speed"), ("speed", "output", "input")),
-        (VehicleVariables(speed="force"), ("force", "input", "output")),
-        (VehicleVariables(speed="exact"), ("exact",)),
+        ("speed", "sped", ("sped", "did you mean", "speed")),
+        ("force", "Force", ("Force", "did you mean", "force")),
+        ("position", "where_it_is", ("where_it_is",)),
+        ("force", "speed", ("speed", "output", "input")),
+        ("speed", "force", ("force", "input", "output")),
+        ("speed", "exact", ("exact",)),
     ],
 )
-def test_a_variable_that_cannot_play_its_part(fmu, variables, named):
-    with refused(fmus.FmuVariableError, fmu, *named):
-        VehicleFmu(fmu, step_size=H, variables=variables)
+def test_a_variable_that_cannot_play_its_part(fmu, role, name, named):
+    values = BUNDLED_PROFILE.model_dump(exclude_none=True)
+    table = values["inputs" if role == "force" else "outputs"]
+    table[role]["variable"] = name
+    profile = fmus.make_profile(values, "test")
+    with refused(fmus.FmuVariableError, fmu, f".{role}]", *named):
+        VehicleFmu(fmu, step_size=H, profile=profile)
 
 
 @pytest.mark.parametrize(
@@ -120,6 +138,7 @@ def test_a_variable_that_cannot_play_its_part(fmu, variables, named):
         ({"M": math.nan}, ("M", "nan")),
         ({"exact": 2.5}, ("exact", "2.5")),
         ({"M": True}, ("M", "True")),
+        ({"alpha": -1.0}, ("alpha = -1", "expected at least 0 N.s/m")),
     ],
 )
 def test_a_start_value_that_cannot_be_set(fmu, values, named):
@@ -137,7 +156,7 @@ def test_a_step_size_without_meaning(fmu, step_size):
 
 
 @pytest.mark.parametrize(
-    ("values", "named"), [({"M": -5.0}, ("M = -5 kg",)), ({"alpha": -1.0}, ("alpha = -1 N.s/m",))]
+    ("values", "named"), [({"M": -5.0}, ("M = -5 kg",)), ({"M": 0.0}, ("M = 0 kg",))]
 )
 def test_start_values_that_the_fmu_refuses(fmu, values, named):
     with VehicleFmu(fmu, step_size=H, start_values=values) as vehicle:

@@ -76,16 +76,19 @@ def test_an_output_that_is_no_number_is_named_with_its_time(operate):
         assert (vehicle.time, vehicle.position) == (H, H)
 
 
-def test_outputs_whose_sum_overflows_are_still_numbers(operate):
+@pytest.mark.parametrize("quantity", ["position", "speed"])
+def test_a_motion_that_no_car_has_is_named_with_its_time(operate, quantity):
     path = operate(
         "instance.c",
         "    self->now.state = next;",
-        "    self->now.state = next; self->now.state.position = self->now.state.speed = 1e308;",
+        f"    self->now.state = next; if (time > 0.12) self->now.state.{quantity} = 1e300;",
     )
     with VehicleFmu(path, step_size=H) as vehicle:
-        vehicle.start()
-        vehicle.step(0.0)
-        assert (vehicle.position, vehicle.speed) == (1e308, 1e308)
+        vehicle.start(speed=1.0)
+        for _ in range(3):
+            vehicle.step(0.0)
+        with pytest.raises(FmuOutputError, match=rf"{quantity} = 1e\+300 m.* at 0\.2 s"):
+            vehicle.step(0.0)
 
 
 @pytest.mark.parametrize("status", ["DISCARD", "ERROR", "FATAL"])
@@ -128,14 +131,17 @@ def test_a_start_that_gives_no_number_is_refused(operate):
 
 def test_an_fmu_that_cannot_be_instantiated_is_refused_without_a_word_of_its_own(operate):
     path = operate("instance.c", "    if (self->name == NULL) return false;", "    return false;")
-    with VehicleFmu(path, step_size=H) as vehicle, pytest.raises(FmuStartError, match="Failed to"):
+    with (
+        VehicleFmu(path, step_size=H) as vehicle,
+        pytest.raises(FmuStartError, match="does not start"),
+    ):
         vehicle.start()
 
 
 def test_a_binary_without_the_standards_functions_is_refused(operate, fmi_version):
     name = f"fmi{fmi_version[0]}Terminate"
     path = operate(build.FRONT_ENDS[fmi_version], f"Status {name}(", f"Status not_{name}(")
-    with pytest.raises(FmuPlatformError, match=f"cannot be used: .*{name}"):
+    with pytest.raises(FmuPlatformError, match=f"no function {name}"):
         VehicleFmu(path, step_size=H)
 
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fmus import FmuError, FmuStateError, VehicleFmu, VehicleVariables, bundled_fmu
+from fmus import FmuError, FmuStateError, VehicleFmu, bundled_fmu, make_profile
 
 H = 0.05  # [s]
 
@@ -81,7 +81,15 @@ def test_start_values_reach_the_fmu(fmu):
 
 def test_other_variable_names_can_be_given(remake):
     path = remake(edit=lambda xml: xml.replace('name="speed"', 'name="v_x"'))
-    with VehicleFmu(path, step_size=H, variables=VehicleVariables(speed="v_x")) as vehicle:
+    profile = make_profile(
+        {
+            "inputs": {"force": {"variable": "force"}},
+            "outputs": {"speed": {"variable": "v_x"}},
+            "initial": {"speed": {"variable": "v0"}},
+        },
+        "test",
+    )
+    with VehicleFmu(path, step_size=H, profile=profile) as vehicle:
         vehicle.start(speed=3.0)
         assert vehicle.speed == 3.0
 
