@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fmus.fmi.calls import Calls
+SMALLEST = 1e-13  # step, relative to the greater of the time and 1 s, that is still a step
 
 
 class IntegrationError(Exception):

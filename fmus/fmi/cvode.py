@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fmus.fmi.continuous import IntegrationError, UndefinedError
+from fmus.fmi.continuous import SMALLEST, IntegrationError, UndefinedError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -74,7 +74,8 @@ class Cvode:
 
         self._context = c_void_p()
         self._core["SUNContext_Create"](c_int(0), byref(self._context))
-        self._core["SUNContext_ClearErrHandlers"](self._context)  # they print
+        self._core["SUNContext_ClearErrHandlers"](self._context)  # they print, as does the logger
+        self._core["SUNContext_SetLogger"](self._context, None)
         n = c_int64(system.nx)
         self._state, self._absolute, self._between = (
             self._made(self._vectors["N_VNew_Serial"], n) for _ in range(3)
@@ -97,6 +98,7 @@ class Cvode:
         self.x[:] = x
         self._view(self._absolute)[:] = self._tolerance * nominals
         self._require("CVodeReInit", c_double(time), self._state)
+        self._require("CVodeSetMinStep", c_double(SMALLEST * max(1.0, abs(time))))
 
     def step(self, stop: float) -> float:  # noqa: D102
         self._undefined = ""

@@ -52,14 +52,36 @@ _FORMATTED = CFUNCTYPE(None, c_void_p, c_void_p, c_int, c_void_p, c_void_p, *_EX
 _PLAIN = CFUNCTYPE(None, c_void_p, c_int, c_void_p, c_void_p)
 
 
-class _Arguments:
-    """The arguments of a format, one after the other."""
+class Arguments:
+    """The arguments of a format, one after the other.
+
+    Args:
+        slots: of registers and the stack, as the receivers get them.
+    """
 
     def __init__(self, slots: Sequence[Any]) -> None:
         integers, doubles = _SKIPPED + _INTEGERS, _SKIPPED + _INTEGERS + _DOUBLES
         self._integers: Iterator[int] = iter(slots[_SKIPPED:integers])
         self._doubles: Iterator[float] = iter(slots[integers:doubles])
         self._stack: Iterator[int] = iter(slots[doubles:])
+
+    @classmethod
+    def of(cls, *values: float) -> Arguments:
+        """These values where C would put them; ints are pointers and whole numbers."""
+        integers = [value for value in values if isinstance(value, int)][:_INTEGERS]
+        doubles = [value for value in values if isinstance(value, float)][:_DOUBLES]
+        rest, left = list(integers), list(doubles)
+        stack = []
+        for value in values:
+            register = rest if isinstance(value, int) else left
+            if register:
+                register.pop(0)
+            else:
+                code = "<q" if isinstance(value, int) else "<d"
+                stack.append(struct.unpack("<Q", struct.pack(code, value))[0])
+        integers += [0] * (_INTEGERS - len(integers))
+        doubles += [0.0] * (_DOUBLES - len(doubles))
+        return cls([*[0] * _SKIPPED, *integers, *doubles, *stack])
 
     def integer(self) -> int:
         """The next; StopIteration after the last that can be reached."""
@@ -91,7 +113,7 @@ def formatted_receiver(journal: Journal) -> Any:
     ) -> None:
         if status:
             with suppress(Exception):  # nothing may be raised into C
-                journal.add(status, expand(read_text(message), _Arguments(slots)))
+                journal.add(status, expand(read_text(message), Arguments(slots)))
 
     return _FORMATTED(receive)
 
@@ -120,12 +142,16 @@ _BITS = {"hh": 8, "h": 16, "l": 32 if sys.platform == "win32" else 64} | dict.fr
 )
 
 
-def expand(text: bytes, arguments: _Arguments) -> bytes:
+def expand(text: bytes, arguments: Arguments) -> bytes:
     """A printf format with its arguments; what cannot be expanded stays as it is."""
     if b"%" not in text:
         return text
 
     def replacement(match: re.Match[bytes]) -> bytes:
+        if b" " in match["flags"] and (
+            match["kind"] in b"scpn" or text[match.end() :][:1].isalpha()
+        ):
+            return match.group()  # "100% sure", "5% of": no format
         try:
             return _converted(match, arguments)
         except (StopIteration, ValueError, OverflowError, TypeError):
@@ -134,7 +160,7 @@ def expand(text: bytes, arguments: _Arguments) -> bytes:
     return _CONVERSION.sub(replacement, text)
 
 
-def _converted(match: re.Match[bytes], arguments: _Arguments) -> bytes:
+def _converted(match: re.Match[bytes], arguments: Arguments) -> bytes:
     part = {key: value.decode() for key, value in match.groupdict(b"").items()}
     kind = part["kind"]
     if kind == "%":
@@ -176,7 +202,9 @@ def _string(address: int, match: re.Match[bytes], precision: str) -> bytes:
     text = read_text(address)
     if not text and not _read_memory(address, 1):
         return match.group()
-    return text[: int(precision)] if precision else text
+    text = text[: int(precision)] if precision else text
+    width = int(match["width"] or 0) if match["width"] != b"*" else 0
+    return text.ljust(width) if b"-" in match["flags"] else text.rjust(width)
 
 
 # ---- memory ----

@@ -16,7 +16,7 @@ from fmus.fmi.calls import CallFailedError
 from fmus.fmi.continuous import ContinuousSystem, IntegrationError, Solver, UndefinedError, locate
 from fmus.fmi.runge_kutta import RungeKutta
 from fmus.fmi.running import RunningInstance
-from fmus.instance import ENDED, ERROR, WARNING
+from fmus.instance import ENDED, ERROR, PENDING, WARNING
 
 if TYPE_CHECKING:
     from fmus.fmi.calls import Calls
@@ -101,7 +101,8 @@ class ModelExchange(RunningInstance):
             except _EndedError:
                 return ENDED
             except CallFailedError as error:
-                self.journal.add(ERROR, str(error))
+                if error.status <= PENDING:
+                    self.journal.add(ERROR, str(error))
                 return self.look(error.status)
             except (IntegrationError, UndefinedError) as error:
                 self.journal.add(ERROR, str(error))

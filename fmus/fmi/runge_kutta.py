@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fmus.fmi.continuous import IntegrationError, UndefinedError
+from fmus.fmi.continuous import SMALLEST, IntegrationError, UndefinedError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from fmus.fmi.continuous import ContinuousSystem
 
 FIRST_STEP = 1e-3  # [s]
-SMALLEST = 1e-13  # share of the time, below which a step makes no difference
 SAFETY, LEAST, MOST = 0.9, 0.1, 4.0  # of the next step's length: Hairer, Norsett, Wanner, II.4
 
 
