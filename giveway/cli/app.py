@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from giveway.cli import INTERRUPTED, fail
+from giveway.cli.fmu import build_export, build_fmu
 from giveway.errors import GivewayError
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
@@ -36,12 +37,16 @@ def build_app(arguments: Sequence[str]) -> typer.Typer:
     app.command("scenarios")(_scenarios)
     app.command("doctor")(_doctor)
     app.command("config")(_with_flags(_config, command))
+    app.add_typer(build_fmu(), name="fmu")
+    app.add_typer(build_export(lambda f: _with_flags(f, command, "export")), name="export")
     app.add_typer(_build_plot(), name="plot")
     return app
 
 
-def _with_flags(function: Callable[..., None], command: str | None) -> Callable[..., None]:
-    if command != function.__name__.removeprefix("_"):
+def _with_flags(
+    function: Callable[..., None], command: str | None, name: str | None = None
+) -> Callable[..., None]:
+    if command != (name or function.__name__.removeprefix("_")):
 
         def not_called() -> None: ...
 

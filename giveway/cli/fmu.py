@@ -1,0 +1,135 @@
+"""``giveway fmu ...`` and ``giveway export ...``: the commands and their help."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from giveway.cli import fail
+from giveway.errors import GivewayError
+
+_Fmu = Annotated[Path, typer.Argument(help="The FMU (.fmu).")]
+_Profile = Annotated[
+    Path | None,
+    typer.Option(help="Vehicle profile (TOML); without it, drafted from names and units."),
+]
+_Step = Annotated[float, typer.Option(help="Control step in s.", min=0.001, max=0.5)]
+_Limit = Annotated[float, typer.Option(help="Largest force in N.", min=1.0, max=1e6)]
+_Force = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
+
+
+def build_fmu() -> typer.Typer:
+    """The commands about vehicle FMUs."""
+    app = typer.Typer(help="Look at, try and fit a vehicle FMU.", no_args_is_help=True)
+    app.command("inspect")(_inspect)
+    app.command("check")(_check)
+    app.command("identify")(_identify)
+    return app
+
+
+def build_export(with_flags: Callable[[Callable[..., None]], Callable[..., None]]) -> typer.Typer:
+    """The commands that make FMUs.
+
+    Args:
+        with_flags: adds the flags of the configuration.
+    """
+    app = typer.Typer(help="Make FMUs for other co-simulation masters.", no_args_is_help=True)
+    app.command("controller")(with_flags(_controller))
+    app.callback()(_export)
+    return app
+
+
+def _export() -> None:
+    """Make FMUs for other co-simulation masters."""
+
+
+def _inspect(
+    fmu: _Fmu,
+    draft: Annotated[
+        Path | None, typer.Option(help="File to write the drafted profile to.")
+    ] = None,
+    everything: Annotated[bool, typer.Option("--all", help="All variables.")] = False,
+) -> None:
+    """Tell what an FMU is, without loading it, and draft its profile."""
+    from giveway.cli.fmu_inspect import inspect_command
+
+    raise typer.Exit(inspect_command(fmu, draft, everything=everything))
+
+
+def _check(
+    fmu: _Fmu,
+    profile: _Profile = None,
+    step: _Step = 0.05,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the picture (default results/FMU_check).")
+    ] = None,
+    mass: Annotated[float, typer.Option(help="M of the controller in kg.", min=1e-3)] = 1000.0,
+    friction: Annotated[float, typer.Option(help="alpha of it in N.s/m.", min=0.0)] = 100.0,
+    force_limit: _Limit = 8000.0,
+    speed: Annotated[float, typer.Option(help="Rolling start in m/s.", min=0.0)] = 4.0,
+) -> None:
+    """Drive an FMU for some seconds: pass, or what is wrong and the line that mends it."""
+    from giveway.cli.fmu_check import check_command
+
+    code = check_command(
+        fmu,
+        profile,
+        step=step,
+        out=out or Path("results") / f"{fmu.stem}_check",
+        mass=mass,
+        friction=friction,
+        force_limit=force_limit,
+        speed=speed,
+    )
+    raise typer.Exit(code)
+
+
+def _identify(
+    fmu: _Fmu,
+    profile: _Profile = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Profile to write, with the model in it.")
+    ] = None,
+    step: _Step = 0.05,
+    horizon: Annotated[int, typer.Option(help="Of the MPC in steps.", min=2, max=200)] = 15,
+    force_limit: _Limit = 8000.0,
+    picture: Annotated[
+        Path | None, typer.Option(help="Measured against fitted: .png, .svg or .pdf.")
+    ] = None,
+    force: _Force = False,
+) -> None:
+    """Estimate M, alpha and the actuator's lag by step tests, for the controller."""
+    from giveway.cli.fmu_identify import identify_command
+
+    code = identify_command(
+        fmu,
+        profile,
+        out=out,
+        step=step,
+        horizon=horizon,
+        force_limit=force_limit,
+        picture=picture,
+        force=force,
+    )
+    raise typer.Exit(code)
+
+
+def _controller(
+    settings: dict[str, object],
+    out: Annotated[Path, typer.Option("--out", "-o", help="The FMU to write (.fmu).")],
+    scenario: Annotated[str | None, typer.Argument(help="As for run.")] = None,
+    config: Annotated[Path | None, typer.Option(help="As for run.")] = None,
+    fmi: Annotated[str, typer.Option(help="FMI version: 2.0 or 3.0.")] = "2.0",
+    force: _Force = False,
+) -> None:
+    """Write the controller (MPC with PID, or PID) as an FMU, with a run's settings."""
+    from giveway.cli.export import export_command
+
+    try:
+        code = export_command(scenario, config, settings, out, fmi=fmi, force=force)
+    except GivewayError as error:
+        code = fail(str(error), error.exit_code)
+    raise typer.Exit(code)
