@@ -3,14 +3,13 @@
 from fmus.checking.check import CheckReport, check
 from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, identify
-from fmus.checking.manoeuvres import Drivable, Opener, Phase, Trace, drive, replay
+from fmus.checking.manoeuvres import Opener, Phase, Trace, drive
 from fmus.checking.opening import opener_of
 from fmus.checking.self_check import Convergence, convergence, require_converged
 
 __all__ = [
     "CheckReport",
     "Convergence",
-    "Drivable",
     "Finding",
     "Identification",
     "Opener",
@@ -22,6 +21,5 @@ __all__ = [
     "drive",
     "identify",
     "opener_of",
-    "replay",
     "require_converged",
 ]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fmus.checking import observations as observe
 from fmus.checking.findings import Finding
-from fmus.checking.manoeuvres import Phase, drive
+from fmus.checking.manoeuvres import Phase, try_to_drive
 from fmus.checking.observations import Expected
 from fmus.checking.prediction import simulate
 from fmus.checking.self_check import convergence, milliseconds, plain, remedy
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from fmus.checking.manoeuvres import Opener, Trace
+    from fmus.checking.manoeuvres import Attempt, Opener, Trace
     from fmus.checking.self_check import Convergence
     from fmus.profile import VehicleProfile
 
@@ -29,7 +29,7 @@ DRIVE, COAST, BRAKE = 3.0, 3.0, 5.0  # [s]
 
 _DRIVES = ("idle", "response", "again", "rolling", "full")
 _NAMES = {  # of the finding of a drive that failed
-    "idle": "starts",
+    "idle": "stands still",
     "response": "drives",
     "again": "reproducible",
     "rolling": "start speed",
@@ -121,18 +121,26 @@ def _drive_all(report: CheckReport, opener: Opener, tell: Callable[[str], None])
     for name in _DRIVES:
         tell(name)
         speed = report.expected.start_speed if name == "rolling" else 0.0
-        try:
-            report.traces[name] = drive(opener, _phases(name, report.expected), speed=speed)
-        except FmuError as error:
-            report.findings.append(Finding(_NAMES[name], "fail", plain(error)))
+        attempt = try_to_drive(opener, _phases(name, report.expected), speed=speed)
+        error = attempt.error
+        if name == "idle":
+            report.findings.append(_starting(attempt))
+        if error is not None:
+            if attempt.trace is not None or name != "idle":
+                report.findings.append(Finding(_NAMES[name], "fail", plain(error)))
             # Steps that are too coarse show as an output or a step that fails: halving tells.
             may_diverge = isinstance(error, FmuOutputError | FmuStepError)
             if name != "rolling" or isinstance(error, FmuCrashError):
                 return may_diverge and not isinstance(error, FmuCrashError)
-        else:
-            if name == "idle":
-                report.findings.append(Finding("starts", "pass", "at rest, at time 0"))
+        elif attempt.trace is not None:
+            report.traces[name] = attempt.trace
     return True
+
+
+def _starting(attempt: Attempt) -> Finding:
+    if attempt.trace is None and attempt.error is not None:
+        return Finding("starts", "fail", plain(attempt.error))
+    return Finding("starts", "pass", "at rest, at time 0")
 
 
 def _phases(name: str, expected: Expected) -> list[Phase]:

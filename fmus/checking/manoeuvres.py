@@ -5,53 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fmus.errors import FmuError
+from fmus.vehicle import Vehicle
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-    from pathlib import Path
+    from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
 
-class Drivable(Protocol):
-    """What a manoeuvre needs of a vehicle: that of ``fmus.Vehicle``."""
-
-    warnings: list[str]
-
-    @property
-    def path(self) -> Path:
-        """The .fmu file."""
-
-    @property
-    def step_size(self) -> float:
-        """[s]."""
-
-    @property
-    def position(self) -> float:
-        """[m]."""
-
-    @property
-    def speed(self) -> float:
-        """[m/s]."""
-
-    @property
-    def acceleration(self) -> float:
-        """[m/s2]."""
-
-    def start(self, *, position: float = 0.0, speed: float = 0.0) -> None:
-        """Begin (again) at time 0."""
-
-    def step(self, force: float) -> None:
-        """Hold ``force`` [N] for one step."""
-
-    def close(self) -> None:
-        """Free everything."""
-
-
-Opener = Callable[[float | None], Drivable]
+Opener = Callable[[float | None], Vehicle]
 """Makes a fresh vehicle whose FMU does steps of the size given [s]; None: as its profile says.
 
 The steps of the vehicle itself (how long a force is held) are always the same.
@@ -121,63 +88,78 @@ def drive(
     Raises:
         FmuError: the vehicle cannot be opened or started, or fails on the way.
     """
-    vehicle = opener(fmu_step)
+    attempt = try_to_drive(opener, phases, speed=speed, fmu_step=fmu_step)
+    if attempt.error is not None:
+        raise attempt.error
+    assert attempt.trace is not None
+    return attempt.trace
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A drive, as far as it went."""
+
+    trace: Trace | None  # None: it did not start
+    error: FmuError | None  # that ended it
+
+
+def try_to_drive(
+    opener: Opener,
+    phases: Iterable[Phase],
+    *,
+    speed: float = 0.0,
+    fmu_step: float | None = None,
+) -> Attempt:
+    """As :func:`drive`, and what was seen before it failed is kept."""
+    log: _Log | None = None
+    vehicle: Vehicle | None = None
+    error: FmuError | None = None
     try:
+        vehicle = opener(fmu_step)
         vehicle.start(speed=speed)
         log = _Log(vehicle)
         for phase in phases:
             _hold(vehicle, phase, log)
-        return log.trace(vehicle)
+    except FmuError as caught:
+        error = caught
     finally:
-        vehicle.close()
+        if vehicle is not None:
+            vehicle.close()
+    return Attempt(log.trace() if log is not None else None, error)
 
 
-def replay(
-    opener: Opener, forces: Sequence[float] | NDArray[np.float64], *, speed: float = 0.0,
-    fmu_step: float | None = None,
-) -> Trace:  # fmt: skip
-    """Drive a fresh vehicle with one force per step; see :func:`drive`."""
-    vehicle = opener(fmu_step)
-    try:
-        vehicle.start(speed=speed)
-        log = _Log(vehicle)
-        for force in forces:
-            log.step(vehicle, float(force))
-        return log.trace(vehicle)
-    finally:
-        vehicle.close()
-
-
-def _hold(vehicle: Drivable, phase: Phase, log: _Log) -> None:
+def _hold(vehicle: Vehicle, phase: Phase, log: _Log) -> None:
     for _ in range(round(phase.duration / vehicle.step_size)):
         if not phase.above <= vehicle.speed <= phase.below:
             return
-        log.step(vehicle, phase.force)
+        log.step(phase.force)
 
 
 class _Log:
     """The rows of a drive as it goes on."""
 
-    def __init__(self, vehicle: Drivable) -> None:
+    def __init__(self, vehicle: Vehicle) -> None:
+        self._vehicle = vehicle
         self._forces: list[float] = []
         self._costs: list[float] = []
         self._motion = [(vehicle.position, vehicle.speed, vehicle.acceleration)]
 
-    def step(self, vehicle: Drivable, force: float) -> None:
+    def step(self, force: float) -> None:
+        vehicle = self._vehicle
         begin = perf_counter()
         vehicle.step(force)
         self._costs.append(perf_counter() - begin)
         self._forces.append(force)
         self._motion.append((vehicle.position, vehicle.speed, vehicle.acceleration))
 
-    def trace(self, vehicle: Drivable) -> Trace:
+    def trace(self) -> Trace:
         position, speed, acceleration = np.array(self._motion).T
         return Trace(
-            vehicle.step_size,
+            self._vehicle.step_size,
             np.array(self._forces),
             np.ascontiguousarray(position),
             np.ascontiguousarray(speed),
             np.ascontiguousarray(acceleration),
             np.array(self._costs),
-            tuple(getattr(vehicle, "warnings", ())),
+            tuple(self._vehicle.warnings),
         )

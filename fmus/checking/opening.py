@@ -10,8 +10,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from fmus.checking.manoeuvres import Drivable, Opener
+    from fmus.checking.manoeuvres import Opener
     from fmus.profile import Value, VehicleProfile
+    from fmus.vehicle import Vehicle
 
 
 def opener_of(
@@ -32,7 +33,7 @@ def opener_of(
         isolated: in a process of its own; None: unless it is a shipped FMU.
     """
 
-    def open_with(fmu_step: float | None) -> Drivable:
+    def open_with(fmu_step: float | None) -> Vehicle:
         fmu = profile.fmu.model_copy(update={"step": fmu_step or profile.fmu.step})
         stepped = profile.model_copy(update={"fmu": fmu})
         return open_vehicle(

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fmus.checking.manoeuvres import Phase, Trace, drive
+from fmus.checking.manoeuvres import Phase, Trace, try_to_drive
 from fmus.errors import (
     FmuCrashError,
     FmuError,
@@ -21,7 +21,6 @@ from fmus.errors import (
     FmuOutputError,
     FmuProfileError,
     FmuStartError,
-    FmuStepError,
 )
 
 if TYPE_CHECKING:
@@ -113,95 +112,117 @@ def convergence(
     """The self-check's finding; see :func:`require_converged`.
 
     Raises:
-        FmuError: the FMU fails at every step.
+        FmuError: the FMU fails, and smaller steps do not change that.
     """
-    rung = _Rungs(opener, fmu_step, force, start_speed)
-    if isinstance(rung.run(1), _UNABLE):
-        raise rung.failure(1)
-    finer = rung.next_finer(1)
-    if isinstance(rung.run(1), FmuError) and finer is None:
-        raise rung.failure(1)
-    if finer is None:
-        return Convergence(fmu_step, None, traces=rung.shown(1))
-    problem = rung.problem(1, finer)
-    shown = rung.shown(1) + rung.shown(finer)
-    if not problem:
-        return Convergence(fmu_step, fmu_step / finer, traces=shown)
-    advised = rung.first_converged()
-    if advised is None and isinstance(rung.run(1), FmuError):
-        raise rung.failure(1)
+    ladder = _Ladder(opener, fmu_step, force, start_speed)
+    whole = ladder.run(1)
+    if isinstance(whole.error, _UNABLE):
+        raise whole.error
+    fine = ladder.first_able()
+    if whole.error is not None:
+        advised = ladder.first_converged()
+        if advised is None and not ladder.depends_on_step():
+            raise whole.error
+        problem = f"{_do_not_converge(fmu_step)} ({plain(whole.error).split('; ')[0]})"
+    elif fine is None:
+        return Convergence(fmu_step, None, traces=whole.shown)
+    else:
+        problem = ladder.problem(1, fine)
+        advised = ladder.first_converged() if problem else None
+    shown = whole.shown + (() if fine is None else ladder.run(fine).shown)
     return Convergence(
-        fmu_step, fmu_step / finer, problem, None if advised is None else fmu_step / advised, shown
+        fmu_step,
+        None if fine is None else fmu_step / fine,
+        problem,
+        None if advised is None else fmu_step / advised,
+        shown,
     )
 
 
-class _Rungs:
-    """The ladder of steps; each is run once, when it is asked for."""
+@dataclass(frozen=True)
+class _Rung:
+    """The manoeuvres with steps of one size."""
+
+    traces: tuple[Trace, ...]  # as far as they went
+    error: FmuError | None
+
+    @property
+    def shown(self) -> tuple[Trace, ...]:
+        """The last manoeuvre, if it was begun."""
+        return self.traces[-1:]
+
+    @property
+    def steps_done(self) -> int:
+        """Before the end, or before it failed."""
+        return sum(trace.force.size for trace in self.traces)
+
+
+class _Ladder:
+    """The step and what it can be divided by; each is run once, when it is asked for."""
 
     def __init__(self, opener: Opener, step: float, force: float, start_speed: float) -> None:
         self._opener = opener
         self._step = step
         self._force = force
-        self._speeds = sorted({0.0, start_speed}, reverse=True)
-        self._runs: dict[int, list[Trace] | FmuError] = {}
+        self._speeds = sorted({0.0, start_speed})
+        self._rungs: dict[int, _Rung] = {}
 
-    def run(self, divisor: int) -> list[Trace] | FmuError:
-        if divisor not in self._runs:
-            self._runs[divisor] = self._attempt(divisor)
-        return self._runs[divisor]
+    def run(self, divisor: int) -> _Rung:
+        """The rung of one divisor.
 
-    def failure(self, divisor: int) -> FmuError:
-        found = self.run(divisor)
-        assert isinstance(found, FmuError)
-        return found
+        Raises:
+            FmuCrashError: a dead process says nothing about steps, and a hang costs minutes.
+        """
+        if divisor not in self._rungs:
+            self._rungs[divisor] = self._attempt(None if divisor == 1 else self._step / divisor)
+        return self._rungs[divisor]
 
-    def shown(self, divisor: int) -> tuple[Trace, ...]:
-        found = self.run(divisor)
-        return () if isinstance(found, FmuError) else (found[0],)
-
-    def next_finer(self, divisor: int) -> int | None:
-        """The next rung that the FMU can do: some refuse steps that are not theirs."""
-        for finer in DIVISORS:
-            if finer > divisor and not isinstance(self.run(finer), FmuError):
-                return finer
-        return None
+    def first_able(self) -> int | None:
+        """The coarsest of the finer steps that the FMU does: some refuse those not theirs."""
+        return next((d for d in DIVISORS[1:] if self.run(d).error is None), None)
 
     def problem(self, coarse: int, fine: int) -> str:
         """Why the coarse step will not do; empty if it will."""
-        here, there = self.run(coarse), self.run(fine)
-        name = f"its steps of {milliseconds(self._step / coarse)} do not converge"
-        if isinstance(here, FmuError):
-            return f"{name} ({plain(here)})"
-        other = milliseconds(self._step / fine)
-        assert not isinstance(there, FmuError)
-        for one, two in zip(here, there, strict=True):
+        for one, two in zip(self.run(coarse).traces, self.run(fine).traces, strict=True):
             found = compare(one, two)
             if found:
                 return (
-                    f"{name}: {found.quantity} {found.coarse:.3g} {found.unit} at "
-                    f"{found.time:.3g} s, {found.fine:.3g} {found.unit} with {other}"
+                    f"{_do_not_converge(self._step / coarse)}: {found.quantity} "
+                    f"{found.coarse:.3g} {found.unit} at {found.time:.3g} s, "
+                    f"{found.fine:.3g} {found.unit} with {milliseconds(self._step / fine)}"
                 )
         return ""
 
     def first_converged(self) -> int | None:
-        """The coarsest of the finer rungs that agrees with the one below it."""
-        able = [rung for rung in DIVISORS[1:] if not isinstance(self.run(rung), FmuError)]
+        """The coarsest of the finer steps that agrees with the one below it."""
+        able = [divisor for divisor in DIVISORS[1:] if self.run(divisor).error is None]
         for coarse, fine in pairwise(able):
             if not self.problem(coarse, fine):
                 return coarse
         return None
 
-    def _attempt(self, divisor: int) -> list[Trace] | FmuError:
-        step = None if divisor == 1 else self._step / divisor
-        try:
-            return [
-                drive(self._opener, manoeuvre(self._force), speed=speed, fmu_step=step)
-                for speed in self._speeds
-            ]
-        except FmuCrashError:
-            raise  # a dead process says nothing about steps, and a hang costs minutes
-        except (FmuOutputError, FmuStepError, *_UNABLE) as error:
-            return error
+    def depends_on_step(self) -> bool:
+        """Whether how far the FMU comes before it fails depends on its step."""
+        done = [
+            rung.steps_done for rung in self._rungs.values() if not isinstance(rung.error, _UNABLE)
+        ]
+        return max(done) - min(done) > 1
+
+    def _attempt(self, step: float | None) -> _Rung:
+        traces = []
+        for speed in self._speeds:
+            attempt = try_to_drive(self._opener, manoeuvre(self._force), speed=speed, fmu_step=step)
+            if isinstance(attempt.error, FmuCrashError):
+                raise attempt.error
+            if attempt.trace is not None:
+                traces.append(attempt.trace)
+            if attempt.error is not None:
+                return _Rung(tuple(traces), attempt.error)
+        return _Rung(tuple(traces), None)
+
+
+def _do_not_converge(step: float) -> str:
+    return f"its steps of {milliseconds(step)} do not converge"
 
 
 def manoeuvre(force: float) -> list[Phase]:
