@@ -54,7 +54,8 @@ class Platform:
         """
         bits = "32" if self.processor == "x86" else "64"
         old = OLD_SYSTEMS.get(self.system, self.system) + bits
-        return (str(self), old) if fmi_version == "3.0" else (old, str(self))
+        named = self.processor in {"x86", "x86_64"} or self.system == "darwin"
+        return (old, str(self)) if named and fmi_version != "3.0" else (str(self), old)
 
 
 def this_platform() -> Platform:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 MAX_DEPTH: Final = 64  # of elements; FMI's own go to 6, annotations are free
 MAX_ELEMENTS: Final = 600_000  # 50,000 variables make 150,000
+MAX_TOKEN: Final = 4 << 20  # [bytes] of one tag; a list of dependencies can be long
+CHUNK: Final = 1 << 20  # [bytes]
 MAX_ATTRIBUTES: Final = 100  # of an element; FMI's have at most 20
 
 
@@ -138,7 +140,11 @@ def _walk(
     parser.StartElementHandler = on_start
     parser.EndElementHandler = on_end
     try:
-        parser.Parse(data, True)
+        for place in range(0, len(data), CHUNK):
+            parser.Parse(data[place : place + CHUNK], False)
+            if place + CHUNK - parser.CurrentByteIndex > MAX_TOKEN:
+                refuse(f"a tag of more than {MAX_TOKEN >> 20} MB")
+        parser.Parse(b"", True)
     except expat.ExpatError as error:
         msg = f"{where}: not well-formed XML: {printable(error)}; export the model again"
         raise FmuFileError(msg) from None

@@ -378,6 +378,12 @@ def test_attributes_without_number(archive):
         open_archive(path)
 
 
+def test_an_attribute_without_end(archive):
+    path = archive(description=OPEN + b'<Unit name="' + bytes(range(65, 91)) * 400_000)
+    with refused(FmuArchiveError, path, "a tag of more than 4 MB"):
+        open_archive(path)
+
+
 def test_another_first_element(archive):
     path = archive(description=b'<?xml version="1.0"?>\n<svg/>')
     with refused(FmuFileError, path, "line 2", "<svg>", "fmiModelDescription"):
