@@ -1,4 +1,4 @@
-"""A car for PythonFMU: FMI 2.0, which knows no units here; 'python -m pythonfmu build -f' packs it."""
+"""A car for PythonFMU (FMI 2.0, without units): 'python -m pythonfmu build -f' packs it."""
 
 from pythonfmu import Boolean, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 

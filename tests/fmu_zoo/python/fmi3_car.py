@@ -1,12 +1,12 @@
 """A car for PythonFMU3: FMI 3.0 with units; 'python -m pythonfmu3 build -f' packs it."""
 
 from pythonfmu3 import (
+    Float64,
     Fmi3Causality,
     Fmi3Slave,
-    Fmi3StepResult,
     Fmi3Status,
+    Fmi3StepResult,
     Fmi3Variability,
-    Float64,
 )
 from pythonfmu3.unit import Unit
 
