@@ -55,8 +55,7 @@ class GuardedKeeper:
 
     def close(self) -> None:
         """See :class:`fmus.isolation.keeper.Keeper`."""
-        if os.getpid() == self._owner:  # not in a fork of the vehicle's process
-            self._dismiss()
+        self._dismiss()
 
     def _employ(self) -> None:
         """Have a guardian."""

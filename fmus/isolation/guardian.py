@@ -15,7 +15,6 @@ import gc
 import os
 import resource
 import select
-import shutil
 import signal
 import socket
 import sys
@@ -26,6 +25,7 @@ from typing import Final
 
 from fmus.isolation.burial import Death, PrintedTail, out_of_memory_kills
 from fmus.isolation.protocol import BURY, FORK, MESSAGE
+from fmus.isolation.spawning import remove
 from fmus.isolation.worker import Order, read_order, serve
 
 _WATCH: Final = 1000  # [ms] between looks whether the vehicle's process is still there
@@ -51,7 +51,7 @@ def main(control: int, parent: int, folder: str) -> None:
         with socket.socket(fileno=control) as connection:
             _Guardian(connection, parent, order).run()
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove(Path(folder))
 
 
 class _Guardian:
@@ -134,7 +134,7 @@ class _Guardian:
         if self._worker is not None:
             os.kill(self._worker, signal.SIGKILL)
             _pid, status = os.waitpid(self._worker, 0)
-            self._lay_out(status, killed=True)
+            self._lay_out(self._worker, status, killed=True)
         return self._death or Death(0, killed=False, oom=False, printed="")
 
     def _reap(self) -> None:
@@ -142,11 +142,11 @@ class _Guardian:
         with suppress(ChildProcessError):
             while (found := os.waitpid(-1, os.WNOHANG))[0]:
                 if found[0] == self._worker:
-                    self._lay_out(found[1], killed=False)
+                    self._lay_out(*found, killed=False)
 
-    def _lay_out(self, status: int, *, killed: bool) -> None:
+    def _lay_out(self, worker: int, status: int, *, killed: bool) -> None:
         self._worker = None
-        _kill_all_children()
+        _kill_all_children(worker)
         self._read_output(_DRAIN)
         self._close_output()
         code = os.waitstatus_to_exitcode(status)
@@ -191,14 +191,20 @@ def _become_worker(guardian: int, connection: int, output: int) -> socket.socket
     return socket.socket(fileno=high)
 
 
-def _kill_all_children() -> None:
+def _kill_all_children(worker: int) -> None:
     """Kill and reap every child, also those that we inherit by that, until there is none."""
     children = Path(f"/proc/self/task/{os.getpid()}/children")
-    with suppress(ChildProcessError, FileNotFoundError):  # nobody left; no such list here
+    with suppress(ChildProcessError):  # nobody left
         while True:
-            for child in children.read_text(encoding="ascii").split():
+            try:
+                pids = children.read_text(encoding="ascii").split()
+            except FileNotFoundError:  # a kernel without such lists: those that did not hide
                 with suppress(ProcessLookupError):
-                    os.kill(int(child), signal.SIGKILL)
+                    os.killpg(worker, signal.SIGKILL)
+                return
+            for pid in pids:
+                with suppress(ProcessLookupError):
+                    os.kill(int(pid), signal.SIGKILL)
             os.waitpid(-1, 0)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -80,6 +81,16 @@ def kill_group(process: subprocess.Popen[bytes]) -> None:
         else:
             os.killpg(process.pid, signal.SIGKILL)
     process.wait()
+
+
+def remove(folder: Path) -> None:
+    """Remove a folder, also where what made its folders had a umask that forbids it."""
+    for place, names, _files in os.walk(folder):
+        for inner in (Path(place, name) for name in names):
+            with suppress(OSError):
+                if not inner.is_symlink():
+                    inner.chmod(0o700)
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def no_process(path: Path, printed: bytes) -> FmuCrashError:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import tempfile
 import weakref
 from math import isfinite
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Self
 
 from fmus import errors
@@ -18,11 +19,11 @@ from fmus.errors import (
 )
 from fmus.isolation.keeper import Keeper, make_keeper
 from fmus.isolation.protocol import QUIT, START, STEP, GarbledError, Line, Text
+from fmus.isolation.spawning import remove
 from fmus.preparation import prepare, unpack
 from fmus.text import printable
 
 if TYPE_CHECKING:
-    import os
     from collections.abc import Mapping
     from types import TracebackType
 
@@ -75,10 +76,14 @@ class IsolatedVehicle:
         self._failed = False
         self._refusal = ""
         self._refuse("has not been started; call start() first")
-        temporary = TemporaryDirectory(prefix="vehicle-fmu-", ignore_cleanup_errors=True)
-        folder = Path(temporary.name)
-        self._keeper = make_keeper(prepared, folder)
-        self._closing = weakref.finalize(self, _close, self._keeper, temporary)
+        folder = Path(tempfile.mkdtemp(prefix="vehicle-fmu-"))
+        try:
+            self._keeper = make_keeper(prepared, folder)
+        except BaseException:
+            remove(folder)
+            raise
+        self._owner = os.getpid()
+        self._closing = weakref.finalize(self, _close, self._owner, self._keeper, folder)
         try:
             unpack(prepared, folder / "fmu")
         except BaseException:
@@ -129,12 +134,14 @@ class IsolatedVehicle:
 
     def close(self) -> None:
         """End the FMU and its process; nothing happens the second time."""
-        if self._closing.alive:
-            self._refuse("has been closed; make a new one")
-            try:
+        if not self._closing.alive:
+            return
+        try:
+            if os.getpid() == self._owner:  # not in a fork of the vehicle's process
                 self._end()
-            finally:
-                self._closing()
+        finally:
+            self._refuse("has been closed; make a new one")
+            self._closing()
 
     def __enter__(self) -> Self:
         return self
@@ -233,9 +240,10 @@ class IsolatedVehicle:
         self._failed = True
 
 
-def _close(keeper: Keeper, folder: TemporaryDirectory[str]) -> None:
-    keeper.close()
-    folder.cleanup()
+def _close(owner: int, keeper: Keeper, folder: Path) -> None:
+    if os.getpid() == owner:
+        keeper.close()
+        remove(folder)
 
 
 def _warnings(text: Text) -> list[str]:

@@ -82,6 +82,7 @@ def test_ctrl_c_in_a_step_spoils_nothing_but_the_episode(isolated):
     with pytest.raises(FmuError, match="failed at"):
         vehicle.step(0.0)
     motion(vehicle, steps=3)
+    assert not vehicle.warnings  # the sleeping process was not asked to end, but killed
 
 
 def test_vehicles_in_several_threads_do_not_mix(isolated, reference):
