@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from fmpy import extract, read_model_description
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import FMU2Slave
-from fmpy.fmi3 import FMU3Slave
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.fmi3 import FMU3Slave, fmi3LogMessageCallback
 
 from controller import (
     LongitudinalModel,
@@ -48,28 +48,26 @@ class Host:
         self.messages: list[str] = []
         self.fmu = self._make(folder)
         self.start_values = start_values
+        self.instantiate()
 
-    def _make(self, folder: Path) -> Any:
+    def _make(self, folder: Path) -> FMU2Slave | FMU3Slave:
         known = {
             "guid": self.description.guid,
             "unzipDirectory": str(folder),
             "modelIdentifier": self.description.coSimulation.modelIdentifier,
             "instanceName": "controller",
         }
-        if self.is_fmi2:
-            from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+        return FMU2Slave(**known) if self.is_fmi2 else FMU3Slave(**known)
 
+    def instantiate(self) -> None:
+        """With debug logging; what it says is in ``messages``."""
+        if self.is_fmi2:
             self._callbacks = fmi2CallbackFunctions()
             self._callbacks.logger = fmi2CallbackLoggerTYPE(self._note_2)
-            fmu: Any = FMU2Slave(**known)
-            fmu.instantiate(callbacks=self._callbacks, loggingOn=True)
+            self.fmu.instantiate(callbacks=self._callbacks, loggingOn=True)
         else:
-            fmu = FMU3Slave(**known)
-            from fmpy.fmi3 import fmi3LogMessageCallback
-
             self._log = fmi3LogMessageCallback(self._note_3)
-            fmu.instantiate(loggingOn=True, logMessage=self._log)
-        return fmu
+            self.fmu.instantiate(loggingOn=True, logMessage=self._log)
 
     def _note_2(self, _env: Any, _name: Any, _status: int, _category: Any, text: bytes) -> None:
         self.messages.append(text.decode())
