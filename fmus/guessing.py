@@ -237,6 +237,7 @@ def _name_score(role: Role, name: str) -> float | None:
     for spelled, score in ((words, 10.0), (plain, 9.0)):
         if "".join(spelled) in role.names:
             return score + shallow
-    if set(words) & (ELSEWHERE | role.never):
+    numbered = [word for word in words if not word.isdecimal()]
+    if numbered != ["y"] and set(words) & (ELSEWHERE | role.never):  # y, y1: any output's name
         return None
     return 6.0 + shallow if set(words) & role.words else 0.0
