@@ -4,7 +4,7 @@ from fmus.checking.check import CheckReport, check
 from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, identify
 from fmus.checking.manoeuvres import Opener, Phase, Trace, drive
-from fmus.checking.opening import opener_of
+from fmus.checking.opening import opener_of, without_guards
 from fmus.checking.self_check import Convergence, convergence, require_converged
 
 __all__ = [
@@ -22,4 +22,5 @@ __all__ = [
     "identify",
     "opener_of",
     "require_converged",
+    "without_guards",
 ]

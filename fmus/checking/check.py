@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from fmus.checking import observations as observe
@@ -75,6 +75,7 @@ def check(
     *,
     step_size: float,
     fmu_step: float | None = None,
+    unguarded: Opener | None = None,
     profile: VehicleProfile | None = None,
     mass: float = 1000.0,
     friction: float = 100.0,
@@ -89,6 +90,7 @@ def check(
         opener: makes the vehicle.
         step_size: of the run [s].
         fmu_step: of the FMU itself [s]; None: ``step_size``.
+        unguarded: makes the vehicle without guards, to see what is wrong where they stop it.
         profile: of the vehicle, for what to change in it.
         mass: M of the controller's model [kg].
         friction: alpha of it [N.s/m].
@@ -103,7 +105,7 @@ def check(
     expected = Expected(mass, friction, horizon, start_speed, force, force_limit, profile)
     report = CheckReport(expected)
     tell = progress or (lambda _name: None)
-    go_on = _drive_all(report, opener, tell)
+    go_on = _drive_all(report, opener, unguarded, tell)
     _observe(report)
     if go_on:
         tell("step halving")
@@ -116,25 +118,47 @@ def check(
     return report
 
 
-def _drive_all(report: CheckReport, opener: Opener, tell: Callable[[str], None]) -> bool:
+def _drive_all(
+    report: CheckReport, opener: Opener, unguarded: Opener | None, tell: Callable[[str], None]
+) -> bool:
     """Drive what can be driven; False: no use in going on."""
     for name in _DRIVES:
         tell(name)
-        speed = report.expected.start_speed if name == "rolling" else 0.0
-        attempt = try_to_drive(opener, _phases(name, report.expected), speed=speed)
+        attempt = _attempt(name, report.expected, opener)
         error = attempt.error
         if name == "idle":
             report.findings.append(_starting(attempt))
-        if error is not None:
-            if attempt.trace is not None or name != "idle":
-                report.findings.append(Finding(_NAMES[name], "fail", plain(error)))
+        if error is None:
+            if attempt.trace is not None:
+                report.traces[name] = attempt.trace
+            continue
+        if attempt.trace is not None or name != "idle":
+            report.findings.append(Finding(_NAMES[name], "fail", plain(error)))
+        if name == "response" and unguarded is not None and isinstance(error, FmuOutputError):
+            _look_closer(report, unguarded)
+        if name != "rolling" or isinstance(error, FmuCrashError):
             # Steps that are too coarse show as an output or a step that fails: halving tells.
             may_diverge = isinstance(error, FmuOutputError | FmuStepError)
-            if name != "rolling" or isinstance(error, FmuCrashError):
-                return may_diverge and not isinstance(error, FmuCrashError)
-        elif attempt.trace is not None:
-            report.traces[name] = attempt.trace
+            return may_diverge and not isinstance(error, FmuCrashError)
     return True
+
+
+def _attempt(name: str, expected: Expected, opener: Opener) -> Attempt:
+    speed = expected.start_speed if name == "rolling" else 0.0
+    return try_to_drive(opener, _phases(name, expected), speed=speed)
+
+
+def _look_closer(report: CheckReport, unguarded: Opener) -> None:
+    """The response that a guard stopped, without the guard: what is it that is wrong?
+
+    Units in which a force is a thousand times too strong need a thousandth of it.
+    """
+    for share in (1.0, 1e-3):
+        expected = replace(report.expected, force=share * report.expected.force)
+        attempt = _attempt("response", expected, unguarded)
+        if attempt.error is None and attempt.trace is not None:
+            report.traces["response"] = attempt.trace
+            return
 
 
 def _starting(attempt: Attempt) -> Finding:
@@ -161,7 +185,8 @@ def _halve(report: CheckReport, opener: Opener, fmu_step: float) -> None:
             opener, fmu_step, force=expected.force, start_speed=_rolling_speed(report)
         )
     except FmuError as error:
-        report.findings.append(Finding(name, "fail", plain(error)))
+        if report.passed:  # else it has been said
+            report.findings.append(Finding(name, "fail", plain(error)))
         return
     report.convergence = result
     if result.problem:

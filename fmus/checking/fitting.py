@@ -117,7 +117,7 @@ def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
         enough = max(cost(*best) * (1.0 + NOTICEABLE), EXACT)
         simplest = next(pair for pair in candidates if cost(*pair) <= enough)
     solution = _solve(drives, *simplest)
-    return solution if np.isfinite(solution.mass) and solution.mass > 0.0 else None
+    return solution if np.isfinite(solution.mass) else None
 
 
 def _solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
@@ -137,8 +137,10 @@ def _solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
         )
     left = y - X / scale @ theta
     inverse, ratio = theta / scale
-    mass = 1.0 / inverse if inverse else np.inf
     residual = float(np.sqrt(np.mean(left**2)))
+    if inverse <= 0.0:  # no force moves it
+        return Fit(np.inf, 0.0, lag, delay, (np.inf, np.inf), residual, 0.0)
+    mass = 1.0 / inverse
     spread = float(np.sqrt(np.mean((y - y.mean()) ** 2)))
     return Fit(
         mass=float(mass),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fmus.checking.findings import Finding
-from fmus.checking.fitting import fit, prepare
+from fmus.checking.fitting import STANDSTILL, fit, prepare
 from fmus.checking.prediction import position_errors
 from fmus.checking.saturation import saturation
 
@@ -121,7 +121,7 @@ def drives(response: Trace, expected: Expected) -> Finding:
     end = int(np.flatnonzero(driven)[-1]) + 1
     gained = float(response.speed[end] - response.speed[0])
     seconds = end * response.step_size
-    text = f"{seconds:g} s of {expected.force:.0f} N: {gained:+.4g} m/s"
+    text = f"{seconds:g} s of {response.force[0]:.4g} N: {gained:+.4g} m/s"
     if gained > MOVES:
         return Finding(name, "pass", text)
     if gained < -MOVES:
@@ -238,7 +238,10 @@ def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
     derived = np.diff(response.speed) / response.step_size
     changes = np.flatnonzero(np.diff(response.force)) + 1
     near = np.abs(np.arange(measured.size)[:, None] - changes).min(axis=1)
-    calm = near > round(0.3 / response.step_size)
+    slower = np.minimum(response.speed[1:], response.speed[:-1])
+    faster = np.maximum(response.speed[1:], response.speed[:-1])
+    stops = (slower <= STANDSTILL) & (faster > STANDSTILL)
+    calm = (near > round(0.3 / response.step_size)) & ~stops
     ratio, misfit = _ratio(derived[calm], measured[calm])
     text = f"{ratio:.4g} times what the speed does per second"
     if not np.isfinite(ratio):

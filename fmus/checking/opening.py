@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fmus.isolation import open_vehicle
+from fmus.profile import Limits
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -13,6 +14,14 @@ if TYPE_CHECKING:
     from fmus.checking.manoeuvres import Opener
     from fmus.profile import Value, VehicleProfile
     from fmus.vehicle import Vehicle
+
+
+UNGUARDED = Limits(speed=1000.0, position_jump=1e4)  # the widest that a profile allows
+
+
+def without_guards(profile: VehicleProfile) -> VehicleProfile:
+    """The profile with limits that only nonsense exceeds."""
+    return profile.model_copy(update={"limits": UNGUARDED})
 
 
 def opener_of(

@@ -10,7 +10,7 @@ from rich.text import Text
 
 from fmus import FmuError
 from fmus.bundled import is_bundled
-from fmus.checking import Finding, check, opener_of
+from fmus.checking import Finding, check, opener_of, without_guards
 from fmus.checking.self_check import plain
 from fmus.preparation import choose_profile, prepare
 from fmus.text import printable
@@ -74,6 +74,7 @@ def check_command(
             opener_of(path, step_size=step, profile=chosen),
             step_size=step,
             fmu_step=chosen.fmu.step,
+            unguarded=opener_of(path, step_size=step, profile=without_guards(chosen)),
             profile=chosen,
             mass=mass,
             friction=friction,

@@ -4,14 +4,17 @@ import pytest
 
 from fmus import bundled_fmu
 from fmus.bundled import BUNDLED_PROFILE
-from fmus.checking import check, opener_of
+from fmus.checking import check, opener_of, without_guards
 from fmus.profile import make_profile
 
 
 def checked(zoo, path, isolated=False, **changes):
     profile = make_profile(zoo.profile(path) | changes, "test")
-    opener = opener_of(path, step_size=0.05, profile=profile, isolated=isolated)
-    return check(opener, step_size=0.05, profile=profile)
+    guarded, unguarded = (
+        opener_of(path, step_size=0.05, profile=chosen, isolated=isolated)
+        for chosen in (profile, without_guards(profile))
+    )
+    return check(guarded, step_size=0.05, profile=profile, unguarded=unguarded)
 
 
 def finding(report, name):
@@ -49,8 +52,7 @@ def test_ours_passes_without_a_warning():
     ],
 )
 def test_an_output_in_another_unit_than_declared(zoo, spoken, name, remedy):
-    limits = {"position_jump": 1e4, "speed": 1000.0}  # as if nobody watched
-    report = checked(zoo, zoo.car(spoken=spoken), limits=limits)
+    report = checked(zoo, zoo.car(spoken=spoken))
     if remedy is None:
         name, remedy = "speed and position", 'unit = "km/h"'
     found = finding(report, name)
@@ -59,12 +61,9 @@ def test_an_output_in_another_unit_than_declared(zoo, spoken, name, remedy):
 
 
 def test_a_force_in_kilonewtons(zoo):
-    report = checked(
-        zoo,
-        zoo.car(spoken={"force": (1000.0, 0.0)}),
-        limits={"speed": 1000.0, "position_jump": 1e4},
-    )
+    report = checked(zoo, zoo.car(spoken={"force": (1000.0, 0.0)}))
     assert not report.passed
+    assert finding(report, "controller's model").remedy == 'set `unit = "kN"` in [inputs.force]'
 
 
 def test_the_wrong_sign_of_the_force(zoo):
@@ -83,7 +82,8 @@ def test_a_car_that_is_not_in_gear(zoo):
 
 
 def test_brakes_that_reverse(zoo):
-    assert finding(checked(zoo, zoo.car(values={"holds": 0.0})), "brakes").verdict == "warn"
+    late = zoo.car(values={"holds": 0.0, "lag": 0.2})
+    assert finding(checked(zoo, late), "brakes").verdict == "warn"
     holds = checked(zoo, zoo.car(values={"holds": 1.0}))
     assert finding(holds, "brakes").verdict == "pass"
 
@@ -145,7 +145,7 @@ def test_a_coarse_solver_fails_with_the_step_that_mends_it(zoo):
      ("fatal", "step"), ("discard_always", "step"), ("message_control", "step")],
 )  # fmt: skip
 def test_a_hostile_fmu_is_a_failed_check_in_one_line(zoo, behaviour, phase):
-    report = checked(zoo, zoo.car(behaviour=behaviour, phase=phase), isolated=True)
+    report = checked(zoo, zoo.car(behaviour=behaviour, phase=phase, at=0.0), isolated=True)
     assert report.passed == (behaviour == "message_control")
     for found in report.findings:
         assert (found.text + found.remedy).isprintable()

@@ -53,7 +53,8 @@ def test_a_diverging_solver_that_leaves_all_bounds_is_named_as_well(zoo):
     path = zoo.car(euler=True, values={"lag": 0.005})
     result = convergence(opener(zoo, path), STEP)
     assert "its steps of 50 ms do not converge" in result.problem
-    assert result.advised == 0.005
+    assert result.advised is not None
+    assert result.advised <= 0.01
 
 
 def test_an_fmu_that_does_one_step_only_cannot_be_compared(zoo):
@@ -86,7 +87,7 @@ def test_a_crash_ends_it_at_once(zoo):
 
 
 def test_what_does_not_start_is_tried_once(zoo):
-    path = zoo.car(behaviour="error", phase="initialise")
+    path = zoo.car(behaviour="error", phase="initialise", at=0.0)
     opened = []
 
     def counting(step):
