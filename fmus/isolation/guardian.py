@@ -48,6 +48,7 @@ def main(control: int, parent: int, folder: str) -> None:
     """
     try:
         order = read_order(folder)
+        order.import_ahead()
         with socket.socket(fileno=control) as connection:
             _Guardian(connection, parent, order).run()
     finally:

@@ -15,6 +15,7 @@ import weakref
 from time import monotonic
 from typing import Any, Final
 
+LOAD: Final = b"load"  # 0, 0
 START: Final = b"strt"  # position [m], speed [m/s]
 STEP: Final = b"step"  # force [N], 0
 QUIT: Final = b"quit"  # 0, 0

@@ -18,7 +18,7 @@ from fmus.errors import (
     FmuStepError,
 )
 from fmus.isolation.keeper import Keeper, make_keeper
-from fmus.isolation.protocol import QUIT, START, STEP, GarbledError, Line, Text
+from fmus.isolation.protocol import LOAD, QUIT, START, STEP, GarbledError, Line, Text
 from fmus.isolation.spawning import remove
 from fmus.preparation import prepare, unpack
 from fmus.text import printable
@@ -111,6 +111,7 @@ class IsolatedVehicle:
         self._refuse("has not started; call start() again")
         self._line = Line(self._keeper.begin())
         self._steps, self.time = 0, 0.0
+        self._exchange(LOAD, 0.0, 0.0, self._start_timeout)
         self._exchange(START, position, speed, self._start_timeout)
         self._refusal = ""
 
@@ -195,7 +196,7 @@ class IsolatedVehicle:
         """Bury the process; the error says when it ended, of what, and its last words."""
         lost = isinstance(problem, EOFError)
         death = self._keeper.bury(_DEATH_PATIENCE if lost else 0.0)
-        when = "while it was loaded and started"
+        when = "while it was loaded" if what == LOAD else "while it was started"
         key = "start_timeout"
         if what == STEP:
             until = (self._steps + self._stretch) * self.step_size
@@ -206,7 +207,8 @@ class IsolatedVehicle:
             advice = "report it to the FMU's maker"
         elif isinstance(problem, TimeoutError):
             reason = f"no answer within {timeout:g} s {when}{death.last_words}; killed"
-            advice = f"if it is only slow, add `{key} = {10 * timeout:g}` to [fmu] of the profile"
+            line = f"{key} = {min(10.0 * timeout, 3600.0):g}"
+            advice = f"if it is only slow, add `{line}` to [fmu] of the profile"
         else:
             reason = f"the FMU's process wrote into giveway's connection {when}{death.last_words}"
             advice = "killed; report it to the FMU's maker"

@@ -16,7 +16,19 @@ from time import sleep
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from fmus.errors import FmuError
-from fmus.isolation.protocol import DONE, FAILED, LOST, QUIT, START, STEP, Text, receive, reply
+from fmus.isolation.protocol import (
+    DONE,
+    FAILED,
+    LOAD,
+    LOST,
+    QUIT,
+    START,
+    STEP,
+    Text,
+    receive,
+    reply,
+)
+from fmus.model import Kind
 from fmus.text import printable
 from fmus.vehicle import VehicleFmu
 
@@ -37,6 +49,13 @@ class Order:
     def vehicle(self) -> VehicleFmu:
         """The vehicle, its FMU loaded into this process."""
         return VehicleFmu.unpacked(self.prepared, self.folder)
+
+    def import_ahead(self) -> None:
+        """Import what the vehicle would import, so that its workers find it done."""
+        if self.prepared.wiring.interface.kind is Kind.MODEL_EXCHANGE:
+            from fmus.fmi import cvode
+
+            cvode.available()
 
 
 def read_order(folder: str) -> Order:
@@ -117,8 +136,9 @@ class _Worker:
         vehicle = self._vehicle
         if what == STEP and vehicle is not None:
             vehicle.step(first)
-        elif what == START:
-            vehicle = self._vehicle = self._order.vehicle()
+        elif what == LOAD:
+            self._vehicle = self._order.vehicle()
+        elif what == START and vehicle is not None:
             vehicle.start(position=first, speed=second)
         elif what == QUIT and vehicle is not None:
             vehicle.close()

@@ -64,9 +64,9 @@ def test_a_step_without_an_answer_ends_after_the_time_out(isolated, behaviour):
         (
             "load",
             "segfault",
-            "died of a segmentation fault .* while it was loaded and started; rep",
+            "died of a segmentation fault .* while it was loaded; report",
         ),
-        ("instantiate", "exit_0", r"ended itself: exit\(0\) was called while it was loaded and st"),
+        ("instantiate", "exit_0", r"ended itself: exit\(0\) was called while it was started; rep"),
         (
             "initialise",
             "hang",
