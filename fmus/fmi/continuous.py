@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fmus.fmi.calls import Calls
+
 SMALLEST = 1e-13  # step, relative to the greater of the time and 1 s, that is still a step
+LONGEST = 0.02  # [s] step with event indicators: two crossings within one step go unseen
 
 
 class IntegrationError(Exception):
@@ -144,6 +146,9 @@ class Solver(Protocol):
 
     def restart(self, time: float, x: NDArray[np.float64], nominals: NDArray[np.float64]) -> None:
         """Begin anew, after an event or with new inputs."""
+
+    def expect_events(self) -> None:
+        """The next step is to be a cautious one: one event may follow soon upon another."""
 
     def step(self, stop: float) -> float:
         """One internal step, not beyond ``stop`` [s]; returns where it ends [s].

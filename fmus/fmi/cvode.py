@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fmus.fmi.continuous import SMALLEST, IntegrationError, UndefinedError
+from fmus.fmi.continuous import LONGEST, SMALLEST, IntegrationError, UndefinedError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -90,6 +90,8 @@ class Cvode:
         self._require("CVodeSVtolerances", c_double(self._tolerance), self._absolute)
         self._require("CVodeSetLinearSolver", self._linear, self._matrix)
         self._require("CVodeSetMaxNumSteps", c_long(-1))  # we count
+        if system.nz:
+            self._require("CVodeSetMaxStep", c_double(LONGEST))
 
     def restart(  # noqa: D102 - as in Solver
         self, time: float, x: NDArray[np.float64], nominals: NDArray[np.float64]
@@ -99,6 +101,9 @@ class Cvode:
         self._view(self._absolute)[:] = self._tolerance * nominals
         self._require("CVodeReInit", c_double(time), self._state)
         self._require("CVodeSetMinStep", c_double(SMALLEST * max(1.0, abs(time))))
+
+    def expect_events(self) -> None:
+        """It begins with small steps anyway."""
 
     def step(self, stop: float) -> float:  # noqa: D102
         self._undefined = ""

@@ -143,6 +143,7 @@ class ModelExchange(RunningInstance):
                     raise IntegrationError(msg)
                 self.calls.enter_event_mode()
                 self._settle(time)
+                solver.expect_events()
         system.set(end, solver.x)
 
     def _settle(self, time: float) -> None:

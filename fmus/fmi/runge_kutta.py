@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fmus.fmi.continuous import SMALLEST, IntegrationError, UndefinedError
+from fmus.fmi.continuous import LONGEST, SMALLEST, IntegrationError, UndefinedError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fmus.fmi.continuous import ContinuousSystem
 
-FIRST_STEP = 1e-3  # [s]
+FIRST_STEP = 1e-5  # [s] what comes soon after an event must not be leapt over
 SAFETY, LEAST, MOST = 0.9, 0.1, 4.0  # of the next step's length: Hairer, Norsett, Wanner, II.4
 
 
@@ -47,8 +47,13 @@ class RungeKutta:
     ) -> None:
         self._time, self.x, self._nominals = time, x.copy(), nominals
 
+    def expect_events(self) -> None:  # noqa: D102
+        self._next = FIRST_STEP
+
     def step(self, stop: float) -> float:  # noqa: D102
         start, x = self._time, self.x
+        if self._system.nz:
+            stop = min(stop, start + LONGEST)
         if not self._system.nx:
             self._arrive(start, x, stop, x)
             return stop

@@ -217,7 +217,7 @@ def test_a_saved_state_comes_back(drive, version):
 class Oscillator:
     """x'' = -x, with states x and x'."""
 
-    nx = 2
+    nx, nz = 2, 0
     wrong_from = 99.0  # [s]
 
     def derivatives(self, time, x, slope):
