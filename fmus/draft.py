@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 from fmus.text import printable
 
 if TYPE_CHECKING:
+    from collections.abc import Container
+
     from fmus.model import Model
 
 Text = bool | int | float | str
@@ -106,7 +108,8 @@ class Draft:
         if not self.confident:
             head.append('# Lines with "# ?" are open: decide them, and take away the "# ?".')
         head += [f"# {printable(remark, 160)}" for remark in self.remarks]
-        blocks = ["\n".join(head), *map(str, self.entries), *_parameters(self.model)]
+        taken = {line.value for entry in self.entries for line in entry.lines}
+        blocks = ["\n".join(head), *map(str, self.entries), *_parameters(self.model, taken)]
         return "\n\n".join(blocks) + "\n"
 
 
@@ -125,12 +128,13 @@ def toml_value(value: Text) -> str:
     return repr(value)
 
 
-def _parameters(model: Model) -> list[str]:
+def _parameters(model: Model, taken: Container[Text]) -> list[str]:
     """The FMU's parameters with their values, as comments that can be taken in."""
     free = [
         v
         for v in model.variables.values()
         if v.settable and v.causality == "parameter" and v.is_real and not v.shape and v.start
+        if v.name not in taken
     ]
     if not free:
         return []

@@ -131,7 +131,7 @@ def _no_input(ranked: dict[str, list[Guess]], inputs: Sequence[Variable]) -> Ent
                 doubt = f"'{name}' is a {present}, but no input is a {missing}; name it"
                 line = Line("variable", "?", "an input of the FMU", sure=False)
                 return Entry(f"inputs.{missing}", (line,), "", printable(doubt), sure=False)
-    names = [printable(v.name, 40) for v in inputs if v.is_real or v.is_integer]
+    names = _numbers(inputs)
     has = f"its inputs are {_listed(names)}" if names else "it has no numeric input"
     doubt = f'no input that drives a vehicle; {has}; add [inputs.force] variable = "..."'
     lines = (
@@ -163,7 +163,7 @@ def _outputs(model: Model) -> list[Entry]:
     elif speed:
         entries.append(_axis("outputs", "speed", speed))
     else:
-        names = [printable(v.name, 40) for v in outputs if v.is_real or v.is_integer]
+        names = _numbers(outputs)
         doubt = f"no output is a speed; its outputs are {_listed(names) or 'none'}"
         lines = (Line("variable", "?", _listed(names), sure=False),)
         entries.append(Entry("outputs.speed", lines, "", doubt, sure=False))
@@ -291,6 +291,16 @@ def _open(entry: Entry, doubt: str) -> Entry:
 
 def _channel_name(channel: Channel) -> str:
     return channel.name if channel.variable.size > 1 else channel.variable.name
+
+
+def _numbers(variables: Sequence[Variable]) -> list[str]:
+    """The names of all numbers, an array's elements one by one as far as they are few."""
+    return [
+        printable(_channel_name(Channel(variable, element)), 40)
+        for variable in variables
+        if variable.is_real or variable.is_integer
+        for element in range(min(variable.size, 8))
+    ]
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -155,6 +155,7 @@ ROLES: Final = {
         frozenset(),
     ),
 }
+GENERIC: Final = (["u"], ["x"], ["s"], ["a"], ["v"], ["f"])  # without their unit they say nothing
 FORCES: Final = frozenset({"force", "drive_force", "brake_force"})
 
 
@@ -222,6 +223,8 @@ def _guess(model: Model, role: str, variable: Variable) -> Guess | None:
     if name_score is None:
         return None
     if name_score == 0 and not (fits and wanted.dimension != units.NONE and wanted.words):
+        return None
+    if fits is False and words_of(variable.name) in GENERIC:
         return None
     return Guess(Channel(variable), name_score, fits, found)
 
