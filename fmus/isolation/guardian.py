@@ -18,6 +18,7 @@ import select
 import signal
 import socket
 import sys
+import warnings
 from contextlib import suppress
 from pathlib import Path
 from time import monotonic, sleep
@@ -46,6 +47,8 @@ def main(control: int, parent: int, folder: str) -> None:
         parent: process id.
         folder: the vehicle's temporary folder, with the pickled order in ``order``.
     """
+    # The libraries' threads that os.fork warns of (Python 3.12) sleep; an FMU has not run here.
+    warnings.simplefilter("ignore", DeprecationWarning)
     try:
         order = read_order(folder)
         order.import_ahead()
@@ -102,7 +105,8 @@ class _Guardian:
             elif what == BURY:
                 answer = self._bury(int(argument) / 1e3).encoded()
             self._control.send(b"%s %s" % (number, answer))
-        except OSError:
+        except OSError as error:
+            sys.stderr.write(f"{error}\n")  # for the vehicle to read, if it is still there
             return False
         return True
 

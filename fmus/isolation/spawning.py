@@ -54,7 +54,7 @@ def spawn(
         "-s": sys.flags.no_user_site,
         "-B": sys.flags.dont_write_bytecode,
     }
-    given = json.dumps([[str(Path(entry).absolute()) for entry in sys.path], values])
+    given = json.dumps([[_absolute(entry) for entry in sys.path], values])
     # -P: nothing is imported from the working directory before our paths are set
     try:
         return subprocess.Popen(
@@ -71,6 +71,11 @@ def spawn(
         )
     except OSError as error:
         raise no_process(path, str(error).encode()) from None
+
+
+def _absolute(entry: str) -> str:
+    """An entry of sys.path as it is wherever a process works; those of import hooks stay."""
+    return str(Path(entry).absolute()) if Path(entry).exists() else entry
 
 
 def kill_group(process: subprocess.Popen[bytes]) -> None:
