@@ -11,6 +11,7 @@ from fmus.checking.findings import Finding
 from fmus.checking.fitting import STANDSTILL, fit, prepare
 from fmus.checking.prediction import position_errors
 from fmus.checking.saturation import saturation
+from fmus.profile import Axis
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -61,7 +62,7 @@ class Expected:
     def role(self) -> str:
         """The first input that the profile wires."""
         inputs = self.profile.inputs if self.profile else None
-        return next((name for name, _ in inputs or () if getattr(inputs, name)), "force")
+        return next((name for name, axis in inputs or () if isinstance(axis, Axis)), "force")
 
     @property
     def braking_role(self) -> str:
@@ -233,16 +234,7 @@ def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
     name = "acceleration"
     if expected.profile and expected.profile.outputs.acceleration is None:
         return Finding(name, "skip", "not among the outputs: the speed's difference is taken")
-    # At the end of a step or its mean: no force changes close by, so both are nearly the same.
-    measured = response.acceleration[1:]
-    derived = np.diff(response.speed) / response.step_size
-    changes = np.flatnonzero(np.diff(response.force)) + 1
-    near = np.abs(np.arange(measured.size)[:, None] - changes).min(axis=1)
-    slower = np.minimum(response.speed[1:], response.speed[:-1])
-    faster = np.maximum(response.speed[1:], response.speed[:-1])
-    stops = (slower <= STANDSTILL) & (faster > STANDSTILL)
-    calm = (near > round(0.3 / response.step_size)) & ~stops
-    ratio, misfit = _ratio(derived[calm], measured[calm])
+    ratio, misfit = _acceleration_ratio(response)
     text = f"{ratio:.4g} times what the speed does per second"
     if not np.isfinite(ratio):
         return Finding(name, "skip", "the speed does not change")
@@ -260,6 +252,22 @@ def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
     return Finding(
         name, "warn", text, "is [outputs.acceleration] the right variable? It may be left out"
     )
+
+
+def _acceleration_ratio(response: Trace) -> tuple[float, float]:
+    """The factor from the speed's slope to the acceleration, and the misfit.
+
+    Some FMUs give the mean over the step, others the value at its end: whichever fits better.
+    """
+    v, h = response.speed, response.step_size
+    changes = np.flatnonzero(np.diff(response.force)) + 1
+    near = np.abs(np.arange(1, v.size - 1)[:, None] - changes).min(axis=1, initial=v.size)
+    around = np.stack((v[:-2], v[1:-1], v[2:]))
+    stops = (around.min(axis=0) <= STANDSTILL) & (around.max(axis=0) > STANDSTILL)
+    calm = (near > 1) & ~stops
+    measured = response.acceleration[1:-1][calm]
+    slopes = ((v[1:-1] - v[:-2]) / h, (v[2:] - v[:-2]) / (2.0 * h))
+    return min((_ratio(slope[calm], measured) for slope in slopes), key=lambda found: found[1])
 
 
 def quick_fit(traces: Sequence[Trace]) -> Fit | None:
@@ -281,7 +289,7 @@ def matches_model(model: Fit | None, response: Trace, expected: Expected) -> Fin
     seconds = expected.horizon * response.step_size
     text = (
         f"M = {model.mass:.5g} kg, alpha = {model.friction:.4g} N.s/m; the controller's: "
-        f"{expected.mass:g}, {expected.friction:g}: its prediction is off by {off:.2g} m "
+        f"{expected.mass:g}, {expected.friction:g}: its prediction is off by {_small(off)} m "
         f"after {seconds:g} s"
     )
     ratio = model.mass / expected.mass
@@ -363,3 +371,8 @@ def _ratio(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float
 def _unit(ratio: float, units: tuple[tuple[str, float], ...]) -> str:
     """The unit whose numbers are ``ratio`` times those of SI; empty if none is."""
     return next((u for u, f in units if abs(ratio / f - 1.0) <= RATIO_TOLERANCE), "")
+
+
+def _small(value: float) -> str:
+    """Two digits, and what is mere rounding as 0."""
+    return f"{value:.2g}" if value > 1e-9 else "0"

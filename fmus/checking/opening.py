@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from fmus.vehicle import Vehicle
 
 
-UNGUARDED = Limits(speed=1000.0, position_jump=1e4)  # the widest that a profile allows
+UNGUARDED = Limits(speed=1e9, position_jump=1e9)
 
 
 def without_guards(profile: VehicleProfile) -> VehicleProfile:

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from fmus.profile import FittedModel, VehicleProfile
 
 DIGITS = 10  # significant ones: more than any fit knows
+ROUNDING = 1e-12  # what no fit can tell from 0
 _COMMENTS = {
     "mass": "M [kg]",
     "friction": "alpha [N.s/m]",
@@ -33,8 +34,11 @@ def with_model(text: str, model: FittedModel) -> str:
     document = tomlkit.parse(text)
     table = tomlkit.table()
     for key, value in model.model_dump().items():
-        table.add(key, float(f"{value:.{DIGITS}g}"))
-        table[key].comment(_COMMENTS[key])
+        rounded = 0.0 if abs(value) < ROUNDING else float(f"{value:.{DIGITS}g}")
+        number = tomlkit.item(rounded)
+        number.comment(_COMMENTS[key])
+        number.trivia.comment_ws = "  "
+        table.add(key, number)
     if "model" in document:
         document["model"] = table
     else:

@@ -13,6 +13,7 @@ from fmus.bundled import is_bundled
 from fmus.checking import Finding, check, opener_of, without_guards
 from fmus.checking.self_check import plain
 from fmus.preparation import choose_profile, prepare
+from fmus.profile import Axis
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
 
@@ -99,7 +100,7 @@ def _profile_found(path: Path, file: Path | None, profile: VehicleProfile) -> Fi
         [
             f"{role} = {axis.variable}" + (f" [{axis.unit}]" if axis.unit else "")
             for role, axis in table
-            if axis is not None
+            if isinstance(axis, Axis)
         ]
         for table in (profile.inputs, profile.outputs)
     )

@@ -129,19 +129,24 @@ def _summary(path: Path, found: Identification) -> Table:
     table.add_column(justify="right")
     table.add_column()
     for label, value, unit in (
-        ("M", f"{model.mass:.6g}", f"kg ± {mass:.2g} (95 %)"),
-        ("alpha", f"{model.friction:.6g}", f"N.s/m ± {friction:.2g} (95 %)"),
+        ("M", f"{model.mass:.6g}", f"kg ± {_small(mass)} (95 %)"),
+        ("alpha", f"{model.friction:.6g}", f"N.s/m ± {_small(friction)} (95 %)"),
         ("Actuator lag", f"{model.lag:.3g}", "s"),
         ("Dead time", f"{model.delay:.3g}", "s"),
         ("Largest force of the tests", f"{found.largest_force:.0f}", "N"),
         ("Drive force that arrives", _limit(found.drive_limit), "N"),
         ("Brake force that arrives", _limit(found.brake_limit), "N"),
         ("R² in a drive not fitted", f"{model.r_squared:.4f}", ""),
-        ("Speed error, one step", f"{model.speed_error:.2g}", "m/s RMS"),
-        (f"Position error, {model.horizon:g} s", f"{model.position_error:.2g}", "m (95 %)"),
+        ("Speed error, one step", _small(model.speed_error), "m/s RMS"),
+        (f"Position error, {model.horizon:g} s", _small(model.position_error), "m (95 %)"),
     ):
         table.add_row(label, value, unit)
     return table
+
+
+def _small(value: float) -> str:
+    """Two digits, and what is mere rounding as 0."""
+    return f"{value:.2g}" if value > 1e-9 else "0"
 
 
 def _limit(limit: float | None) -> str:

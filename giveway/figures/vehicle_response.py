@@ -85,7 +85,7 @@ def _draw_drive(
             (acceleration, trace.acceleration),
         ):
             axes.plot(trace.time, np.clip(values, -LARGEST, LARGEST), **manner)
-    trace = drawn[-1][0]
+    trace = max((trace for trace, _ in drawn), key=lambda trace: trace.force.size)
     _draw_force(force, trace)
     M, alpha = report.expected.mass, report.expected.friction
     way, model_speed = simulate(
@@ -107,15 +107,15 @@ def _draw_force(axes: Axes, trace: Trace) -> None:
 def identification_figure(found: Identification, *, title: str = "") -> Figure:
     """Measured against fitted: the drive held out, all tests, errors at the horizon."""
     figure = Figure(figsize=(9.4, 6.4), layout="constrained")
-    grid = figure.add_gridspec(6, 2, width_ratios=(1.9, 1.0))
-    force, speed, acceleration = (figure.add_subplot(grid[2 * i : 2 * i + 2, 0]) for i in range(3))
-    tests, errors = (figure.add_subplot(grid[3 * i : 3 * i + 3, 1]) for i in range(2))
+    left, right = figure.subfigures(1, 2, width_ratios=(1.9, 1.0), squeeze=False)[0]
+    force, speed, acceleration = left.subplots(3, 1, sharex=True)
+    tests, errors = right.subplots(2, 1)
     for axes in (force, speed, acceleration, tests, errors):
         quiet_grid(axes)
     _draw_validation((force, speed, acceleration), found)
     _draw_tests(tests, found)
     _draw_errors(errors, found)
-    figure.align_ylabels([force, speed, acceleration])
+    left.align_ylabels([force, speed, acceleration])
     figure.suptitle(title)
     return figure
 
@@ -131,13 +131,11 @@ def _draw_validation(panels: tuple[Axes, Axes, Axes], found: Identification) -> 
     speed.plot(trace.time, fitted, label="fitted, from the start on", **MODEL)
     speed.legend(loc="best")
     acceleration.plot(trace.time[1:], np.diff(trace.speed) / h, **MEASURED)
-    acceleration.plot(trace.time[1:], np.diff(fitted) / h, **MODEL)
+    one_step = (acting - model.friction * trace.speed[:-1]) / model.mass
+    acceleration.plot(trace.time[1:], one_step, **MODEL)
     force.set_title("Held out: a drive that was not fitted")
     for axes, label in zip(panels, ROWS[:3], strict=True):
         axes.set_ylabel(label)
-    for axes in (force, speed):
-        axes.tick_params(labelbottom=False)
-        axes.sharex(acceleration)
     acceleration.set_xlabel("Time [s]")
 
 
