@@ -161,9 +161,9 @@ class Calls(ABC):
     def state_names(self) -> tuple[str, str, str]:
         """The functions that get, set and free a state."""
 
-    def save(self, state: c_void_p | None = None) -> c_void_p:
-        """The FMU's state, in a new handle or over the one given."""
-        state = c_void_p() if state is None else state
+    def save(self) -> c_void_p:
+        """The FMU's state."""
+        state = c_void_p()
         self.call(self.state_names()[0], ctypes.byref(state))
         return state
 

@@ -68,13 +68,15 @@ class CoSimulation(RunningInstance):
         return tick
 
     def _save(self) -> None:
-        """The state before a step, over the last one's."""
+        """Keep the state before a step, in a new handle: some FMUs do not reuse an old one."""
         if self._rewinds:
+            before, self._before = self._before, None
             try:
-                self._before = self.calls.save(self._before)
+                if before is not None:
+                    self.calls.free_state(before)
+                self._before = self.calls.save()
             except (CallFailedError, FmuPlatformError):  # it can do less than it says
                 self._rewinds = False
-                self._before = None
 
     def _complete(self, status: int, time: float, size: float) -> int:
         """Finish a step that the FMU did not simply do."""

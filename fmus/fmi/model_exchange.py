@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 TOLERANCE = 1e-6  # relative
 RESOLUTION = 1e-12  # of times, relative to the greater of the time and 1 s
 ROUNDS = 100  # of one event iteration
-EVENTS = 1000  # in one step
-INTERNAL_STEPS = 20_000  # in one step
+EVENTS = 200  # in one step
+INTERNAL_STEPS = 5_000  # in one step
 DENSE = 500  # states up to which CVode's dense Jacobian is affordable
 
 
@@ -118,8 +118,8 @@ class ModelExchange(RunningInstance):
         upcoming = self._next_event
         if upcoming is not None and 0.0 < upcoming - time <= _resolution(time):
             time = upcoming  # it was left over from the last step
+        self._system.set_time(time)  # FMI 3 does not allow it in event mode
         self.calls.enter_event_mode()
-        self._system.set_time(time)
 
     def _run(self, time: float, end: float) -> None:
         """From event mode at the start of a step to continuous-time mode at its end."""
@@ -151,6 +151,7 @@ class ModelExchange(RunningInstance):
         self._iterate(time)
         self.calls.enter_continuous_time_mode()
         if self._update_nominals:
+            self._update_nominals = False
             self._nominals = self._system.nominals()
         assert self._solver is not None
         self._solver.restart(time, self._system.states(), self._nominals)

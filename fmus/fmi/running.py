@@ -36,6 +36,7 @@ class RunningInstance(Instance):
         self._initialised = False
         self._get_outputs: Transfer
         self._worst = 0  # status since the instance was made
+        self._untouchable = False  # after a fatal error
         self._idle = self.tick
 
     @property
@@ -141,7 +142,8 @@ class RunningInstance(Instance):
 
     def stop(self) -> None:  # noqa: D102
         self.tick = self._idle
-        if self.calls.component and self._worst != FATAL:  # then nothing may be called any more
+        self._untouchable |= self._worst == FATAL  # then nothing may be called any more
+        if self.calls.component and self._worst != FATAL:
             with suppress(Exception):  # nothing is lost if an FMU cannot end in peace
                 if self._initialised and self._worst < ERROR:
                     self.calls.terminate()
@@ -153,4 +155,5 @@ class RunningInstance(Instance):
 
     def close(self) -> None:  # noqa: D102
         self.stop()
-        self.calls.library.close()
+        if not self._untouchable:
+            self.calls.library.close()

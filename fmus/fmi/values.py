@@ -6,7 +6,7 @@ from ctypes import c_bool, c_char_p, c_double, c_float, sizeof
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from fmus.errors import FmuStartError
+from fmus.errors import FmuStartError, FmuVariableError
 from fmus.fmi.calls import CType, Setting
 from fmus.text import printable
 
@@ -132,7 +132,7 @@ class Transfer:
         self.view = memoryview(buffer).cast("B").cast("d")
         self.function: Callable[..., int] = _nothing
         self.arguments: tuple[Any, ...] = ()
-        types = [calls.types[channel.variable.kind] for channel in channels]
+        types = [_type(calls, channel) for channel in channels]
         for index, channel in enumerate(channels):
             self.view[index] = _start(channel)
         if not channels:
@@ -210,6 +210,17 @@ def _converter(ctype: CType) -> Callable[[float], Any]:
         return lambda value: int(value >= 0.5)
     low, high = bounds(ctype)
     return lambda value: min(max(round(value), low), high)
+
+
+def _type(calls: Calls, channel: Channel) -> CType:
+    ctype = calls.types.get(channel.variable.kind)
+    if ctype is None or ctype.type is c_char_p:
+        msg = (
+            f"{calls.model.path}: {printable(channel.name)} is a {printable(channel.variable.kind)}"
+            "; expected a number or a boolean; name another variable in the profile"
+        )
+        raise FmuVariableError(msg)
+    return ctype
 
 
 def _start(channel: Channel) -> float:

@@ -6,7 +6,7 @@ from math import exp
 
 import pytest
 
-from fmus import FmuPlatformError, FmuStartError, FmuStateError
+from fmus import FmuPlatformError, FmuStartError, FmuStateError, FmuVariableError
 
 VERSIONS = ("1.0", "2.0", "3.0")
 SAVING = {"1.0": "", "2.0": "canGetAndSetFMUstate", "3.0": "canGetAndSetFMUState"}
@@ -285,3 +285,9 @@ def test_a_saved_state_comes_back(zoo, version, run):
     car.tick(10 * H, H)
     assert list(car.outputs) == after
     car.free_state(state)
+
+
+def test_a_channel_that_is_no_number(zoo, load, start):
+    car = load(zoo.car(fmi="2.0"))
+    with pytest.raises(FmuVariableError, match="load is a String; expected a number or a boolean"):
+        start(car, inputs=("load",))
