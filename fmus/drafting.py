@@ -7,15 +7,14 @@ with ``# ?``. Without questions the draft is a profile that runs.
 from __future__ import annotations
 
 import math
-import re
 from typing import TYPE_CHECKING, Final
 
-from fmus import units
 from fmus.draft import Draft, Entry, Line, toml_value
 from fmus.errors import FmuProfileError
-from fmus.guessing import FORCES, ROLES, alone, guesses
-from fmus.model import Channel, Kind
+from fmus.guessing import ROLES, alone, guesses
+from fmus.model import Kind
 from fmus.profile import make_profile
+from fmus.questions import channel_name, contradiction, listed, numbers, unit_question
 from fmus.text import printable
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fmus.guessing import Guess
-    from fmus.model import Dimension, Model, Variable
+    from fmus.model import Model, Variable
     from fmus.profile import VehicleProfile
 
 PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}  # [N] of a car of 1000 kg
@@ -103,11 +102,20 @@ def _inputs(model: Model, inputs: Sequence[Variable]) -> tuple[list[Entry], set[
     rivals = [other for other in ways[1:] if _merit(ranked, other) == _merit(ranked, way)]
     entries = [_axis("inputs", role, ranked[role]) for role in way]
     if rivals:
-        other = " and ".join(ranked[role][0].channel.name for role in rivals[0])
-        doubt = f"or is it {' and '.join(rivals[0])} ('{other}')? Choose one way to drive"
+        doubt = _choice(ranked, (way, *rivals))
         entries = [_open(entry, doubt) for entry in entries]
         entries += [_axis("inputs", role, ranked[role], alternative=True) for role in rivals[0]]
     return entries, {ranked[role][0].channel.variable.name for role in way}
+
+
+def _choice(ranked: dict[str, list[Guess]], ways: tuple[tuple[str, ...], ...]) -> str:
+    """The question which of several ways it is."""
+    names = [" and ".join(f"'{ranked[role][0].channel.name}'" for role in way) for way in ways]
+    roles = [" and ".join(way) for way in ways]
+    if len(set(names)) == 1:
+        return f"{printable(names[0], 60)} has no unit: is it {' or '.join(roles)}? Add its unit"
+    what = "; ".join(f"{role}: {name}" for role, name in zip(roles, names, strict=True))
+    return f"{printable(what)}? Choose one way to drive"
 
 
 def _distinct(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> bool:
@@ -131,11 +139,11 @@ def _no_input(ranked: dict[str, list[Guess]], inputs: Sequence[Variable]) -> Ent
                 doubt = f"'{name}' is a {present}, but no input is a {missing}; name it"
                 line = Line("variable", "?", "an input of the FMU", sure=False)
                 return Entry(f"inputs.{missing}", (line,), "", printable(doubt), sure=False)
-    names = _numbers(inputs)
-    has = f"its inputs are {_listed(names)}" if names else "it has no numeric input"
+    names = numbers(inputs)
+    has = f"its inputs are {listed(names)}" if names else "it has no numeric input"
     doubt = f'no input that drives a vehicle; {has}; add [inputs.force] variable = "..."'
     lines = (
-        Line("variable", names[0] if len(names) == 1 else "?", _listed(names), sure=False),
+        Line("variable", names[0] if len(names) == 1 else "?", listed(names), sure=False),
         Line("unit", "?", "N, kN; or another table: docs/vehicles.md", sure=False),
     )
     return Entry("inputs.force", lines, "", doubt, sure=False)
@@ -163,9 +171,9 @@ def _outputs(model: Model) -> list[Entry]:
     elif speed:
         entries.append(_axis("outputs", "speed", speed))
     else:
-        names = _numbers(outputs)
-        doubt = f"no output is a speed; its outputs are {_listed(names) or 'none'}"
-        lines = (Line("variable", "?", _listed(names), sure=False),)
+        names = numbers(outputs)
+        doubt = f"no output is a speed; its outputs are {listed(names) or 'none'}"
+        lines = (Line("variable", "?", listed(names), sure=False),)
         entries.append(Entry("outputs.speed", lines, "", doubt, sure=False))
     position = [g for g in guesses(model, "position", outputs) if g.fits is not False]
     if position:
@@ -205,7 +213,7 @@ def _initial(model: Model) -> list[Entry]:
 def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = False) -> Entry:
     """The table of a role whose best guess comes first."""
     best = ranked[0]
-    variable, name = best.channel.variable, _channel_name(best.channel)
+    variable, name = best.channel.variable, channel_name(best.channel)
     place = f"{table}.{role}"
     wanted = ROLES[_role_key(table, role)].dimension
     lines = [Line("variable", name, variable.description)]
@@ -213,18 +221,18 @@ def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = Fal
     sure = alone(ranked) and not alternative
     if not alone(ranked):
         ties = [g for g in ranked if g.score == best.score]
-        names = _listed([f"'{printable(g.channel.name, 40)}'" for g in ties])
+        names = listed([f"'{printable(g.channel.name, 40)}'" for g in ties])
         doubt = f"which of {names}? write variable = {toml_value(name)} or another"
     elif variable.size > 1:
         doubt = f"'{printable(variable.name, 60)}' is an array of {variable.size}; which element?"
         sure = False
     pedal = role in {"throttle", "brake"}
     if best.fits is None:
-        line, question = _unit_question(variable, wanted, pedal=pedal)
+        line, question = unit_question(variable, wanted, pedal=pedal)
         lines.append(line)
         doubt = doubt or question
     elif best.fits is False:
-        line, question = _contradiction(best, variable, role)
+        line, question = contradiction(best, variable, role)
         lines.append(line)
         doubt = doubt or question
     else:
@@ -248,69 +256,14 @@ def _force(role: str) -> str:
     return f"{PEDAL_FORCE[role]:g} or what it is [N]"
 
 
-def _unit_question(variable: Variable, wanted: Dimension, *, pedal: bool) -> tuple[Line, str]:
-    common = units.COMMON[wanted]
-    name = printable(variable.name, 60)
-    guess = _unit_in(variable.name, wanted) or common.split(",")[0]
-    if pedal and (variable.maximum or 0.0) > 1.0:
-        guess = "%"
-    if variable.unit:
-        unit = printable(variable.unit, 40)
-        line = Line("unit", "?", f"{common}: nobody knows the FMU's '{unit}'", sure=False)
-        return line, f"'{name}' is in '{unit}', an unknown unit; add unit = \"{guess}\" or its like"
-    line = Line("unit", "?", f"{common}: the FMU does not say", sure=False)
-    return line, f"'{name}' has no unit; add unit = \"{guess}\", or what it is ({common})"
-
-
-def _unit_in(name: str, wanted: Dimension) -> str:
-    """The unit that a name ends with: ``speed_kmh``."""
-    last = re.split(r"[_.\s]", name)[-1]
-    return last if last and units.named(last).dimension == wanted and last != name else ""
-
-
-def _contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, str]:
-    """A name of the role with a unit of something else."""
-    unit, name = printable(variable.unit, 40), printable(variable.name, 60)
-    what = f"'{name}' is in {unit}, {units.quantity(guess.found)}"
-    wanted = ROLES[role].dimension if role in ROLES else units.NONE
-    if role in FORCES and guess.found == units.TORQUE:
-        line = Line("gain", "?", "1/m: 1 over the wheels' radius", sure=False)
-        return line, f"{what}; add gain = 1 / (radius of the wheels [m])"
-    if role in FORCES and guess.found == units.MASS:
-        line = Line("unit", "?", f"{unit} is a mass, not a force; kgf?", sure=False)
-        return line, f'{what}, not a force; add the true unit: unit = "N" (or "kgf")'
-    usual = units.COMMON.get(wanted, "1").split(",")[0]
-    line = Line("unit", "?", f"{unit} is {units.quantity(guess.found)}", sure=False)
-    return line, f'{what}, not {units.quantity(wanted)}; add the true unit: unit = "{usual}"'
-
-
 def _open(entry: Entry, doubt: str) -> Entry:
     lines = tuple(Line(line.key, line.value, line.comment, sure=False) for line in entry.lines)
     return Entry(entry.table, lines, entry.why, doubt, sure=False)
 
 
-def _channel_name(channel: Channel) -> str:
-    return channel.name if channel.variable.size > 1 else channel.variable.name
-
-
-def _numbers(variables: Sequence[Variable]) -> list[str]:
-    """The names of all numbers, an array's elements one by one as far as they are few."""
-    return [
-        printable(_channel_name(Channel(variable, element)), 40)
-        for variable in variables
-        if variable.is_real or variable.is_integer
-        for element in range(min(variable.size, 8))
-    ]
-
-
-def _listed(names: Sequence[str]) -> str:
-    more = f" and {len(names) - 6} more" if len(names) > 6 else ""
-    return f"{', '.join(names[:6])}{more}"
-
-
 def _remarks(model: Model, idle: Sequence[str]) -> Iterable[str]:
     if idle:
-        names = _listed([f"'{printable(name, 40)}'" for name in idle])
+        names = listed([f"'{printable(name, 40)}'" for name in idle])
         yield f"Inputs that keep their start values: {names}; [parameters] sets others."
     if any(interface.needs_execution_tool for interface in model.interfaces.values()):
         yield "The FMU needs the tool that made it, installed on this machine."

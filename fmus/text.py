@@ -19,6 +19,11 @@ def printable(text: object, limit: int = LIMIT) -> str:
     return line if len(line) <= limit else f"{line[: limit - 3]}..."
 
 
+def clean(text: str, limit: int) -> str:
+    """As :func:`printable`; quick where nothing is to be done."""
+    return text if len(text) <= limit and text.isprintable() else printable(text, limit)
+
+
 def _visible(character: str) -> str:
     category = unicodedata.category(character)
     if category in _SPACES:

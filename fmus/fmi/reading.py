@@ -14,10 +14,18 @@ from typing import TYPE_CHECKING, Final
 from fmus.archive import DESCRIPTION, ROOT, open_archive
 from fmus.binaries import binary_of, platforms_of
 from fmus.errors import FmuInterfaceError
-from fmus.fmi.variables import VARIABLE_TAGS, broken, number, read_variables, whole
+from fmus.fmi.variables import (
+    MAX_DESCRIPTION,
+    MAX_UNIT,
+    VARIABLE_TAGS,
+    broken,
+    number,
+    read_variables,
+    whole,
+)
 from fmus.markup import parse
 from fmus.model import FmuDescription, Interface, Kind, Model, Unit
-from fmus.text import printable
+from fmus.text import LIMIT, clean, printable
 
 if TYPE_CHECKING:
     import os
@@ -70,10 +78,10 @@ def model_of(archive: Archive) -> Model:
     return Model(
         path=path,
         fmi_version=version,
-        name=root.get("modelName"),
+        name=clean(root.get("modelName"), LIMIT),
         guid=guid,
-        generation_tool=root.get("generationTool"),
-        description=root.get("description"),
+        generation_tool=clean(root.get("generationTool"), LIMIT),
+        description=clean(root.get("description"), MAX_DESCRIPTION),
         interfaces=interfaces,
         variables=variables,
         units=_units(root, version, where),
@@ -97,10 +105,10 @@ def describe(path: str | os.PathLike[str]) -> FmuDescription:
     root = parse(archive.description, where, ROOT, frozenset())
     version = _version(root, archive.path)
     return FmuDescription(
-        name=root.get("modelName"),
+        name=clean(root.get("modelName"), LIMIT),
         fmi_version=version,
         guid=root.get("instantiationToken" if version == "3.0" else "guid"),
-        generation_tool=root.get("generationTool"),
+        generation_tool=clean(root.get("generationTool"), LIMIT),
         sha256=archive.sha256,
     )
 
@@ -232,11 +240,11 @@ def _structure(
 
 def _units(root: Element, version: str, where: str) -> dict[str, Unit]:
     if version == "1.0":  # names only
-        names = [unit.get("unit") for unit in root.every("UnitDefinitions", "BaseUnit")]
+        names = [clean(u.get("unit"), MAX_UNIT) for u in root.every("UnitDefinitions", "BaseUnit")]
         return {name: Unit(name) for name in names}
     units = {}
     for element in root.every("UnitDefinitions", "Unit"):
-        name, base = element.get("name"), element.first("BaseUnit")
+        name, base = clean(element.get("name"), MAX_UNIT), element.first("BaseUnit")
         units[name] = Unit(name) if base is None else _unit(name, base, where)
     return units
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from fmus.errors import FmuFileError
 from fmus.model import INTEGER_TYPES, REAL_TYPES, Variable
-from fmus.text import printable
+from fmus.text import clean, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -26,7 +26,10 @@ BOOLEANS: Final = frozenset({"true", "false", "1", "0"})
 PARAMETERS: Final = frozenset({"parameter", "calculatedParameter", "structuralParameter"})
 FREE: Final = frozenset({"parameter", "structuralParameter", "input"})  # settable before the start
 MAX_REFERENCE: Final = (1 << 32) - 1
-MAX_SIZE: Final = 100_000_000  # values of an array
+MAX_SIZE: Final = 10_000_000  # values of an array
+MAX_NAME: Final = 1000  # characters
+MAX_UNIT: Final = 60
+MAX_DESCRIPTION: Final = 500
 
 
 def broken(where: str, element: Element, what: str) -> FmuFileError:
@@ -78,6 +81,9 @@ def read_variables(root: Element, version: str, where: str) -> dict[str, Variabl
         for name in (variable.name, *(alias.get("name") for alias in element.every("Alias"))):
             if not name:
                 raise broken(where, element, "a variable without a name")
+            if clean(name, MAX_NAME) != name:  # it will stand in messages
+                what = f"name {printable(name, 60)} too long or with control characters"
+                raise broken(where, element, what)
             if name in variables:
                 what = f"variable {printable(name, 100)} again, as on line {lines[name]}"
                 raise broken(where, element, what)
@@ -130,8 +136,8 @@ def _variable(
         initial=initial,
         start=start,
         shape=shape,
-        unit=next((e.get("unit") for e in layers if e.get("unit")), ""),
-        description=element.get("description"),
+        unit=clean(next((e.get("unit") for e in layers if e.get("unit")), ""), MAX_UNIT),
+        description=clean(element.get("description"), MAX_DESCRIPTION),
         minimum=next((limit for limit in minima if limit is not None), None),
         maximum=next((limit for limit in maxima if limit is not None), None),
         settable=variability != "constant" and changeable,
@@ -166,7 +172,8 @@ def _initial(element: Element, value: Element, version: str) -> str:
 def _start(value: Element) -> str:
     if value.tag in {"String", "Binary"} and value.children:  # FMI 3
         return " ".join(start.get("value") for start in value.every("Start"))
-    return value.get("start")
+    start = value.get("start")
+    return start if value.tag == "String" else start.strip()
 
 
 def _require_readable(where: str, element: Element, kind: str, start: str, array: bool) -> None:

@@ -285,6 +285,9 @@ BROKEN = [
     ("path as identifier", '"car_cs"', '"../car"', "modelIdentifier"),
     ("same name twice", 'name="v"', 'name="u"', "variable u again"),
     ("no name", 'name="v"', "", "without a name"),
+    ("endless name", 'name="v"', f'name="{"v" * 2000}"', "too long"),
+    ("name that turns the line", 'name="v"', 'name="v&#x202e;"', "control characters"),
+    ("name of two lines", 'name="v"', 'name="v&#10;w"', "control characters"),
     ("no type", '<Boolean start="true"/>', "", "without a type"),
     ("no reference", 'valueReference="10"', "", "valueReference of ScalarVariable u missing"),
     ("reference as text", 'valueReference="10"', 'valueReference="ten"', '"ten"'),
@@ -351,6 +354,17 @@ def test_what_the_fmu_says_is_cut_and_cleaned(fmi2):
         read_model(path)
     assert str(caught.value).isprintable()
     assert len(str(caught.value)) < len(str(path)) + 300
+
+
+def test_texts_are_one_line_of_visible_characters(fmi2):
+    rude = "&#x9b;2J&#10;" + "x" * 5000
+    model = read_model(fmi2('modelName="Car"', f'modelName="{rude}" description="{rude}"'))
+    for text in (model.name, model.description):
+        assert text.startswith("?2J xxx")
+        assert len(text) <= 500
+    unit = read_model(fmi2('unit="N"', f'unit="{rude}"')).variables["u"].unit
+    assert unit.isprintable()
+    assert len(unit) <= 60
 
 
 # ---- interfaces that cannot be run ----

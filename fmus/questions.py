@@ -1,0 +1,76 @@
+"""The questions of a draft: what is open about a variable, and the line that answers it."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from fmus import units
+from fmus.draft import Line
+from fmus.guessing import FORCES, ROLES
+from fmus.model import Channel
+from fmus.text import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fmus.guessing import Guess
+    from fmus.model import Dimension, Variable
+
+
+def unit_question(variable: Variable, wanted: Dimension, *, pedal: bool) -> tuple[Line, str]:
+    """No unit, or one that nobody knows."""
+    common = units.COMMON[wanted]
+    name = printable(variable.name, 60)
+    guess = _unit_in(variable.name, wanted) or common.split(",")[0]
+    if pedal and (variable.maximum or 0.0) > 1.0:
+        guess = "%"
+    if variable.unit:
+        unit = printable(variable.unit, 40)
+        line = Line("unit", "?", f"{common}: nobody knows the FMU's '{unit}'", sure=False)
+        return line, f"'{name}' is in '{unit}', an unknown unit; add unit = \"{guess}\" or its like"
+    line = Line("unit", "?", f"{common}: the FMU does not say", sure=False)
+    return line, f"'{name}' has no unit; add unit = \"{guess}\", or what it is ({common})"
+
+
+def _unit_in(name: str, wanted: Dimension) -> str:
+    """The unit that a name ends with: ``speed_kmh``."""
+    last = re.split(r"[_.\s]", name)[-1]
+    return last if last and units.named(last).dimension == wanted and last != name else ""
+
+
+def contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, str]:
+    """A name of the role with a unit of something else."""
+    unit, name = printable(variable.unit, 40), printable(variable.name, 60)
+    what = f"'{name}' is in {unit}, {units.quantity(guess.found)}"
+    wanted = ROLES[role].dimension if role in ROLES else units.NONE
+    if role in FORCES and guess.found == units.TORQUE:
+        line = Line("gain", "?", "1/m: 1 over the wheels' radius", sure=False)
+        return line, f"{what}; add gain = 1 / (radius of the wheels [m])"
+    if role in FORCES and guess.found == units.MASS:
+        line = Line("unit", "?", f"{unit} is a mass, not a force; kgf?", sure=False)
+        return line, f'{what}, not a force; add the true unit: unit = "N" (or "kgf")'
+    usual = units.COMMON.get(wanted, "1").split(",")[0]
+    line = Line("unit", "?", f"{unit} is {units.quantity(guess.found)}", sure=False)
+    return line, f'{what}, not {units.quantity(wanted)}; add the true unit: unit = "{usual}"'
+
+
+def channel_name(channel: Channel) -> str:
+    """As short as a profile may write it: an array of one needs no number."""
+    return channel.name if channel.variable.size > 1 else channel.variable.name
+
+
+def numbers(variables: Sequence[Variable]) -> list[str]:
+    """The names of all numbers, an array's elements one by one as far as they are few."""
+    return [
+        printable(channel_name(Channel(variable, element)), 40)
+        for variable in variables
+        if variable.is_real or variable.is_integer
+        for element in range(min(variable.size, 8))
+    ]
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first of many."""
+    more = f" and {len(names) - 6} more" if len(names) > 6 else ""
+    return f"{', '.join(names[:6])}{more}"
