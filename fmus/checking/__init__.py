@@ -5,7 +5,7 @@ from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, identify
 from fmus.checking.manoeuvres import Opener, Phase, Trace, drive
 from fmus.checking.opening import opener_of, without_guards
-from fmus.checking.self_check import Convergence, convergence, require_converged
+from fmus.checking.self_check import Convergence, convergence, remedy, require_converged
 
 __all__ = [
     "CheckReport",
@@ -21,6 +21,7 @@ __all__ = [
     "drive",
     "identify",
     "opener_of",
+    "remedy",
     "require_converged",
     "without_guards",
 ]

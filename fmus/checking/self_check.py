@@ -121,7 +121,8 @@ def convergence(
     fine = ladder.first_able()
     if whole.error is not None:
         advised = ladder.first_converged()
-        if advised is None and not ladder.depends_on_step():
+        diverges = isinstance(whole.error, FmuOutputError) and ladder.depends_on_step()
+        if advised is None and not diverges:
             raise whole.error
         problem = f"{_do_not_converge(fmu_step)} ({plain(whole.error).split('; ')[0]})"
     elif fine is None:

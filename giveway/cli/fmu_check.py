@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
@@ -113,7 +114,7 @@ def _profile_found(path: Path, file: Path | None, profile: VehicleProfile) -> Fi
 
 def _conclude(console: Console, path: Path, findings: Sequence[Finding]) -> int:
     table = Table(
-        title=f"Check of {path.name}", title_justify="left", show_header=False, box=None,
+        title=Text(f"Check of {printable(path.name, 60)}"), title_justify="left", show_header=False, box=None,
         pad_edge=False,
     )  # fmt: skip
     table.add_column(no_wrap=True)
@@ -147,4 +148,4 @@ def _draw(console: Console, report: CheckReport, path: Path, folder: Path) -> No
     if figure is not None:
         file = folder / f"{path.stem}_check.png"
         save_picture(figure, file)
-        console.print(f"Picture in [bold]{file}[/bold]", highlight=False)
+        console.print(f"Picture in [bold]{escape(str(file))}[/bold]", highlight=False)

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.table import Table
+from rich.text import Text
 
 from fmus import FmuError
 from fmus.checking import identify, opener_of, require_converged
@@ -122,7 +123,7 @@ def _identified(
 def _summary(path: Path, found: Identification) -> Table:
     model, (mass, friction) = found.model, found.intervals
     table = Table(
-        title=f"{printable(path.name, 60)}: M v' + alpha v = u", title_justify="left",
+        title=Text(f"{printable(path.name, 60)}: M v' + alpha v = u"), title_justify="left",
         show_header=False, box=None, pad_edge=False,
     )  # fmt: skip
     table.add_column()
