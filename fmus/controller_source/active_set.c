@@ -98,6 +98,25 @@ static void certificate(ActiveSet *a, const SpeedProblem *s, int violated, int s
     for (int k = 0; k < a->active; ++k) a->multipliers[a->index[k]] = -a->right[k] * a->side[a->index[k]];
 }
 
+/* By how much each multiplier falls for a unit step, in `right`: R right = share, from the bottom up. The step, up
+ * to which none falls below 0, and the active row that limits it; -1: none does. */
+static int dual_limit(ActiveSet *a, int N, double *step) {
+    for (int k = a->active - 1; k >= 0; --k) {
+        double rest = a->share[k];
+        for (int l = k + 1; l < a->active; ++l) rest -= a->R[k * N + l] * a->right[l];
+        a->right[k] = rest / a->R[k * N + k];
+    }
+    int blocking = -1;
+    *step = HUGE_VAL;
+    for (int k = 0; k < a->active; ++k) {
+        if (a->right[k] > 0.0 && a->dual[k] < *step * a->right[k]) {
+            *step = a->dual[k] / a->right[k];
+            blocking = k;
+        }
+    }
+    return blocking;
+}
+
 /* Make one violated row bind: steps towards it, and drops of rows whose multiplier reaches 0 on the way. */
 static SolveResult add(ActiveSet *a, const SpeedProblem *s, int violated, int side, int *steps_left) {
     const int N = s->N;
@@ -109,23 +128,11 @@ static SolveResult add(ActiveSet *a, const SpeedProblem *s, int violated, int si
         const double excess = side > 0 ? value - s->upper[violated] : s->lower[violated] - value;
         for (int j = 0; j < N; ++j) a->normal[j] *= side;
         project(a, N);
-        /* By how much each multiplier falls for a unit step: R right = share, from the bottom up. */
-        for (int k = a->active - 1; k >= 0; --k) {
-            double rest = a->share[k];
-            for (int l = k + 1; l < a->active; ++l) rest -= a->R[k * N + l] * a->right[l];
-            a->right[k] = rest / a->R[k * N + k];
-        }
-        double partial = HUGE_VAL;
-        int blocking = -1;
-        for (int k = 0; k < a->active; ++k) {
-            if (a->right[k] > 0.0 && a->dual[k] < partial * a->right[k]) {
-                partial = a->dual[k] / a->right[k];
-                blocking = k;
-            }
-        }
         const double length = dot(a->normal, a->normal, N);
         const bool independent = a->active < N && length > DEPENDENT * size;
         const double full = independent ? excess / length : HUGE_VAL;
+        double partial;
+        const int blocking = dual_limit(a, N, &partial);
         const double taken = smaller(partial, full);
         if (!(taken < HUGE_VAL)) {
             certificate(a, s, violated, side);

@@ -132,13 +132,14 @@ static bool sizes_agree(const Instance *self, const char *function, const fmi3Va
 #define ARGUMENTS(VALUE) \
     fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences, VALUE values[], size_t nValues
 
-#define TRANSFER(NAME, VALUE, BODY)                                                                                 \
-    fmi3Status NAME(ARGUMENTS(VALUE)) {                                                                             \
-        if (instance == NULL || !sizes_agree(instance, #NAME, valueReferences, nValueReferences, nValues)) return fmi3Error; \
-        for (size_t i = 0, k = 0; i < nValueReferences; ++i)                                                        \
-            for (size_t element = 0; element < size_of(instance, valueReferences[i]); ++element, ++k)               \
-                if (BODY(instance, valueReferences[i] + (fmi3ValueReference)element, values + k)) return fmi3Error; \
-        return fmi3OK;                                                                                              \
+#define TRANSFER(NAME, VALUE, CALL)                                                                              \
+    fmi3Status NAME(ARGUMENTS(VALUE)) {                                                                          \
+        if (instance == NULL) return fmi3Error;                                                                  \
+        if (!sizes_agree(instance, #NAME, valueReferences, nValueReferences, nValues)) return fmi3Error;         \
+        for (size_t i = 0, k = 0; i < nValueReferences; ++i)                                                     \
+            for (fmi3ValueReference j = 0; j < size_of(instance, valueReferences[i]); ++j, ++k)                  \
+                if (CALL(instance, valueReferences[i] + j, values + k)) return fmi3Error;                        \
+        return fmi3OK;                                                                                           \
     }
 
 static Status set_real(Instance *self, unsigned reference, const double *value) {

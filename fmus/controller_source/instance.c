@@ -169,6 +169,16 @@ static double *input(Snapshot *s, unsigned reference) {
     }
 }
 
+static const char *input_name(unsigned reference) {
+    switch (reference) {
+    case SPEED: return "speed";
+    case POSITION: return "position";
+    case GAP: return "gap";
+    case SPEED_LIMIT: return "speed_limit";
+    default: return "obstacle_position";
+    }
+}
+
 static Status require_decision(Instance *self) {
     if (self->now.stage == OPEN && self->now.phase & (INITIALISING | STEPPING)) return decide(self);
     return STATUS_OK;
@@ -193,14 +203,15 @@ Status instance_get_real(Instance *self, unsigned reference, double *value) {
 Status instance_set_real(Instance *self, unsigned reference, double value) {
     double *place = input(&self->now, reference);
     if (place != NULL) {
-        if (instance_require(self, "set an input", CREATED | INITIALISING | STEPPING)) return STATUS_ERROR;
+        if (instance_require(self, "set inputs", CREATED | INITIALISING | STEPPING)) return STATUS_ERROR;
         /* Obstacles and limits may be infinitely far. */
         const bool usable = reference == SPEED || reference == POSITION ? isfinite(value) : !isnan(value);
-        if (!usable) return instance_error(self, "value reference %u = %g: expected a number", reference, value);
+        if (!usable) return instance_error(self, "%s = %g: expected a number", input_name(reference), value);
     } else if (is_real_parameter(reference)) {
         place = parameter(&self->now, reference);
         if (instance_require(self, "set a fixed parameter", CREATED | INITIALISING)) return STATUS_ERROR;
-        if (!isfinite(value)) return instance_error(self, "value reference %u = %g: expected a finite number", reference, value);
+        if (!isfinite(value))
+            return instance_error(self, "value reference %u = %g: expected a finite number", reference, value);
     } else {
         return instance_error(self, "value reference %u: no real variable that can be set", reference);
     }
@@ -290,8 +301,10 @@ Status instance_step(Instance *self, const char *function, double time, double s
     const bool due = fabs(time - next_decision(now)) <= ROUNDING * dt;
     const double next = due ? next_decision(now) + dt : next_decision(now);
     if (end > next + ROUNDING * dt)
-        return instance_error(self, "%s: to %.9g s, past the decision that is due at %.9g s; expected steps of dt = %g s "
-                              "or a whole fraction of it (or another value of the parameter dt)", function, end, next, dt);
+        return instance_error(self,
+                              "%s: to %.9g s, past the decision that is due at %.9g s; expected steps of dt = %g s or "
+                              "a whole fraction of it (or another value of the parameter dt)",
+                              function, end, next, dt);
     if (due) {
         if (now->stage != DECIDED && decide(self)) return STATUS_ERROR;
         commit(self);

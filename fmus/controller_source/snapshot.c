@@ -39,7 +39,8 @@ Status snapshot_deserialize(const Instance *self, const void *bytes, size_t size
     memcpy(&s, (const char *)bytes + sizeof FORMAT, sizeof s);
     const bool phase = is_one_of(s.phase, CREATED | CONFIGURING | INITIALISING | STEPPING | TERMINATED);
     const bool stage = s.stage == HELD || s.stage == OPEN || s.stage == DECIDED;
-    if (memcmp(bytes, FORMAT, sizeof FORMAT) != 0 || !phase || !stage || parameter_problem(&s.parameters, &value) != NULL)
+    const bool parameters = parameter_problem(&s.parameters, &value) == NULL;
+    if (memcmp(bytes, FORMAT, sizeof FORMAT) != 0 || !phase || !stage || !parameters)
         return instance_error(self, "serialised state: not one of this model");
     if (*saved == NULL) *saved = malloc(sizeof **saved);
     if (*saved == NULL) return instance_error(self, "out of memory for a saved state");

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import importlib.util
+import re
 import zipfile
 from typing import TYPE_CHECKING, Any
 
@@ -147,13 +148,17 @@ def test_a_rebuild_gives_the_shipped_bytes(tmp_path: Path, monkeypatch: Any) -> 
         assert digests[0] == digests[1], path.name
 
 
-def test_the_sources_that_the_description_names_are_inside() -> None:
+def test_the_sources_are_inside_and_named_for_those_who_compile() -> None:
     with zipfile.ZipFile(bundled_controller("2.0")) as archive:
-        names = set(archive.namelist())
-        description = archive.read("modelDescription.xml").decode()
-    sources = [line.split('"')[1] for line in description.splitlines() if "<File name" in line]
-    assert {"mpc.c", "active_set.c", "pid.c", "regulator.c", "fmi2.c"} <= set(sources)
-    assert {f"sources/{name}" for name in sources} <= names
+        two = set(archive.namelist())
+        told_2 = re.findall(r'<File name="(.*?)"', archive.read("modelDescription.xml").decode())
+    with zipfile.ZipFile(bundled_controller("3.0")) as archive:
+        three = set(archive.namelist())
+        text = archive.read("sources/buildDescription.xml").decode()
+        told_3 = re.findall(r'<SourceFile name="(.*?)"', text)
+    assert {f"sources/{name}" for name in told_2} == {n for n in two if n.endswith(".c")}
+    assert {f"sources/{name}" for name in told_3} == {n for n in three if n.endswith(".c")}
+    assert [*told_2[:-1], "fmi3.c"] == told_3
 
 
 # ---- the command ----

@@ -222,7 +222,7 @@ def test_a_speed_that_is_no_number_is_refused(
     value: float, fmi_version: str, new_host: NewHost
 ) -> None:
     host = new_host(fmi_version)
-    assert "expected a number" in host.refuses(lambda: host.set("speed", value))
+    assert f"speed = {value}: expected a number" in host.refuses(lambda: host.set("speed", value))
 
 
 def test_infinity_and_the_start_value_both_mean_nobody(
