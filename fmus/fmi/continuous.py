@@ -140,9 +140,11 @@ class Solver(Protocol):
 
     Attributes:
         x: the states at the end of the last step.
+        remedy: what to set in a profile where too many steps are needed.
     """
 
     x: NDArray[np.float64]
+    remedy: str
 
     def restart(self, time: float, x: NDArray[np.float64], nominals: NDArray[np.float64]) -> None:
         """Begin anew, after an event or with new inputs."""

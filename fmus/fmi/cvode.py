@@ -58,6 +58,8 @@ class Cvode:
         tolerance: relative; times a state's nominal value it is the absolute one.
     """
 
+    remedy = "a greater `tolerance`"
+
     def __init__(self, system: ContinuousSystem, tolerance: float) -> None:
         found = _libraries()
         self._cvode, self._core = found.sundials_cvode, found.sundials_core

@@ -42,10 +42,10 @@ def _convention() -> tuple[int, int, int, int]:
     return 0, 0, 0, 0  # unknown: formats stay as they are
 
 
-_SKIPPED, _INTEGERS, _DOUBLES, _STACK = _convention()
+SKIPPED, INTEGERS, DOUBLES, _STACK = _convention()
 _EXTRA: tuple[Any, ...] = (
-    *[c_uint64] * (_SKIPPED + _INTEGERS),
-    *[c_double] * _DOUBLES,
+    *[c_uint64] * (SKIPPED + INTEGERS),
+    *[c_double] * DOUBLES,
     *[c_uint64] * _STACK,
 )
 _FORMATTED = CFUNCTYPE(None, c_void_p, c_void_p, c_int, c_void_p, c_void_p, *_EXTRA)
@@ -60,28 +60,10 @@ class Arguments:
     """
 
     def __init__(self, slots: Sequence[Any]) -> None:
-        integers, doubles = _SKIPPED + _INTEGERS, _SKIPPED + _INTEGERS + _DOUBLES
-        self._integers: Iterator[int] = iter(slots[_SKIPPED:integers])
+        integers, doubles = SKIPPED + INTEGERS, SKIPPED + INTEGERS + DOUBLES
+        self._integers: Iterator[int] = iter(slots[SKIPPED:integers])
         self._doubles: Iterator[float] = iter(slots[integers:doubles])
         self._stack: Iterator[int] = iter(slots[doubles:])
-
-    @classmethod
-    def of(cls, *values: float) -> Arguments:
-        """These values where C would put them; ints are pointers and whole numbers."""
-        integers = [value for value in values if isinstance(value, int)][:_INTEGERS]
-        doubles = [value for value in values if isinstance(value, float)][:_DOUBLES]
-        rest, left = list(integers), list(doubles)
-        stack = []
-        for value in values:
-            register = rest if isinstance(value, int) else left
-            if register:
-                register.pop(0)
-            else:
-                code = "<q" if isinstance(value, int) else "<d"
-                stack.append(struct.unpack("<Q", struct.pack(code, value))[0])
-        integers += [0] * (_INTEGERS - len(integers))
-        doubles += [0.0] * (_DOUBLES - len(doubles))
-        return cls([*[0] * _SKIPPED, *integers, *doubles, *stack])
 
     def integer(self) -> int:
         """The next; StopIteration after the last that can be reached."""

@@ -28,6 +28,7 @@ RESOLUTION = 1e-12  # of times, relative to the greater of the time and 1 s
 ROUNDS = 100  # of one event iteration
 EVENTS = 200  # in one step
 INTERNAL_STEPS = 5_000  # in one step
+PATIENCE = 500  # internal steps that CVode may take in one step before another solver is tried
 DENSE = 500  # states up to which CVode's dense Jacobian is affordable
 
 
@@ -111,6 +112,12 @@ class ModelExchange(RunningInstance):
 
         return tick
 
+    @property
+    def solver(self) -> Solver:
+        """What integrates now."""
+        assert self._solver is not None  # prepare() made it
+        return self._solver
+
     # ---- one step ----
 
     def _begin(self, time: float) -> None:
@@ -123,8 +130,7 @@ class ModelExchange(RunningInstance):
 
     def _run(self, time: float, end: float) -> None:
         """From event mode at the start of a step to continuous-time mode at its end."""
-        system, solver, start = self._system, self._solver, time
-        assert solver is not None
+        system, start = self._system, time
         negligible = _resolution(end)
         self._settle(time)
         events = 0
@@ -143,8 +149,8 @@ class ModelExchange(RunningInstance):
                     raise IntegrationError(msg)
                 self.calls.enter_event_mode()
                 self._settle(time)
-                solver.expect_events()
-        system.set(end, solver.x)
+                self.solver.expect_events()
+        system.set(end, self.solver.x)
 
     def _settle(self, time: float) -> None:
         """The event iteration, then continuous time with the solver at its start."""
@@ -153,8 +159,7 @@ class ModelExchange(RunningInstance):
         if self._update_nominals:
             self._update_nominals = False
             self._nominals = self._system.nominals()
-        assert self._solver is not None
-        self._solver.restart(time, self._system.states(), self._nominals)
+        self.solver.restart(time, self._system.states(), self._nominals)
 
     def _iterate(self, time: float) -> None:
         """Update the discrete states until nothing changes any more."""
@@ -178,21 +183,19 @@ class ModelExchange(RunningInstance):
 
         The FMU is then at that point.
         """
-        system, solver = self._system, self._solver
-        assert solver is not None
+        system = self._system
         if stop - time <= _resolution(stop):
             system.set_time(stop)
             return stop, False
         start = time
-        before = system.signs(time, solver.x)
-        for _ in range(INTERNAL_STEPS):
-            after = solver.step(stop)
-            crossed = (system.signs(after, solver.x) != before).any()
+        before = system.signs(time, self.solver.x)
+        for count in range(INTERNAL_STEPS):
+            after = self._advance(time, stop, count)
+            crossed = (system.signs(after, self.solver.x) != before).any()
             if crossed:
                 after = self._first_crossing(time, after, before)
-                x = solver.at(after).copy()
-                solver.restart(after, x, self._nominals)
-            system.set(after, solver.x)
+                self.solver.restart(after, self.solver.at(after).copy(), self._nominals)
+            system.set(after, self.solver.x)
             time = after
             if self._completed() or crossed:
                 return time, True
@@ -200,14 +203,38 @@ class ModelExchange(RunningInstance):
                 return stop, False
         msg = (
             f"more than {INTERNAL_STEPS} internal steps between {start:.9g} s and {time:.9g} s; "
-            'it is stiff: use `solver = "cvode"`, or a greater `tolerance`, under [fmu]'
+            f"use {self.solver.remedy} under [fmu]"
         )
         raise IntegrationError(msg)
 
+    def _advance(self, time: float, stop: float, count: int) -> float:
+        """One internal step from ``time``; ``count`` have been done since the last event."""
+        if count == PATIENCE:
+            self._give_way(time)
+        try:
+            return self.solver.step(stop)
+        except IntegrationError:
+            if not self._give_way(time):
+                raise
+            return self.solver.step(stop)
+
+    def _give_way(self, time: float) -> bool:
+        """Let Runge-Kutta go on where CVode makes no headway, if the choice is ours.
+
+        CVode shrinks its steps without end where derivatives jump and no event is declared: dry
+        friction written as a sign of the speed holds a car at rest by such jumps.
+        """
+        if self._wanted is not None or not isinstance(self._solver, cvode.Cvode):
+            return False
+        x = self._solver.x.copy()
+        self._close_solver()
+        self._solver = RungeKutta(self._system, self.tolerance or TOLERANCE)
+        self._solver.restart(time, x, self._nominals)
+        return True
+
     def _first_crossing(self, time: float, after: float, before: Any) -> float:
         """When an event indicator changes its sign within the solver's last step [s]."""
-        system, solver = self._system, self._solver
-        assert solver is not None
+        system, solver = self._system, self.solver
 
         def crossed(moment: float) -> bool:
             return bool((system.signs(moment, solver.at(moment)) != before).any())

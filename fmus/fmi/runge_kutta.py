@@ -29,6 +29,8 @@ class RungeKutta:
         fixed_step: [s] plain steps of order 4 of this length instead.
     """
 
+    remedy = '`solver = "cvode"`, it is for stiff systems, or a greater `tolerance`,'
+
     def __init__(
         self, system: ContinuousSystem, tolerance: float, *, fixed_step: float | None = None
     ) -> None:

@@ -1,4 +1,4 @@
-/* A bouncing ball for Model Exchange with FMI 1.0: h' = v, v' = -gravity. At h = 0 it turns round with
+/* A bouncing ball for Model Exchange with FMI 1.0: h' = v, v' = -gravity - friction sign(v). At h = 0 it turns round with
  * `restitution` times its speed; it stays on the ground once that is below 1 cm/s. */
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +16,7 @@ typedef struct {
     double nextEventTime;
 } EventInfo;
 
-enum { H, V, GRAVITY, RESTITUTION, BOUNCES, REALS };
+enum { H, V, GRAVITY, RESTITUTION, BOUNCES, FRICTION, REALS };
 
 typedef struct {
     Callbacks callbacks;
@@ -33,7 +33,7 @@ EXPORT void *ball_fmiInstantiateModel(const char *name, const char *guid, Callba
         return NULL;
     }
     Ball *ball = callbacks.allocateMemory(1, sizeof *ball);
-    *ball = (Ball){.callbacks = callbacks, .real = {1.0, 0.0, 9.81, 0.7, 0.0}, .moving = 1};
+    *ball = (Ball){.callbacks = callbacks, .real = {1.0, 0.0, 9.81, 0.7, 0.0, 0.0}, .moving = 1};
     return ball;
 }
 
@@ -100,10 +100,12 @@ EXPORT int ball_fmiSetContinuousStates(void *c, const double x[], size_t n) {
     return 0;
 }
 
+static double sign(double value) { return (value > 0.0) - (value < 0.0); }
+
 EXPORT int ball_fmiGetDerivatives(void *c, double rates[], size_t n) {
     const Ball *ball = c;
     rates[0] = ball->moving ? ball->real[V] : 0.0;
-    rates[1] = ball->moving ? -ball->real[GRAVITY] : 0.0;
+    rates[1] = ball->moving ? -ball->real[GRAVITY] - ball->real[FRICTION] * sign(ball->real[V]) : 0.0;
     return 0;
 }
 

@@ -27,7 +27,8 @@ DESCRIPTION = """<?xml version="1.0"?>
     <ScalarVariable name="gravity" valueReference="2" causality="input"><Real start="9.81"/></ScalarVariable>
     <ScalarVariable name="restitution" valueReference="3" variability="parameter"><Real start="0.7"/></ScalarVariable>
     <ScalarVariable name="bounces" valueReference="4" causality="output"><Real/></ScalarVariable>
-    <ScalarVariable name="moving" valueReference="5" causality="output" variability="discrete"><Boolean start="true"/></ScalarVariable>
+    <ScalarVariable name="friction" valueReference="5" variability="parameter"><Real start="0"/></ScalarVariable>
+    <ScalarVariable name="moving" valueReference="6" causality="output" variability="discrete"><Boolean start="true"/></ScalarVariable>
   </ModelVariables>
 </fmiModelDescription>
 """  # noqa: E501
@@ -87,3 +88,17 @@ def test_bounces_without_end_are_chattering(ball, run, solver):
 def test_a_wrong_guid_is_refused_in_the_fmus_words(ball, run):
     with pytest.raises(FmuStartError, match=r"ball_fmiInstantiateModel .*wrong GUID \{other\}"):
         run(ball("{other}"), {"gravity": G}, 1, outputs=OUTPUTS)
+
+
+@pytest.mark.parametrize(
+    ("solver", "status"), [(None, 0), ("rk4", 0)] + [("cvode", 3)] * cvode.available()
+)
+def test_dry_friction_without_events(ball, run, solver, status):
+    """v' = -mu sign(v): CVode never comes to rest; left to itself the choice falls on the other."""
+    inputs, values = {"gravity": 0.0}, {"v": 1.0, "friction": 3.0}
+    state = run(ball(), inputs, 20, values=values, outputs=("v",), solver=solver)
+    assert state.status == status
+    if status == 0:
+        assert abs(state.outputs[0]) < 1e-3
+    else:
+        assert "use a greater `tolerance` under [fmu]" in state.journal.take()
