@@ -234,17 +234,15 @@ def _fault(info: zipfile.ZipInfo) -> str:
 
 
 def _require_sane_sizes(path: Path, members: Mapping[str, zipfile.ZipInfo]) -> None:
-    for info in members.values():
-        if _inflated(info.file_size, info.compress_size):
-            size = f"{_megabytes(info.compress_size)} unpacks to {_megabytes(info.file_size)}"
-            raise _refused(path, info, f"a zip bomb: {size}")
     total = sum(info.file_size for info in members.values())
     packed = sum(info.compress_size for info in members.values())
     if total > MAX_TOTAL:
         raise _beyond(f"{path}: {_megabytes(total)} unpacked", _megabytes(MAX_TOTAL))
+    for info in members.values():
+        if _inflated(info.file_size, info.compress_size):
+            raise _bomb(f"{path}: member {_quoted(info)}", info.file_size, info.compress_size)
     if _inflated(total, packed):
-        size = f"{_megabytes(packed)} unpacks to {_megabytes(total)}"
-        raise FmuArchiveError(f"{path}: a zip bomb: {size}; do not use this file")
+        raise _bomb(f"{path}: its members together", total, packed)
 
 
 def _inflated(size: int, packed: int) -> bool:
@@ -281,8 +279,17 @@ def _chunks(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> Iterator[bytes]:
 
 
 def _refused(path: Path, info: zipfile.ZipInfo, fault: str) -> FmuArchiveError:
-    name = printable(repr(info.orig_filename), 100)
-    return FmuArchiveError(f"{path}: member {name}: {fault}; refused; export the FMU again")
+    msg = f"{path}: member {_quoted(info)}: {fault}; refused; export the FMU again"
+    return FmuArchiveError(msg)
+
+
+def _bomb(where: str, size: int, packed: int) -> FmuArchiveError:
+    what = f"a zip bomb: {_megabytes(packed)} unpacks to {_megabytes(size)}"
+    return FmuArchiveError(f"{where}: {what}; if meant so, pack it without compression (zip -0)")
+
+
+def _quoted(info: zipfile.ZipInfo) -> str:
+    return printable(repr(info.orig_filename), 100)
 
 
 def _beyond(what: str, limit: str) -> FmuArchiveError:

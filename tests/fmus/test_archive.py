@@ -279,6 +279,12 @@ def test_a_bomb_of_many_small_parts(archive):
         open_archive(path)
 
 
+def test_what_is_honestly_large_passes_without_compression(archive):
+    info = zipfile.ZipInfo("resources/zeros")  # stored
+    path = archive((info, bytes(20 * MEGABYTE)))
+    assert "resources/zeros" in open_archive(path).members
+
+
 def test_large_resources_that_do_not_compress_much(archive):
     noise = random.Random(0).randbytes(4 * MEGABYTE) * 4
     path = archive(("resources/map", noise), ("resources/again", noise[::-1]))
