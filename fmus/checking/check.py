@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from fmus.checking import consistency
 from fmus.checking import observations as observe
+from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
 from fmus.checking.manoeuvres import Phase, try_to_drive
-from fmus.checking.observations import Expected
 from fmus.checking.prediction import simulate
 from fmus.checking.self_check import convergence, milliseconds, plain, remedy
 from fmus.errors import FmuCrashError, FmuError, FmuOutputError, FmuStepError
@@ -223,8 +224,8 @@ def _observe(report: CheckReport) -> None:
     add(observe.coasts(response, expected))
     if rolling is not None:
         add(observe.brakes(rolling, expected))
-    add(observe.position_follows_speed(response, expected))
-    add(observe.acceleration_follows_speed(response, expected))
+    add(consistency.position_follows_speed(response, expected))
+    add(consistency.acceleration_follows_speed(response, expected))
     model = observe.quick_fit([t for t in (response, rolling) if t is not None])
     add(observe.matches_model(model, response, expected))
     add(observe.actuator_lag(model, response.step_size))

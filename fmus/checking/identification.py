@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fmus.checking import actuator
 from fmus.checking.fitting import SETTLING, STANDSTILL, Drive, Fit, fit, prepare
 from fmus.checking.manoeuvres import Phase, Trace, drive
 from fmus.checking.prediction import position_errors, speed_errors
+from fmus.checking.remarks import fit_remarks, saturation_remarks
 from fmus.checking.saturation import force_limits
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
 from fmus.profile import FittedModel
@@ -23,15 +23,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from fmus.checking.manoeuvres import Opener
 
 LEVELS = (0.1, 0.25, 0.5, 1.0)  # of the largest force of the tests
 SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] at the start of the tests
 HARDEST = 8.0  # [m/s2] no test drives or brakes harder
 LEAD_IN, STEP, PAUSE = SETTLING + 1.0, 1.5, 1.0  # [s]
-POOR_FIT = 0.9  # of R squared, below which a remark says so
 NO_FIT = 0.3  # of R squared, below which there is no model
 VALIDATION = (  # of the largest force, each held for HELD; no level of the tests
     0.3, 0.6, -0.2, 0.15, -0.4, 0.45, 0.8, -0.6, 0.0, 0.2, -0.15, 0.7, -0.3, 0.35, -0.8, 0.55,
@@ -100,25 +97,18 @@ def identify(
         FmuOutputError: the vehicle does not respond to forces like a vehicle.
         FmuError: the FMU fails in a test.
     """
-    tell = progress or (lambda _done, _all: None)
-    total = len(speeds) * len(LEVELS) + 2
-    tell(0, total)
+    count = _Count(progress, len(speeds) * len(LEVELS) + 2)
     largest = _largest_force(opener, path, force_limit, step_size)
-    tell(1, total)
+    count.one_more()
     begin = _Beginning(opener, 0.5 * largest, max(speeds))
-    tests: list[list[Trace]] = [[] for _ in LEVELS]
-    for number, level in enumerate(LEVELS):
-        for speed in speeds:
-            phases = _test(level * largest, speed, top=1.25 * max(speeds) + 1.0)
-            tests[number].append(begin.drive(phases, speed))
-            tell(1 + sum(map(len, tests)), total)
+    tests = _drive_tests(begin, largest, speeds, count)
     limits = force_limits(tests)
     traces = tuple(trace for group in tests for trace in group)
     found = fit([prepare(trace, limits) for trace in traces])
     validation = begin.drive(
         _validation(0.9 * min(largest, *limits), max(speeds)), float(np.median(speeds))
     )
-    tell(total, total)
+    count.one_more()
     if found is None:
         raise FmuOutputError(f"{path}: {_NOT_A_VEHICLE}; expected more speed with more force")
     model = _rated(found, validation, limits, step_size, horizon)
@@ -137,11 +127,43 @@ def identify(
         fit=found,
         tests=traces,
         validation=validation,
-        remarks=(*_saturation(limits), *_remarks(found, model, traces, limits)),
+        remarks=(*saturation_remarks(limits), *fit_remarks(found, model, traces, limits)),
     )
 
 
 _NOT_A_VEHICLE = "it does not respond to forces like a vehicle"
+
+
+@dataclass
+class _Count:
+    """How many of the drives are done, for whoever wants to know."""
+
+    tell: Callable[[int, int], None] | None
+    total: int
+    done: int = -1
+
+    def __post_init__(self) -> None:
+        self.one_more()
+
+    def one_more(self) -> None:
+        self.done += 1
+        if self.tell is not None:
+            self.tell(self.done, self.total)
+
+
+def _drive_tests(
+    begin: _Beginning, largest: float, speeds: Sequence[float], count: _Count
+) -> list[list[Trace]]:
+    """By level of force, from weak to strong, one trace for each speed."""
+    tests = []
+    for level in LEVELS:
+        group = []
+        for speed in speeds:
+            phases = _test(level * largest, speed, top=1.25 * max(speeds) + 1.0)
+            group.append(begin.drive(phases, speed))
+            count.one_more()
+        tests.append(group)
+    return tests
 
 
 def _finite(limit: float) -> float | None:
@@ -243,72 +265,3 @@ def _r_squared(found: Fit, drives: Sequence[Drive]) -> float:
     fitted = np.concatenate([found.acceleration(drive)[drive.used] for drive in drives])
     spread = float(((measured - measured.mean()) ** 2).sum()) if measured.size else 0.0
     return 1.0 - float(((measured - fitted) ** 2).sum()) / spread if spread > 0.0 else 0.0
-
-
-def _saturation(limits: tuple[float, float]) -> list[str]:
-    return [
-        f"no more than {limit:.0f} N of {name} force arrive: run with --force-limit {limit:.0f} or "
-        "less"
-        for name, limit in zip(("drive", "brake"), limits, strict=True)
-        if np.isfinite(limit)
-    ]
-
-
-def _remarks(
-    found: Fit, model: FittedModel, traces: Sequence[Trace], limits: tuple[float, float]
-) -> list[str]:
-    remarks = []
-    if model.r_squared < POOR_FIT:
-        remarks.append(
-            f"poor fit: R² = {model.r_squared:.2f}; M v' + alpha v = u is not how it moves, "
-            f"expect the MPC to be off by {model.position_error:.2g} m at its horizon"
-        )
-    late = model.lag + model.delay
-    if late > model.time_step:
-        remarks.append(
-            f"forces act {late:.2g} s late; the MPC does not know that: its position error of "
-            f"{model.position_error:.2g} m at the horizon has it in"
-        )
-    return [*remarks, *_resistance(found, [prepare(trace, limits) for trace in traces])]
-
-
-def _resistance(found: Fit, drives: Sequence[Drive]) -> list[str]:
-    """What else resists: a constant force and one that grows with the square of the speed."""
-    speed = np.concatenate([drive.speed[:-1][drive.used] for drive in drives])
-    acting = np.concatenate(
-        [actuator.mean_force(d.force, d.step, found.lag, found.delay)[d.used] for d in drives]
-    )
-    measured = np.concatenate([drive.acceleration[drive.used] for drive in drives])
-    left = np.concatenate([(d.acceleration - found.acceleration(d))[d.used] for d in drives])
-    X = np.column_stack((acting, -speed, -np.ones_like(speed), -speed * np.abs(speed)))
-    scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
-    theta, *_ = np.linalg.lstsq(X / scale, measured, rcond=None)
-    better = float(np.sqrt(np.mean((measured - X / scale @ theta) ** 2)))
-    if better > 0.7 * found.residual or found.residual - better < 0.005 or theta[0] <= 0.0:
-        return []
-    fastest = float(speed.max())
-    worst = float(np.sqrt(np.mean(left[speed > 0.8 * fastest] ** 2)))
-    terms = _terms(theta[1:] / scale[1:] * scale[0] / theta[0], fastest)
-    return [
-        f"its resistance is not alpha v: {terms} fits better; near {fastest:.0f} m/s the MPC's "
-        f"model misses {worst:.2g} m/s²"
-    ]
-
-
-def _terms(resistance: NDArray[np.float64], fastest: float) -> str:
-    """A sum in words, without the terms that hardly matter at any speed.
-
-    Args:
-        resistance: viscous [N.s/m], constant [N] and quadratic [N.s2/m2].
-        fastest: [m/s].
-    """
-    viscous, constant, quadratic = resistance.tolist()
-    terms = (
-        (constant, 1.0, "N"),
-        (viscous, fastest, "N.s/m v"),
-        (quadratic, fastest**2, "N.s²/m² v²"),
-    )
-    most = max(abs(factor) * size for factor, size, _ in terms)
-    return " + ".join(
-        f"{factor:.3g} {unit}" for factor, size, unit in terms if abs(factor) * size > 0.02 * most
-    )

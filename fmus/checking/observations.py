@@ -2,72 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fmus.checking.consistency import SPEED_UNITS, unit_of
 from fmus.checking.findings import Finding
-from fmus.checking.fitting import STANDSTILL, fit, prepare
+from fmus.checking.fitting import fit, prepare
 from fmus.checking.prediction import position_errors
 from fmus.checking.saturation import saturation
-from fmus.profile import Axis
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from numpy.typing import NDArray
-
+    from fmus.checking.expected import Expected
     from fmus.checking.fitting import Fit
     from fmus.checking.manoeuvres import Trace
-    from fmus.profile import VehicleProfile
 
 MOVES = 0.02  # [m/s] a change that is one
 CREEPS = 0.1  # [m/s] against the way it should go
 START_TOLERANCE = 0.05  # [m/s]
-RATIO_TOLERANCE = 0.02  # of a factor between two quantities that should be the same
 MASS_TOLERANCE = 0.05  # of the controller's M
 POSITION_TOLERANCE = 0.1  # [m] at the horizon of the controller
 NO_VEHICLE = 0.3  # of R squared: below, M and alpha say nothing
 LATE = 2.0  # steps of lag and dead time that are worth a warning
-
-_SPEED_UNITS = (("km/h", 3.6), ("mph", 1 / 0.44704), ("kn", 3600 / 1852), ("ft/s", 1 / 0.3048))
-_LENGTH_UNITS = (("km", 1e-3), ("mm", 1e3), ("cm", 1e2), ("ft", 1 / 0.3048), ("mi", 1 / 1609.344))
-_ACCELERATION_UNITS = (("g", 1 / 9.80665), ("km/h/s", 3.6), ("cm/s2", 1e2), ("ft/s2", 1 / 0.3048))
-
-
-@dataclass(frozen=True)
-class Expected:
-    """What the run will assume of the vehicle.
-
-    Attributes:
-        mass: M of the controller's model [kg].
-        friction: alpha of it [N.s/m].
-        horizon: of the MPC [steps].
-        start_speed: of the run [m/s].
-        force: of the manoeuvres [N].
-        largest_force: u_max [N].
-        profile: of the vehicle; None: the FMU is ours.
-    """
-
-    mass: float
-    friction: float
-    horizon: int
-    start_speed: float
-    force: float
-    largest_force: float
-    profile: VehicleProfile | None
-
-    @property
-    def role(self) -> str:
-        """The first input that the profile wires."""
-        inputs = self.profile.inputs if self.profile else None
-        return next((name for name, axis in inputs or () if isinstance(axis, Axis)), "force")
-
-    @property
-    def braking_role(self) -> str:
-        """The input that brakes."""
-        return {"drive_force": "brake_force", "throttle": "brake"}.get(self.role, self.role)
 
 
 def start_speed(rolling: Trace, expected: Expected) -> Finding:
@@ -75,7 +33,7 @@ def start_speed(rolling: Trace, expected: Expected) -> Finding:
     name, wanted, got = "start speed", expected.start_speed, float(rolling.speed[0])
     if abs(got - wanted) <= START_TOLERANCE:
         return Finding(name, "pass", f"{got:.3f} m/s, as asked")
-    unit = _unit(got / wanted if wanted else np.nan, _SPEED_UNITS)
+    unit = unit_of(got / wanted if wanted else np.nan, SPEED_UNITS)
     if unit:
         return Finding(
             name, "fail", f"asked for {wanted:g} m/s it says {got:.4g} m/s: that is in {unit}",
@@ -185,91 +143,6 @@ def coasts(response: Trace, expected: Expected) -> Finding:
     return Finding(name, "pass", text)
 
 
-def position_follows_speed(response: Trace, expected: Expected) -> Finding:
-    """Is the speed what the position does per second?"""
-    name = "speed and position"
-    if expected.profile and expected.profile.outputs.position is None:
-        return Finding(name, "skip", "no position among the outputs: the speed is integrated")
-    way = np.cumsum(0.5 * (response.speed[1:] + response.speed[:-1])) * response.step_size
-    moved = response.position[1:] - response.position[0]
-    ratio, misfit = _ratio(way, moved)
-    if not np.isfinite(ratio) or (ratio == 0.0 and misfit == 0.0):
-        return Finding(name, "skip" if not np.any(way) else "fail", "the position does not move")
-    if misfit > 0.05:
-        return Finding(
-            name, "fail", f"the position is not the way driven (off by {100 * misfit:.0f} %)",
-            "is [outputs.position] the right variable? Without that table the speed is integrated",
-        )  # fmt: skip
-    text = f"the position moves {ratio:.4g} m per metre that the speed accounts for"
-    if abs(ratio - 1.0) <= RATIO_TOLERANCE:
-        return Finding(name, "pass", text)
-    return Finding(name, "fail", *_way_remedy(text, ratio))
-
-
-def _way_remedy(text: str, ratio: float) -> tuple[str, str]:
-    if abs(ratio + 1.0) <= RATIO_TOLERANCE:
-        return text, "set `gain = -1.0` in [outputs.position]"
-    for unit, factor in _SPEED_UNITS:
-        if abs(ratio * factor - 1.0) <= RATIO_TOLERANCE:
-            return (
-                f"{text}: the speed seems to be in {unit}",
-                f'set `unit = "{unit}"` in [outputs.speed]',
-            )
-        if abs(ratio / factor - 1.0) <= RATIO_TOLERANCE and unit != "ft/s":
-            return (
-                f"{text}: the speed seems to be in m/s, not {unit}",
-                'set `unit = "m/s"` in [outputs.speed]',
-            )
-    unit = _unit(ratio, _LENGTH_UNITS)
-    if unit:
-        return (
-            f"{text}: the position seems to be in {unit}",
-            f'set `unit = "{unit}"` in [outputs.position]',
-        )
-    return text, f"set `gain = {1.0 / ratio:.6g}` in [outputs.position], or the right unit there"
-
-
-def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
-    """Is the acceleration what the speed does per second?"""
-    name = "acceleration"
-    if expected.profile and expected.profile.outputs.acceleration is None:
-        return Finding(name, "skip", "not among the outputs: the speed's difference is taken")
-    ratio, misfit = _acceleration_ratio(response)
-    text = f"{ratio:.4g} times what the speed does per second"
-    if not np.isfinite(ratio):
-        return Finding(name, "skip", "the speed does not change")
-    if abs(ratio - 1.0) <= 0.05 and misfit <= 0.1:
-        return Finding(name, "pass", text)
-    if abs(ratio + 1.0) <= 0.05:
-        return Finding(name, "fail", text, "set `gain = -1.0` in [outputs.acceleration]")
-    unit = _unit(ratio, _ACCELERATION_UNITS)
-    if unit:
-        gain = 1.0 / dict(_ACCELERATION_UNITS)[unit]
-        return Finding(
-            name, "fail", f"{text}: it seems to be in {unit}",
-            f"set `gain = {gain:.6g}` in [outputs.acceleration]",
-        )  # fmt: skip
-    return Finding(
-        name, "warn", text, "is [outputs.acceleration] the right variable? It may be left out"
-    )
-
-
-def _acceleration_ratio(response: Trace) -> tuple[float, float]:
-    """The factor from the speed's slope to the acceleration, and the misfit.
-
-    Some FMUs give the mean over the step, others the value at its end: whichever fits better.
-    """
-    v, h = response.speed, response.step_size
-    changes = np.flatnonzero(np.diff(response.force)) + 1
-    near = np.abs(np.arange(1, v.size - 1)[:, None] - changes).min(axis=1, initial=v.size)
-    around = np.stack((v[:-2], v[1:-1], v[2:]))
-    stops = (around.min(axis=0) <= STANDSTILL) & (around.max(axis=0) > STANDSTILL)
-    calm = (near > 1) & ~stops
-    measured = response.acceleration[1:-1][calm]
-    slopes = ((v[1:-1] - v[:-2]) / h, (v[2:] - v[:-2]) / (2.0 * h))
-    return min((_ratio(slope[calm], measured) for slope in slopes), key=lambda found: found[1])
-
-
 def quick_fit(traces: Sequence[Trace]) -> Fit | None:
     """M, alpha and the actuator from the drives of a check."""
     return fit([prepare(trace) for trace in traces])
@@ -356,21 +229,6 @@ def warnings(traces: Mapping[str, Trace]) -> Finding:
         return Finding("warnings", "pass", "none")
     more = f" (and {len(seen) - 1} more)" if len(seen) > 1 else ""
     return Finding("warnings", "warn", f"{seen[0]}{more}")
-
-
-def _ratio(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float]:
-    """The factor from x to y by least squares, and the largest misfit relative to y's largest."""
-    power = float(x @ x)
-    if power == 0.0:
-        return np.nan, 0.0
-    ratio = float(x @ y) / power
-    largest = float(np.abs(y).max())
-    return ratio, float(np.abs(y - ratio * x).max()) / largest if largest else 0.0
-
-
-def _unit(ratio: float, units: tuple[tuple[str, float], ...]) -> str:
-    """The unit whose numbers are ``ratio`` times those of SI; empty if none is."""
-    return next((u for u, f in units if abs(ratio / f - 1.0) <= RATIO_TOLERANCE), "")
 
 
 def _small(value: float) -> str:

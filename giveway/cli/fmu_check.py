@@ -114,8 +114,8 @@ def _profile_found(path: Path, file: Path | None, profile: VehicleProfile) -> Fi
 
 def _conclude(console: Console, path: Path, findings: Sequence[Finding]) -> int:
     table = Table(
-        title=Text(f"Check of {printable(path.name, 60)}"), title_justify="left", show_header=False, box=None,
-        pad_edge=False,
+        title=Text(f"Check of {printable(path.name, 60)}"), title_justify="left",
+        show_header=False, box=None, pad_edge=False,
     )  # fmt: skip
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)

@@ -100,7 +100,7 @@ def _draw_drive(
 def _draw_force(axes: Axes, trace: Trace) -> None:
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     held = np.append(trace.force, trace.force[-1:]) / 1000.0
-    axes.step(trace.time, held, where="post", color=VERMILION, linewidth=1.2, zorder=3)
+    axes.step(trace.time[: held.size], held, where="post", color=VERMILION, linewidth=1.2, zorder=3)
 
 
 @styled

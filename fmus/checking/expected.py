@@ -1,0 +1,45 @@
+"""What a run will assume of the vehicle that is checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fmus.profile import Axis
+
+if TYPE_CHECKING:
+    from fmus.profile import VehicleProfile
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What the run will assume of the vehicle.
+
+    Attributes:
+        mass: M of the controller's model [kg].
+        friction: alpha of it [N.s/m].
+        horizon: of the MPC [steps].
+        start_speed: of the run [m/s].
+        force: of the manoeuvres [N].
+        largest_force: u_max [N].
+        profile: of the vehicle; None: the FMU is ours.
+    """
+
+    mass: float
+    friction: float
+    horizon: int
+    start_speed: float
+    force: float
+    largest_force: float
+    profile: VehicleProfile | None
+
+    @property
+    def role(self) -> str:
+        """The first input that the profile wires."""
+        inputs = self.profile.inputs if self.profile else None
+        return next((name for name, axis in inputs or () if isinstance(axis, Axis)), "force")
+
+    @property
+    def braking_role(self) -> str:
+        """The input that brakes."""
+        return {"drive_force": "brake_force", "throttle": "brake"}.get(self.role, self.role)
