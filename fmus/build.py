@@ -103,16 +103,20 @@ class Recipe:
 
 
 VEHICLE: Final = Recipe(MODEL, SOURCE, ("plant.h", "plant.c", "instance.h", "instance.c"), FILES)
+_UNITS: Final = (
+    "parameters",
+    "speed_problem",
+    "active_set",
+    "refinement",
+    "mpc",
+    "pid",
+    "regulator",
+    "instance",
+)
 REGULATOR: Final = Recipe(
     CONTROLLER,
     Path(__file__).parent / "controller_source",
-    tuple(
-        f"{unit}.{kind}"
-        for unit in ("parameters", "speed_problem", "active_set", "refinement", "mpc", "pid")
-        + ("regulator", "instance")
-        for kind in ("h", "c")
-    )
-    + ("snapshot.c",),
+    (*(f"{unit}.{kind}" for unit in _UNITS for kind in "hc"), "variables.c", "snapshot.c"),
     CONTROLLER_FILES,
     ("-fno-math-errno",),  # sqrt is the processor's, and no library's
 )

@@ -81,6 +81,11 @@ void instance_destroy(Instance *self);
 Status instance_error(const Instance *self, const char *format, ...);
 Status instance_require(const Instance *self, const char *function, int phases);
 
+/* Compute the outputs from the inputs as they are; whether the decision counts is left open. */
+Status instance_decide(Instance *self);
+/* Something has been set: outputs are to be computed anew, but for those held between two decisions. */
+void snapshot_reopen(Snapshot *s);
+
 /* Reading an output may compute it. */
 Status instance_get_real(Instance *self, unsigned reference, double *value);
 Status instance_set_real(Instance *self, unsigned reference, double value);
