@@ -21,6 +21,7 @@ POOR_FIT = 0.9  # of R squared, below which a remark says so
 
 
 def saturation_remarks(limits: tuple[float, float]) -> list[str]:
+    """On the largest drive and brake force that arrive [N], where they were reached."""
     return [
         f"no more than {limit:.0f} N of {name} force arrive: run with --force-limit {limit:.0f} or "
         "less"
@@ -32,6 +33,14 @@ def saturation_remarks(limits: tuple[float, float]) -> list[str]:
 def fit_remarks(
     found: Fit, model: FittedModel, traces: Sequence[Trace], limits: tuple[float, float]
 ) -> list[str]:
+    """On how well M v' + alpha v = u describes the vehicle, and what else it does.
+
+    Args:
+        found: M, alpha and the actuator.
+        model: how good they are.
+        traces: that were fitted.
+        limits: beyond which they were not [N].
+    """
     remarks = []
     if model.r_squared < POOR_FIT:
         remarks.append(

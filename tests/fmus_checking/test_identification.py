@@ -110,9 +110,19 @@ def test_what_is_driven_by_its_acceleration_is_identified_as_a_whole(zoo):
     profile = make_profile(
         zoo.profile(path) | {"inverse_map": {"mass": 1200.0, "friction": 50.0}}, "test"
     )
-    found = identified(opener_of(path, step_size=0.05, profile=profile)).model
+    found = identified(opener_of(path, step_size=0.05, profile=profile, isolated=False)).model
     assert found.mass == pytest.approx(1200.0, rel=0.01)
     assert found.r_squared > 0.99
+
+
+def test_a_car_that_cannot_start_at_a_speed_is_driven_up_to_it(zoo):
+    path = zoo.car(initial=())
+    profile = make_profile(zoo.profile(path) | {"initial": {"run_up": False}}, "test")
+    found = identified(
+        opener_of(path, step_size=0.05, profile=profile, isolated=False), speeds=(0.0, 6.0)
+    )
+    assert found.model.mass == pytest.approx(1000.0, rel=0.005)
+    assert found.model.friction == pytest.approx(100.0, rel=0.01)
 
 
 @pytest.mark.parametrize(

@@ -18,10 +18,6 @@ def trace(speed):
     return Trace(0.05, force, speed, speed, speed, 0.0 * force, ())
 
 
-def panels(figure):
-    return [axes for part in [figure, *figure.subfigs] for axes in part.axes]
-
-
 def test_a_check_shows_the_vehicle_beside_the_model_and_the_steps_halved(car, tmp_path):
     figure = check_figure(check(car(), step_size=0.05), title="car")
     assert figure is not None
@@ -48,5 +44,5 @@ def test_an_identification_shows_measured_and_fitted(car, tmp_path):
         speeds=(0.0, 4.0),
     )  # fmt: skip
     figure = identification_figure(found, title="car")
-    assert len(panels(figure)) == 5
+    assert len(figure.axes) == 5
     figure.savefig(tmp_path / "car.png")
