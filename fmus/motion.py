@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from fmus.wiring import Wiring
 
 
+_REVERSING = -0.05  # [m/s] beyond what a stop within a step may overshoot
+
+
 class Motion:
     """Position, speed and acceleration along the way, as the FMU tells them or as derived.
 
@@ -93,7 +96,7 @@ class Motion:
             self.acceleration = (speed - before) / duration
         self._judge(position - led, 0.5 * duration * abs(speed - before), time)
         self._note(self._guard.watch(not unchanged, force, speed, duration, time))
-        if speed < 0.0:
+        if speed < _REVERSING:
             backwards = f"{self.names['speed']} = {speed:.3g} m/s at {time:.10g} s: it reverses"
             self._note(self._guard.once("reverse", backwards))
 

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
 _NEAR = 0.01  # [m/s] of the speed wanted, and
 _SETTLED = 0.5  # [s] for so long
+_CLOSE = 0.3  # [m/s] from which on the integrator works
 _LIMIT = 120.0  # [s] of simulated time
 _RESPONSE = 0.5  # [s] time constant of the approach
 _INTEGRATION = 4.0  # [s] of the integrator: what the model's friction does not account for
@@ -29,7 +30,7 @@ def run_up(vehicle: VehicleFmu, speed: float) -> float:
         error = speed - vehicle.speed
         wanted = error / _RESPONSE + integral
         acceleration = min(max(wanted, -_STRONGEST), _STRONGEST)
-        if wanted == acceleration:  # no wind-up while saturated
+        if abs(error) < _CLOSE:  # on the way there it would wind up
             integral += error * h / (_RESPONSE * _INTEGRATION)
         vehicle.step(mass * acceleration + friction * speed)
         settled = settled + h if abs(speed - vehicle.speed) <= _NEAR else 0.0

@@ -238,7 +238,8 @@ class VehicleFmu:
         if initial is not None:
             msg = (
                 f"{self.path}: {initial.channel.name} was set to start at {speed:g} m/s, but "
-                f"{name} = {self.speed:.6g} m/s; check the units of both, or leave out [initial.speed]"
+                f"{name} = {self.speed:.6g} m/s; check the units of both, or leave out "
+                "[initial.speed]"
             )
             raise FmuStartError(msg)
         if not self.prepared.run_up or speed < 0.0:

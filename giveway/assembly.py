@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
     from giveway.config import RunConfig
     from giveway.ego import Driver
+    from giveway.scenario_files import ScenarioFiles
     from sumo_scenarios import Scenario
 
 ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
@@ -115,8 +116,7 @@ def assemble(
     zone = Zone(config.crowd.zone, config.crowd.zone_margin)
     egos = config.each_ego()
     _require_distinct(egos)
-    step_length = _whole_milliseconds(config.sumo.step_length or files.step_length)
-    time_step = _time_step(config.time_step, step_length)
+    time_step = control_step(config, files)
     require_vehicles(egos, time_step)
     regulators = [make_regulator(ego, time_step) for ego in egos]
     walkers = not zone.nowhere and not (zone.follows_egos and not egos)
@@ -263,6 +263,12 @@ def _crowd(spawned: Spawned) -> Crowd:
         )
     except PedestrianModelError as error:
         raise CrowdError(f"pedestrians cannot be placed: {error}") from error
+
+
+def control_step(config: RunConfig, files: ScenarioFiles) -> float:
+    """The control step [s] of a run of these files."""
+    step_length = _whole_milliseconds(config.sumo.step_length or files.step_length)
+    return _time_step(config.time_step, step_length)
 
 
 def _whole_milliseconds(step_length: float) -> float:

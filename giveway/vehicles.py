@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from fmus import (
     FmuError,
+    FmuOutputError,
     Vehicle,
     VehicleProfile,
     bundled_fmu,
@@ -19,7 +20,7 @@ from fmus import (
     prepare,
     read_profile,
 )
-from fmus.checking import opener_of, require_converged
+from fmus.checking import convergence, opener_of, remedy
 from giveway.departures import DEFAULT_SPEED
 from giveway.errors import VehicleError
 
@@ -115,21 +116,27 @@ def _require_converged(
 ) -> None:
     """Drive an FMU for some seconds in its full steps and in smaller ones, once per process.
 
+    One that fails whatever its step is left to the run, which keeps the rows up to then.
+
     Raises:
-        FmuError: its steps do not converge, or it fails.
+        FmuError: its steps do not converge.
     """
     key = (sha256(path.read_bytes()).hexdigest(), profile.model_dump_json(), time_step)
-    if key not in _converged:
-        force = min(_CHECK_FORCE, config.mpc.force_limit)
-        speed = DEFAULT_SPEED if config.ego.initial_speed is None else config.ego.initial_speed
-        require_converged(
+    if key in _converged:
+        return
+    speed = config.ego.initial_speed
+    try:
+        result = convergence(
             opener_of(path, step_size=time_step, profile=profile, isolated=isolated),
             profile.fmu.step or time_step,
-            path=path,
-            force=force,
-            start_speed=speed,
+            force=min(_CHECK_FORCE, config.mpc.force_limit),
+            start_speed=DEFAULT_SPEED if speed is None else speed,
         )
-        _converged.add(key)
+    except FmuError:
+        return
+    if result.problem:
+        raise FmuOutputError(f"{path}: {result.problem}; {remedy(result)}")
+    _converged.add(key)
 
 
 def model_margin(config: RunConfig) -> float:

@@ -72,10 +72,14 @@ def run_command(
     check_folder(folder, force=outputs.force)
     if outputs.parquet:
         require_parquet()
-    read_scenario(found.config_file).require_inputs()
+    files = read_scenario(found.config_file)
+    files.require_inputs()
     Zone(effective.crowd.zone, effective.crowd.zone_margin)
+    from giveway.assembly import control_step
     from giveway.kernels import compile_kernels_once
+    from giveway.vehicles import require_vehicles
 
+    require_vehicles(effective.each_ego(), control_step(effective, files))
     compile_kernels_once(console)
     from giveway.api import run_layers
 
