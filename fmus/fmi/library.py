@@ -85,14 +85,18 @@ class Library:
 
 
 def _load(path: Path) -> ctypes.CDLL:
-    """Load a library; what it needs and lies beside it is loaded first where the system fails."""
     beside = [file for file in path.parent.iterdir() if file != path]
+    return _load_with(path, beside, ctypes.DEFAULT_MODE)
+
+
+def _load_with(path: Path, beside: list[Path], mode: int) -> ctypes.CDLL:
+    """Load a library; what it needs and lies beside it is loaded first where the system fails."""
     while True:
         try:
-            return ctypes.CDLL(str(path), winmode=_ALTERED_SEARCH_PATH)
+            return ctypes.CDLL(str(path), mode=mode, winmode=_ALTERED_SEARCH_PATH)
         except OSError as error:
             missing = next((file for file in beside if file.name in str(error)), None)
             if missing is None:
                 raise
             beside.remove(missing)
-            ctypes.CDLL(str(missing), mode=ctypes.RTLD_GLOBAL)
+            _load_with(missing, beside, ctypes.RTLD_GLOBAL)

@@ -24,7 +24,7 @@ def compiled(folder, name, source, *more):
     (folder / "source.c").write_text(source)
     subprocess.run(
         [sys.executable, "-m", "ziglang", "cc", "-target", HERE.zig, "-shared", "-fPIC"]
-        + ["-o", name, "source.c", *more],
+        + [f"-Wl,-soname,{name}", "-o", name, "source.c", *more],
         cwd=folder,
         check=True,
     )
@@ -49,11 +49,11 @@ def test_what_lies_beside_a_binary_is_found(tmp_path):
 
 @needs_compiler
 def test_what_a_binary_needs_and_nobody_has_is_named(tmp_path):
-    compiled(tmp_path, "libtyre.so", "int tyre(void) { return 3; }")
-    car = "int tyre(void); int car(void) { return tyre(); }"
-    path = compiled(tmp_path, "car.so", car, "-L.", "-ltyre")
-    (tmp_path / "libtyre.so").unlink()
-    with pytest.raises(FmuPlatformError, match=r"car\.so cannot be loaded: libtyre\.so: cannot"):
+    compiled(tmp_path, "libdoor.so", "int door(void) { return 3; }")
+    car = "int door(void); int car(void) { return door(); }"
+    path = compiled(tmp_path, "car.so", car, "-L.", "-ldoor")
+    (tmp_path / "libdoor.so").unlink()
+    with pytest.raises(FmuPlatformError, match=r"car\.so cannot be loaded: libdoor\.so: cannot"):
         Library(path, tmp_path / "car.fmu")
 
 
