@@ -228,6 +228,6 @@ def _observe(report: CheckReport) -> None:
     add(consistency.acceleration_follows_speed(response, expected))
     model = observe.quick_fit([t for t in (response, rolling) if t is not None])
     add(observe.matches_model(model, response, expected))
-    add(observe.actuator_lag(model, response.step_size))
+    add(observe.actuator_lag(model, response.step_size, expected))
     if full is not None and rolling is not None:
         add(observe.actuator_limits(model, full, rolling, expected))

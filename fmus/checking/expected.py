@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fmus.profile import Axis
 
 if TYPE_CHECKING:
-    from fmus.profile import VehicleProfile
+    from fmus.profile import FittedModel, VehicleProfile
 
 
 @dataclass(frozen=True)
@@ -32,6 +32,11 @@ class Expected:
     force: float
     largest_force: float
     profile: VehicleProfile | None
+
+    @property
+    def identified(self) -> FittedModel | None:
+        """The model that an earlier identification wrote into the profile."""
+        return self.profile.model if self.profile else None
 
     @property
     def role(self) -> str:

@@ -33,7 +33,7 @@ def test_ours_is_found_and_written(identify, tmp_path):
     assert (tmp_path / "fit.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_the_users_profile_gets_its_model_and_keeps_its_words(identify, zoo, tmp_path):
+def test_the_users_profile_gets_its_model_and_keeps_its_words(identify, capsys, zoo, tmp_path):
     path = zoo.car(
         role="drive_brake", values={"mass": 1400.0, "friction": 60.0, "lag": 0.2, "holds": 1.0}
     )
@@ -49,6 +49,10 @@ def test_the_users_profile_gets_its_model_and_keeps_its_words(identify, zoo, tmp
     assert model["friction"] == pytest.approx(60.0, rel=0.05)
     assert model["lag"] == pytest.approx(0.2, rel=0.05)
     assert "0.2 s late" in out
+    with pytest.raises(SystemExit) as ended:
+        main(["fmu", "check", str(path), "--profile", str(profile), "--out", str(tmp_path)])
+    assert ended.value.code == 0
+    assert "warn" not in capsys.readouterr().out
 
 
 def test_a_foreign_file_is_not_overwritten(identify, zoo, tmp_path):
