@@ -9,7 +9,7 @@ from ctypes import c_size_t, c_uint32, c_void_p
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from fmus.instance import STATUS_NAMES, WARNING
+from fmus.instance import ERROR, STATUS_NAMES, WARNING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -21,11 +21,28 @@ if TYPE_CHECKING:
 
 
 class CallFailedError(Exception):
-    """A function of the FMU did not do what it should."""
+    """A function of the FMU did not do what it should.
+
+    Attributes:
+        status: that it returned.
+        remedy: what the user can do about it.
+    """
+
+    remedy = "check its start values"
 
     def __init__(self, function: str, status: int) -> None:
         super().__init__(f"{function} returned {named(status)}")
         self.status = status
+
+
+class NoInstanceError(CallFailedError):
+    """The FMU made no instance."""
+
+    remedy = "its binary may be of another model than its description: export the FMU again"
+
+    def __init__(self, function: str) -> None:
+        super().__init__(function, ERROR)
+        self.args = (f"{function} returned no instance",)
 
 
 @dataclass(frozen=True)

@@ -97,6 +97,13 @@ class CoSimulation(RunningInstance):
                     break
         if status == DISCARD:
             self._worst = DISCARD
+            tried = (
+                f"and steps down to 1/{1 << HALVINGS} of it"
+                if self._before
+                else ("and cannot return to the state before it")
+            )
+            advice = "try a smaller `step` under [fmu] of the profile"
+            self.journal.add(DISCARD, f"it discards the step, {tried}; {advice}")
         return status
 
     def _continue(self, status: int, time: float, end: float, size: float) -> int:

@@ -7,10 +7,10 @@ from ctypes import Structure, byref, c_byte, c_char_p, c_double, c_int, c_void_p
 from typing import TYPE_CHECKING, ClassVar
 
 from fmus.fmi.calls import (
-    CallFailedError,
     Calls,
     CType,
     EventInfo,
+    NoInstanceError,
     Progress,
     Setting,
     Stepper,
@@ -117,7 +117,7 @@ class Fmi1Calls(Calls):
                 logging,
             )
         if not component:
-            raise CallFailedError(self._make, ERROR)
+            raise NoInstanceError(self._make)
         self.component = c_void_p(component)
 
     def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102

