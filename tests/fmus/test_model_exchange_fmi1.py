@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import shutil
 import zipfile
 from math import sqrt
 from pathlib import Path
@@ -36,9 +37,10 @@ SOLVERS = ["rk4"] + ["cvode"] * cvode.available()
 
 
 @pytest.fixture(scope="session")
-def library():
+def library(tmp_path_factory):
     here = next(target for target in build.TARGETS if target.folder == fmpy.platform_tuple)
-    folder = Path(__file__).parent
+    folder = tmp_path_factory.mktemp("ball")
+    shutil.copy(Path(__file__).with_name("fmi1_ball.c"), folder)
     return here.suffix, build.compile_library(folder, ("fmi1_ball.c",), here, "ball")
 
 
