@@ -50,9 +50,7 @@ def test_an_exact_plant_differs_by_its_discretisation_only():
     assert found.friction == pytest.approx(alpha, rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("lag", "delay"), [(0.2, 0.0), (0.0, 0.13), (0.3, 0.1), (0.05, 0.2), (1.0, 0.0)]
-)
+@pytest.mark.parametrize(("lag", "delay"), [(0.2, 0.0), (0.0, 0.13), (0.3, 0.1)])
 def test_lag_and_dead_time_are_told_apart(car, lag, delay):
     found = identified(car(lag=lag, delay=delay)).model
     assert found.lag == pytest.approx(lag, rel=0.05, abs=0.002)

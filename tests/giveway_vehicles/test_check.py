@@ -48,21 +48,17 @@ def test_a_car_with_its_profile_passes(checked, zoo, tmp_path):
 
 def test_a_fault_comes_with_the_line_that_mends_it(checked, zoo, tmp_path):
     path = zoo.car(spoken={"force": (-1.0, 0.0)})
-    code, out, _err = checked(path, "--profile", path.with_suffix(".toml"))
+    code, out, _ = checked(path, "--profile", path.with_suffix(".toml"))
     assert code == 1
     assert "set `gain = -1.0` in [inputs.force]" in out
     assert "failed" in out
-
-
-def test_the_line_mends_it(checked, zoo, tmp_path):
-    path = zoo.car(spoken={"force": (-1.0, 0.0)})
     text = path.with_suffix(".toml").read_text(encoding="utf-8")
     mended = tmp_path / "mended.toml"
     mended.write_text(
         text.replace("[inputs.force]\n", "[inputs.force]\ngain = -1.0\n"), encoding="utf-8"
     )
     code, out, err = checked(path, "--profile", mended)
-    assert code == 0, mended.read_text(encoding="utf-8") + out + err
+    assert code == 0, out + err
 
 
 @pytest.mark.parametrize("behaviour", ["segfault", "nan"])
