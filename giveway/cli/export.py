@@ -9,7 +9,7 @@ from rich.console import Console
 from fmus.controller_export import export_controller
 from fmus.controller_parameters import CONTROLLER_FILES, ControllerParameters
 from fmus.errors import FmuError
-from giveway.assembly import _time_step, _whole_milliseconds
+from giveway.assembly import control_step
 from giveway.cli.run import layers_of
 from giveway.drivers import make_regulator
 from giveway.errors import ConfigError, ControlError, ResultsError
@@ -51,8 +51,7 @@ def export_command(
         msg = f"--fmi {fmi}: expected {' or '.join(CONTROLLER_FILES)}"
         raise ConfigError(msg)
     effective, found = load(layers_of(scenario, config, settings))
-    step_length = effective.sumo.step_length or read_scenario(found.config_file).step_length
-    time_step = _time_step(effective.time_step, _whole_milliseconds(step_length))
+    time_step = control_step(effective, read_scenario(found.config_file))
     parameters = _of_all(effective, time_step)
     _check_file(out, force=force)
     try:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from giveway.cli import fail
-from giveway.errors import GivewayError
+from giveway.errors import ConfigError, GivewayError
 
 _Fmu = Annotated[Path, typer.Argument(help="The FMU (.fmu).")]
 _Profile = Annotated[
@@ -96,14 +96,26 @@ def _identify(
     step: _Step = 0.05,
     horizon: Annotated[int, typer.Option(help="Of the MPC in steps.", min=2, max=200)] = 15,
     force_limit: _Limit = 8000.0,
+    speeds: Annotated[
+        str, typer.Option(help="Speeds in m/s that the tests start from, comma-separated.")
+    ] = "0,2,4,8,12",
     picture: Annotated[
-        Path | None, typer.Option(help="Measured against fitted: .png, .svg or .pdf.")
+        Path | None,
+        typer.Option(
+            help="Measured against fitted (default results/FMU_identify/FMU_identify.png)."
+        ),
     ] = None,
     force: _Force = False,
 ) -> None:
     """Estimate M, alpha and the actuator's lag by step tests, for the controller."""
     from giveway.cli.fmu_identify import identify_command
 
+    try:
+        starts = [float(part) for part in speeds.split(",")]
+    except ValueError:
+        message = f"--speeds {speeds}: expected numbers like 0,4,8 [m/s]"
+        raise typer.Exit(fail(message, ConfigError.exit_code)) from None
+    name = f"{fmu.stem}_identify"
     code = identify_command(
         fmu,
         profile,
@@ -111,7 +123,8 @@ def _identify(
         step=step,
         horizon=horizon,
         force_limit=force_limit,
-        picture=picture,
+        speeds=starts,
+        picture=picture or Path("results") / name / f"{name}.png",
         force=force,
     )
     raise typer.Exit(code)
