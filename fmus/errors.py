@@ -45,6 +45,10 @@ class FmuCrashError(FmuStepError):
     """The FMU's process died, or hung and was ended."""
 
 
+class FmuStartCrashError(FmuCrashError):
+    """That happened before its first step."""
+
+
 class FmuStateError(FmuError):
     """A call that the vehicle's or the FMU's present state does not allow."""
 

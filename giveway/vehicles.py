@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from fmus import (
     FmuError,
     FmuOutputError,
+    FmuStartCrashError,
     Vehicle,
     VehicleProfile,
     bundled_fmu,
@@ -132,6 +133,8 @@ def _require_converged(
             force=min(_CHECK_FORCE, config.mpc.force_limit),
             start_speed=DEFAULT_SPEED if speed is None else speed,
         )
+    except FmuStartCrashError:
+        raise  # there will be no rows; and a hang is not to be waited for twice
     except FmuError:
         return
     if result.problem:

@@ -14,6 +14,7 @@ from fmus.errors import (
     FmuCrashError,
     FmuError,
     FmuOutputError,
+    FmuStartCrashError,
     FmuStateError,
     FmuStepError,
 )
@@ -212,7 +213,8 @@ class IsolatedVehicle:
         else:
             reason = f"the FMU's process wrote into giveway's connection {when}{death.last_words}"
             advice = "killed; report it to the FMU's maker"
-        return FmuCrashError(f"{self.path}: {reason}; {advice}")
+        kind = FmuCrashError if what == STEP else FmuStartCrashError
+        return kind(f"{self.path}: {reason}; {advice}")
 
     def _end(self) -> None:
         """End the process, if there is one, in peace if it is well."""
