@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isfinite
 
-_DRIVEN = 200.0  # [N] a car that does not answer this much is stuck
+DRIVEN = 200.0  # [N] a car that does not answer this much is stuck
 
 
 class Guard:
@@ -69,13 +69,13 @@ class Guard:
         """A warning about a state that stands still though it is driven; empty if there is none.
 
         Args:
-            changed: whether any output has changed in this step.
+            changed: whether the motion has answered in this step.
             force: held over it [N].
             speed: [m/s].
             step: [s].
             at: time [s].
         """
-        if changed or (speed == 0.0 and force < _DRIVEN) or abs(force) < _DRIVEN:
+        if changed or (speed == 0.0 and force < DRIVEN) or abs(force) < DRIVEN:
             self._frozen = 0.0
             return ""
         self._frozen += step

@@ -6,7 +6,7 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from fmus.errors import FmuOutputError
-from fmus.guards import Guard
+from fmus.guards import DRIVEN, Guard
 
 if TYPE_CHECKING:
     from fmus.preparation import Prepared
@@ -33,7 +33,7 @@ class Motion:
         wiring = prepared.wiring
         self.position = self.speed = self.acceleration = 0.0
         self.warnings: list[str] = []
-        self.names = _names(wiring)
+        self.names = names_of(wiring)
         self._path = prepared.path
         self._wires = wiring.outputs
         self._place = wiring.output("position")
@@ -43,6 +43,7 @@ class Motion:
         self._limit = prepared.speed_limit
         self._jump = prepared.position_jump
         self._guard = Guard(self._limit, self._jump, prepared.frozen_time, self.names)
+        self._answered = 0.0  # [N] under which the speed last changed
         self._origin = 0.0  # [m] where the FMU's own position is 0
 
     @property
@@ -88,14 +89,19 @@ class Motion:
         position = led = self.position + 0.5 * duration * (before + speed)
         if place is not None:
             position = wires[place].scale * outputs[place] + wires[place].shift - self._origin
-        unchanged = speed == before and position == self.position
+        if place is None:  # cruising: its speed tells nothing until the force is another one
+            changed = speed != before or abs(force - self._answered) < DRIVEN
+        else:
+            changed = speed != before or position != self.position
+        if speed != before:
+            self._answered = force
         self.speed, self.position = speed, position
         if rate is not None:
             self.acceleration = wires[rate].scale * outputs[rate] + wires[rate].shift
         else:
             self.acceleration = (speed - before) / duration
         self._judge(position - led, 0.5 * duration * abs(speed - before), time)
-        self._note(self._guard.watch(not unchanged, force, speed, duration, time))
+        self._note(self._guard.watch(changed, force, speed, duration, time))
         if speed < _REVERSING:
             backwards = f"{self.names['speed']} = {speed:.3g} m/s at {time:.10g} s: it reverses"
             self._note(self._guard.once("reverse", backwards))
@@ -105,7 +111,8 @@ class Motion:
         good = (
             -self._limit <= self.speed <= self._limit
             and abs(jump) <= self._jump + slack
-            and isfinite(self.position + self.acceleration)
+            and isfinite(self.position)
+            and isfinite(self.acceleration)
         )
         if not good:
             problem = self._guard.fault(*self.state, jump, time)
@@ -127,7 +134,7 @@ class Motion:
             self.warnings.append(f"{self._path.name}: {warning}")
 
 
-def _names(wiring: Wiring) -> dict[str, str]:
+def names_of(wiring: Wiring) -> dict[str, str]:
     """What the FMU calls the quantities of the motion."""
     names = {}
     for role in ("speed", "position", "acceleration"):

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fmus.errors import FmuProfileError
 
 _FIT = 1e-9  # relative error of a whole number of steps
+_MOST = 1_000_000  # substeps: more would take minutes
 
 
 @dataclass(frozen=True)
@@ -28,10 +29,16 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
     """The pace for a control step [s] and the FMU's own step [s], None: the same.
 
     Raises:
-        FmuProfileError: neither is a whole multiple of the other.
+        FmuProfileError: neither is a whole multiple of the other, or there are too many substeps.
     """
     if fmu_step is None:
         return Pace(control_step)
+    if fmu_step * _MOST < control_step:
+        msg = (
+            f"an FMU step of {fmu_step:g} s is more than {_MOST} times smaller than the control "
+            f"step of {control_step:g} s; change step in [fmu]"
+        )
+        raise FmuProfileError(msg)
     substeps = max(1, round(control_step / fmu_step))
     if abs(substeps * fmu_step - control_step) <= _FIT * control_step:
         return Pace(control_step / substeps, substeps=substeps)

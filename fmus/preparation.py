@@ -7,7 +7,7 @@ prepared can be handed to another process.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import inf, isfinite
+from math import inf, isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -179,24 +179,37 @@ def unpack(prepared: Prepared, folder: Path) -> None:
 
 def _pace(path: Path, wanted: float | None, interface: Interface, step_size: float) -> Pace:
     fixed = interface.fixed_internal_step
-    if wanted is None and fixed is not None:
-        whole = round(step_size / fixed)
-        if whole < 1 or abs(whole * fixed - step_size) > 1e-9 * step_size:
-            wanted = fixed
+    if wanted is None and fixed is not None and not _divides(fixed, step_size):
+        wanted = fixed
+        if not _divides(step_size, fixed):
+            msg = (
+                f"{path}: the FMU has a fixed step of {fixed:g} s, which does not fit the control "
+                f"step of {step_size:g} s; expected a whole part or multiple of it: change "
+                "--time-step, or export the model with another step"
+            )
+            raise FmuProfileError(msg)
     try:
         return make_pace(step_size, wanted)
     except FmuProfileError as error:
         raise FmuProfileError(f"{path}: {error}") from None
 
 
+def _divides(part: float, whole: float) -> bool:
+    """Whether ``whole`` is a multiple of ``part``, as far as numbers of seconds tell."""
+    if part < 1e-9 * whole:
+        return True  # finer than anything that can be told
+    return part <= whole * (1 + 1e-9) and abs(round(whole / part) * part - whole) <= 1e-9 * whole
+
+
 def _bounds(wiring: Wiring) -> tuple[Bound, ...]:
     return tuple(
         Bound(
             index,
-            -inf if variable.minimum is None else variable.minimum,
-            inf if variable.maximum is None else variable.maximum,
+            -inf if low is None or isnan(low) else low,
+            inf if high is None or isnan(high) else high,
         )
         for index, wired in enumerate(wiring.inputs)
         for variable in (wired.channel.variable,)
-        if variable.minimum is not None or variable.maximum is not None
+        for low, high in ((variable.minimum, variable.maximum),)
+        if (low is not None or high is not None) and (low is None or high is None or low <= high)
     )

@@ -8,9 +8,10 @@ fits an FMU is checked by :mod:`fmus.wiring`.
 from __future__ import annotations
 
 import tomllib
+from math import isfinite
 from typing import TYPE_CHECKING, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from fmus.errors import FmuProfileError
 
@@ -171,10 +172,44 @@ class VehicleProfile(Table):
     inverse_map: InverseMap = InverseMap()
     model: FittedModel | None = None
 
+    @field_validator("parameters", mode="before")
+    @classmethod
+    def _flat(cls, values: Any) -> Any:
+        """An unquoted ``vehicle.mass = 1`` is a table in TOML; here it is the variable's name."""
+        if not isinstance(values, dict):
+            return values
+        flat: dict[str, Any] = {}
+        tables = [("", values)]
+        while tables:
+            prefix, table = tables.pop()
+            for key, value in table.items():
+                name = f"{prefix}{key}"
+                if isinstance(value, dict):
+                    tables.append((f"{name}.", value))
+                elif not _is_value(value):
+                    expected = "a finite number, true, false, text, or a list of finite numbers"
+                    msg = f"{name} = {str(value)[:60]}: expected {expected}"
+                    raise ValueError(msg)
+                else:
+                    flat[name] = value
+        return flat
+
     def kind(self, offered: tuple[Kind, ...]) -> Kind:
         """The kind to run among those that the FMU offers (Co-Simulation first)."""
         wanted = self.fmu.kind
         return next((kind for kind in offered if kind == wanted), offered[0])
+
+
+def _is_value(value: object) -> bool:
+    if isinstance(value, list):
+        return all(_is_number(item) for item in value)
+    return isinstance(value, bool | str) or _is_number(value)
+
+
+def _is_number(value: object) -> bool:
+    if isinstance(value, int):
+        return not isinstance(value, bool) and abs(value) < 1 << 64
+    return isinstance(value, float) and isfinite(value)
 
 
 def read_profile(path: Path) -> VehicleProfile:

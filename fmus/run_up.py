@@ -34,7 +34,7 @@ def run_up(vehicle: VehicleFmu, speed: float) -> float:
             integral += error * h / (_RESPONSE * _INTEGRATION)
         vehicle.step(mass * acceleration + friction * speed)
         settled = settled + h if abs(speed - vehicle.speed) <= _NEAR else 0.0
-        if settled >= _SETTLED:
+        if settled >= _SETTLED and vehicle.between_steps:
             return vehicle.time
     msg = (
         f"{vehicle.path}: does not reach its initial speed of {speed:g} m/s within {_LIMIT:g} s "

@@ -15,17 +15,14 @@ from fmus.instance import STATUS_NAMES, WARNING
 from fmus.motion import Motion
 from fmus.pace import between
 from fmus.preparation import Prepared, prepare, unpack
-from fmus.run_up import run_up
+from fmus.starting import reach, require_place, start_values
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
     from types import TracebackType
 
-    from fmus.model import Channel
     from fmus.profile import Value, VehicleProfile
-
-_START_FIT = 0.02  # [m/s], and share, by which the first speed may differ from the one asked for
 
 
 class Vehicle(Protocol):
@@ -187,7 +184,7 @@ class VehicleFmu:
         self.time = 0.0
         wiring = self.prepared.wiring
         self._instance.start(
-            self._start_values(position, speed),
+            start_values(self.prepared, position, speed),
             [wire.channel for wire in wiring.inputs],
             [wire.channel for wire in wiring.outputs],
         )
@@ -199,63 +196,33 @@ class VehicleFmu:
         self._refusal = ""
         self._show(motion)
         try:
-            self._reach(speed)
-        except FmuStartError:
+            self._reach(position, speed)
+        except BaseException:
             self._fail()
             raise
-        if wiring.initial_position is None or wiring.output("position") is None or self._earlier:
-            motion.count_from(position)
-        self._show(motion)
         self._ends = ((0.0, 0.0), (self.position, self.speed))
 
-    def _start_values(self, position: float, speed: float) -> dict[Channel, Value]:
-        """What the FMU is to start with; its inputs are those of no force."""
+    def _reach(self, position: float, speed: float) -> None:
+        """Be where and as fast as asked for, or get there before time 0."""
+        duration = reach(self, speed)
+        if duration is not None:
+            self._earlier, self._steps = self._steps, 0
+            self.time = 0.0
+            self.warnings.append(
+                f"{self.path.name}: no parameter for the initial speed: driven up to "
+                f"{self.speed:.3g} m/s in {duration:.3g} s before the start"
+            )
         wiring = self.prepared.wiring
-        at_rest = memoryview(bytearray(8 * len(wiring.inputs))).cast("d")
-        self._command.apply(0.0, speed, at_rest)
-        values: dict[Channel, Value] = {}
-        for wire, value in zip(wiring.inputs, at_rest, strict=True):
-            if wire.channel.variable.settable and wire.channel.variable.is_real:
-                values[wire.channel] = value
-        values |= wiring.start_values
-        for initial, value in (
-            (wiring.initial_position, position),
-            (wiring.initial_speed, speed),
-        ):
-            if initial is not None:
-                values[initial.channel] = initial.to_raw(value)
-        return values
+        if wiring.initial_position is None or wiring.output("position") is None or self._earlier:
+            self._motion.count_from(position)
+        else:
+            require_place(self, position)
+        self._show(self._motion)
 
-    def _reach(self, speed: float) -> None:
-        """Be at the speed asked for, or get there before time 0.
-
-        Raises:
-            FmuStartError: it cannot be had.
-        """
-        if abs(self.speed - speed) <= max(_START_FIT, _START_FIT * abs(speed)):
-            return
-        name, initial = self._motion.names["speed"], self.prepared.wiring.initial_speed
-        if initial is not None:
-            msg = (
-                f"{self.path}: {initial.channel.name} was set to start at {speed:g} m/s, but "
-                f"{name} = {self.speed:.6g} m/s; check the units of both, or leave out "
-                "[initial.speed]"
-            )
-            raise FmuStartError(msg)
-        if not self.prepared.run_up or speed < 0.0:
-            msg = (
-                f"{self.path}: {name} starts at {self.speed:.6g} m/s and not at {speed:g} m/s; "
-                "name the FMU's parameter for it, [initial.speed] variable = ..., or start at this "
-                "speed (--ego-initial-speed)"
-            )
-            raise FmuStartError(msg)
-        duration = run_up(self, speed)
-        self._earlier, self._steps = self._steps, 0
-        self.time = 0.0
-        self.warnings.append(
-            f"{self.path.name}: no parameter for the initial speed: driven up to {self.speed:.3g} "
-            f"m/s in {duration:.3g} s before the start"
-        )
+    @property
+    def between_steps(self) -> bool:
+        """Not within a step of the FMU that is longer than the controller's."""
+        return (self._earlier + self._steps) % self._pace.stretch == 0
 
     # --- steps ---------------------------------------------------------------------------------
 
@@ -321,7 +288,7 @@ class VehicleFmu:
         if not self.prepared.wiring.interface.saves_state:
             msg = f"{self.path}: the FMU cannot save its state; expected canGetAndSetFMUstate"
             raise FmuStateError(msg)
-        if self._steps % self._pace.stretch:
+        if not self.between_steps:
             msg = f"{self.path}: within a step of the FMU its state cannot be saved; step on"
             raise FmuStateError(msg)
         state = SavedState(self._steps, self._instance.save(), self._motion.state)

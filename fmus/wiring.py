@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
-from difflib import get_close_matches
-from math import isfinite
 from typing import TYPE_CHECKING
 
 from fmus import units
+from fmus.channels import find_channel, listed, start_channels
 from fmus.errors import FmuInterfaceError, FmuProfileError, FmuVariableError
 from fmus.model import NUMERIC_TYPES, Channel, Kind, Unit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from fmus.model import Dimension, Interface, Model, Variable
-    from fmus.profile import Axis, Value, VehicleProfile
+    from fmus.profile import Axis, Inputs, Value, VehicleProfile
 
 _QUANTITIES = {  # dimension and the unit to suggest, by role
     "force": (units.FORCE, "N"),
@@ -39,8 +37,7 @@ _INPUTS = (
     "speed_setpoint",
 )
 _OUTPUTS = ("speed", "position", "acceleration")
-_ELEMENT = re.compile(r"(?P<name>.*)\[(?P<number>\d+)\]")
-_SHOWN = 8  # variables that a message lists
+_LARGEST = 1e12  # SI per raw unit, or its inverse, or an offset: beyond it a number is mistyped
 
 
 @dataclass(frozen=True)
@@ -93,14 +90,10 @@ def wire(
         FmuVariableError: a variable is missing, or cannot be used as the profile wants.
         FmuProfileError: a unit is missing or of the wrong dimension.
     """
-    inputs, outputs, initial = profile.inputs, profile.outputs, profile.initial
+    outputs, initial = profile.outputs, profile.initial
     return Wiring(
         interface=_interface(model, profile.fmu.kind),
-        inputs=tuple(
-            _wire(model, "inputs", role, axis)
-            for role in _INPUTS
-            if (axis := getattr(inputs, role)) is not None
-        ),
+        inputs=_input_wires(model, profile.inputs),
         outputs=tuple(
             _wire(model, "outputs", role, axis)
             for role in _OUTPUTS
@@ -108,8 +101,25 @@ def wire(
         ),
         initial_speed=_initial(model, "speed", initial.speed),
         initial_position=_initial(model, "position", initial.position),
-        start_values=_start_values(model, {**profile.parameters, **(start_values or {})}),
+        start_values=start_channels(model, {**profile.parameters, **(start_values or {})}),
     )
+
+
+def _input_wires(model: Model, inputs: Inputs) -> tuple[Wire, ...]:
+    wires: dict[Channel, Wire] = {}
+    for role in _INPUTS:
+        axis = getattr(inputs, role)
+        if axis is None:
+            continue
+        found = _wire(model, "inputs", role, axis)
+        if found.channel in wires:
+            msg = (
+                f"{model.path}: [inputs.{role}] variable '{found.channel.name}' is that of "
+                f"[inputs.{wires[found.channel].role}] already; expected another one"
+            )
+            raise FmuVariableError(msg)
+        wires[found.channel] = found
+    return tuple(wires.values())
 
 
 def _initial(model: Model, role: str, axis: Axis | None) -> Wire | None:
@@ -131,16 +141,16 @@ def _interface(model: Model, wanted: str | None) -> Interface:
 
 
 def _wire(model: Model, table: str, role: str, axis: Axis) -> Wire:
-    channel = _channel(model, f"[{table}.{role}]", axis.variable)
+    channel = find_channel(model, f"[{table}.{role}]", axis.variable)
     variable = channel.variable
     problem = ""
     if variable.kind not in NUMERIC_TYPES:
         problem = f"is {variable.kind}; expected a number"
     elif table == "inputs" and not _is_input(variable):
-        fitting = _listed(v.name for v in model.variables.values() if v.causality == "input")
+        fitting = listed(v.name for v in model.variables.values() if v.causality == "input")
         problem = f"is {variable.causality}; expected an input: {fitting}"
     elif table == "outputs" and not _is_output(variable):
-        fitting = _listed(v.name for v in model.variables.values() if v.causality == "output")
+        fitting = listed(v.name for v in model.variables.values() if v.causality == "output")
         problem = f"is {variable.causality}; expected an output: {fitting}"
     elif table == "initial" and not variable.settable:
         problem = f"is {variable.causality} and cannot be set before the start; leave it out"
@@ -159,31 +169,6 @@ def _is_output(variable: Variable) -> bool:
     return changes and variable.causality in {"output", "local", "internal"}
 
 
-def _channel(model: Model, place: str, name: str) -> Channel:
-    """The variable, or the element of an array, that is called ``name``."""
-    variables = model.variables
-    element = _ELEMENT.fullmatch(name)
-    if name in variables:
-        variable = variables[name]
-        if variable.size == 1:
-            return Channel(variable)
-        msg = (
-            f"{model.path}: {place} variable '{name}' is an array of {variable.size}; name one "
-            f"element, '{name}[1]' to '{name}[{variable.size}]'"
-        )
-        raise FmuVariableError(msg)
-    if element is not None and element["name"] in variables:
-        variable, number = variables[element["name"]], int(element["number"])
-        if variable.shape and 1 <= number <= variable.size:
-            return Channel(variable, number - 1)
-        msg = f"{model.path}: {place} variable '{name}': '{variable.name}' has {variable.size} "
-        raise FmuVariableError(f"{msg}element(s), counted from 1")
-    close = get_close_matches(name, variables, n=1)
-    hint = f"did you mean '{close[0]}'?" if close else f"it has {_listed(variables)}"
-    msg = f"{model.path}: {place} no variable '{name}' in the FMU; {hint}"
-    raise FmuVariableError(msg)
-
-
 def _converted(model: Model, table: str, role: str, axis: Axis, channel: Channel) -> Wire:
     """With the unit's factor and offset, and the user's gain and offset."""
     declared = channel.variable.unit
@@ -196,7 +181,14 @@ def _converted(model: Model, table: str, role: str, axis: Axis, channel: Channel
         raise FmuProfileError(f"{here} {problem}, to [{table}.{role}]")
     gain = 1.0 if axis.gain is None else axis.gain
     factor, offset = (unit.factor, unit.offset) if unit is not None else (1.0, 0.0)
-    return Wire(role, channel, gain * factor, gain * offset + axis.offset, name)
+    scale, shift = gain * factor, gain * offset + axis.offset
+    if not (1.0 / _LARGEST <= abs(scale) <= _LARGEST and abs(shift) <= _LARGEST):
+        msg = (
+            f"{model.path}: [{table}.{role}] variable '{channel.name}' = 1 would be {scale:g} "
+            f"{usual} with an offset of {shift:g}; check unit, gain and offset of [{table}.{role}]"
+        )
+        raise FmuProfileError(msg)
+    return Wire(role, channel, scale, shift, name)
 
 
 def _unit_problem(unit: Unit | None, axis: Axis, dimension: Dimension, usual: str) -> str:
@@ -218,67 +210,3 @@ def _unit_problem(unit: Unit | None, axis: Axis, dimension: Dimension, usual: st
         f"is in '{unit.name}', {found}, and not {wanted}; name another variable, or add the line "
         f"gain = ... ({usual} per SI unit of {found})"
     )
-
-
-def _start_values(model: Model, values: Mapping[str, Value]) -> dict[Channel, Value]:
-    """The start values by channel; a whole array stands as its first element.
-
-    Raises:
-        FmuVariableError: one is missing, cannot be set, or not to this value.
-    """
-    return {start_channel(model, name, value): value for name, value in values.items()}
-
-
-def start_channel(model: Model, name: str, value: Value) -> Channel:
-    """The variable for a start value, which must be fit for it.
-
-    Raises:
-        FmuVariableError: it is missing, cannot be set, or not to this value.
-    """
-    whole = name in model.variables and isinstance(value, list)
-    channel = Channel(model.variables[name]) if whole else _channel(model, "start value", name)
-    variable = channel.variable
-    problem = ""
-    if not variable.settable:
-        problem = f"'{name}' is {variable.causality}; expected a parameter or an input"
-    elif isinstance(value, list):
-        if len(value) != variable.size:
-            problem = f"expected {variable.size} number(s)"
-    else:
-        problem = _misfit(variable, value)
-    if problem:
-        msg = f"{model.path}: start value {name} = {value}: {problem}"
-        raise FmuVariableError(msg)
-    return channel
-
-
-def _misfit(variable: Variable, value: bool | float | str) -> str:
-    """What is wrong with a start value; empty if nothing is."""
-    if variable.is_boolean:
-        return "" if isinstance(value, bool) else "expected true or false"
-    if variable.kind == "String":
-        return "" if isinstance(value, str) else "expected text"
-    if variable.is_integer:
-        whole = isinstance(value, int) and not isinstance(value, bool)
-        return "" if whole else "expected a whole number"
-    if not variable.is_real:
-        return f"'{variable.name}' is {variable.kind}; expected a number, text, true or false"
-    if isinstance(value, bool | str) or not isfinite(value):
-        return "expected a finite number"
-    return _out_of_range(variable, value)
-
-
-def _out_of_range(variable: Variable, value: float) -> str:
-    low, high = variable.minimum, variable.maximum
-    allowed = ""
-    if low is not None and value < low:
-        allowed = f"at least {low:g}"
-    elif high is not None and value > high:
-        allowed = f"at most {high:g}"
-    return f"expected {allowed} {variable.unit}".rstrip() if allowed else ""
-
-
-def _listed(names: Iterable[str]) -> str:
-    names = list(names)
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return (", ".join(names[:_SHOWN]) + more) or "the FMU has none"

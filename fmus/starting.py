@@ -1,0 +1,92 @@
+"""How a vehicle comes to its first state: what its FMU is told, and whether it obeys."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fmus.errors import FmuOutputError, FmuStartError, FmuStepError
+from fmus.motion import Motion, names_of
+from fmus.run_up import run_up
+
+if TYPE_CHECKING:
+    from fmus.model import Channel
+    from fmus.preparation import Prepared
+    from fmus.profile import Value
+    from fmus.vehicle import VehicleFmu
+
+_FIT = 0.02  # [m/s] or [m], and share, by which the first state may differ from the one asked for
+
+
+def start_values(prepared: Prepared, position: float, speed: float) -> dict[Channel, Value]:
+    """What the FMU is to start with; its inputs are those of no force."""
+    wiring = prepared.wiring
+    at_rest = memoryview(bytearray(8 * len(wiring.inputs))).cast("d")
+    prepared.command.apply(0.0, speed, at_rest)
+    Motion(prepared).keep_bounds(at_rest)
+    values: dict[Channel, Value] = {}
+    for wire, value in zip(wiring.inputs, at_rest, strict=True):
+        if wire.channel.variable.settable and wire.channel.variable.is_real:
+            values[wire.channel] = value
+    values |= wiring.start_values
+    for initial, value in ((wiring.initial_position, position), (wiring.initial_speed, speed)):
+        if initial is not None:
+            raw = initial.to_raw(value)
+            values[initial.channel] = round(raw) if initial.channel.variable.is_integer else raw
+    return values
+
+
+def reach(vehicle: VehicleFmu, speed: float) -> float | None:
+    """Be at the speed asked for [m/s], or drive up to it.
+
+    Returns:
+        How long that took [s]; None: the FMU starts at it.
+
+    Raises:
+        FmuStartError: the speed cannot be had.
+        FmuStepError: the FMU failed on the way there.
+        FmuOutputError: likewise.
+    """
+    if _fits(vehicle.speed, speed):
+        return None
+    wiring = vehicle.prepared.wiring
+    name = names_of(wiring)["speed"]
+    if wiring.initial_speed is not None:
+        msg = (
+            f"{vehicle.path}: {wiring.initial_speed.channel.name} was set to start at {speed:g} "
+            f"m/s, but {name} = {vehicle.speed:.6g} m/s; check the units of both, or leave out "
+            "[initial.speed]"
+        )
+        raise FmuStartError(msg)
+    if not vehicle.prepared.run_up or speed < 0.0:
+        msg = (
+            f"{vehicle.path}: {name} starts at {vehicle.speed:.6g} m/s and not at {speed:g} m/s; "
+            "name the FMU's parameter for it, [initial.speed] variable = ..., or start at this "
+            "speed (--ego-initial-speed)"
+        )
+        raise FmuStartError(msg)
+    try:
+        return run_up(vehicle, speed)
+    except (FmuStepError, FmuOutputError) as error:
+        msg = f"{error} (before the start, driving up to the initial speed of {speed:g} m/s)"
+        raise type(error)(msg) from None
+
+
+def require_place(vehicle: VehicleFmu, position: float) -> None:
+    """Make sure that an FMU with a parameter for its first position [m] is there.
+
+    Raises:
+        FmuStartError: it is not.
+    """
+    wiring = vehicle.prepared.wiring
+    initial = wiring.initial_position
+    if initial is not None and not _fits(vehicle.position, position):
+        msg = (
+            f"{vehicle.path}: {initial.channel.name} was set to start at {position:g} m, but "
+            f"{names_of(wiring)['position']} = {vehicle.position:.6g} m; check the units of both, "
+            "or leave out [initial.position]"
+        )
+        raise FmuStartError(msg)
+
+
+def _fits(found: float, wanted: float) -> bool:
+    return abs(found - wanted) <= max(_FIT, _FIT * abs(wanted))
