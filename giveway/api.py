@@ -251,7 +251,7 @@ def _mismatches(parts: Parts, egos: Sequence[EgoResult]) -> list[str]:
     """Of vehicles that are not ours and that the controller's model does not describe."""
     foreign = {driver.id: driver for driver in parts.drivers if not driver.description["bundled"]}
     remarks = [
-        mismatch.remark(ego, parts.time_step, model_margin(ego.config))
+        mismatch.remark(ego, parts.time_step, model_margin(ego.config, parts.time_step))
         for ego in egos
         if ego.id in foreign
     ]

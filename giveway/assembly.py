@@ -18,7 +18,7 @@ from giveway.spawn import PREFIX, Spawned, spawn
 from giveway.sumo import SumoSession
 from giveway.sumo_types import all_types, inserted_type
 from giveway.tracks import VehicleShape
-from giveway.vehicles import require_vehicles
+from giveway.vehicles import model_remark, require_vehicles
 from giveway.walkways import WalkNetwork
 from giveway.yielding import Yielding
 from giveway.zone import Zone
@@ -73,6 +73,8 @@ class Parts:
             f"ego '{name}': its {count} stop(s) are left out; the vehicle FMU drives on"
             for name, count in self.sumo.vehicles.dropped_stops.items()
         ]
+        identified = [model_remark(d.config, self.time_step) for d in self.drivers]
+        remarks += [text for text in identified if text]
         remarks += [f"ego '{d.id}': {text}" for d in self.drivers for text in d.vehicle.warnings]
         unconnected = 0 if self.exchange is None else self.exchange.unconnected
         if unconnected:

@@ -61,7 +61,7 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator:
             MpcParameters(
                 horizon=config.mpc.horizon,
                 reference_speed=regulation.reference_speed,
-                safe_distance=regulation.safe_distance + model_margin(config),
+                safe_distance=regulation.safe_distance + model_margin(config, time_step),
                 speed_min=config.mpc.speed_min,
                 speed_max=config.mpc.speed_max,
                 force_limit=config.mpc.force_limit,

@@ -29,10 +29,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from contextlib import ExitStack
 
+    from fmus.profile import FittedModel
     from giveway.config import RunConfig
     from giveway.sections import VehicleConfig
 
 _CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
+_SAME_STEP = 1e-6  # relative
 _converged: set[tuple[str, str, float]] = set()  # what has passed the self-check in this process
 _BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
 
@@ -142,17 +144,56 @@ def _require_converged(
     _converged.add(key)
 
 
-def model_margin(config: RunConfig) -> float:
+def model_margin(config: RunConfig, time_step: float) -> float:
     """What the MPC keeps beyond the safe distance [m]: what the identified model is wrong by.
+
+    Over a horizon that is longer than the fit's it grows with the square, as the way under an
+    acceleration that is not accounted for.
+
+    Args:
+        config: of one ego.
+        time_step: of the co-simulation [s].
 
     Raises:
         VehicleError: the profile cannot be read.
     """
+    model = _model(config)
+    if model is None:
+        return 0.0
+    return model.position_error * max(1.0, config.mpc.horizon * time_step / model.horizon) ** 2
+
+
+def model_remark(config: RunConfig, time_step: float) -> str:
+    """What the controller knows of its vehicle by identification; empty if nothing.
+
+    Args:
+        config: of one ego.
+        time_step: of the co-simulation [s].
+    """
+    model = _model(config)
+    if model is None:
+        return ""
+    settings = config.vehicle
+    text = (
+        f"ego '{config.ego_id}': identified M = {model.mass:.4g} kg, alpha = {model.friction:.4g} "
+        f"N.s/m (R² = {model.r_squared:.3f})"
+    )
+    if (settings.mass, settings.friction) != (model.mass, model.friction):
+        text += f", overruled by M = {settings.mass:g} kg, alpha = {settings.friction:g} N.s/m"
+    if config.controller == "mpc":
+        margin = model_margin(config, time_step)
+        text += f"; the MPC keeps {margin:.2g} m more than the safe distance for its errors"
+    if abs(model.time_step - time_step) > _SAME_STEP * time_step:
+        text += f"; it was fitted for steps of {model.time_step:g} s and not {time_step:g} s"
+    return text
+
+
+def _model(config: RunConfig) -> FittedModel | None:
     try:
         profile = _profile(config.vehicle)
     except FmuError as error:
         raise VehicleError(str(error)) from error
-    return 0.0 if profile is None or profile.model is None else profile.model.position_error
+    return None if profile is None else profile.model
 
 
 def _profile(settings: VehicleConfig) -> VehicleProfile | None:

@@ -89,7 +89,7 @@ def _parameters(config: RunConfig, time_step: float) -> ControllerParameters:
             time_step=time_step,
             reference_speed=pid.reference_speed,
             safe_distance=pid.safe_distance,
-            margin=model_margin(config),
+            margin=model_margin(config, time_step),
             buffer_distance=pid.buffer_distance,
             speed_min=config.mpc.speed_min,
             speed_max=config.mpc.speed_max,
