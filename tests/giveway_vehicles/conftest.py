@@ -71,7 +71,7 @@ def isolated(zoo: Any) -> Iterator[Callable[..., IsolatedVehicle]]:
 def giveway(tmp_path: Path, own_temp: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Run a command line in ``tmp_path``; nothing of it may be left afterwards."""
 
-    def run(*words: object, timeout: float = 120) -> subprocess.CompletedProcess[str]:
+    def run(*words: object, cleans_up: bool = True) -> subprocess.CompletedProcess[str]:
         process = subprocess.Popen(
             [sys.executable, "-m", "giveway", *map(str, words)],
             cwd=tmp_path,
@@ -82,14 +82,14 @@ def giveway(tmp_path: Path, own_temp: Path) -> Callable[..., subprocess.Complete
             start_new_session=True,
         )
         try:
-            out, err = process.communicate(timeout=timeout)
+            out, err = process.communicate(timeout=180)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
             raise
         left = [p for p in psutil.process_iter() if _has_session(p, process.pid)]
         assert not left, left
-        assert not list(own_temp.iterdir())
+        assert not cleans_up or not list(own_temp.iterdir())
         return subprocess.CompletedProcess(process.args, process.returncode, out, err)
 
     return run
