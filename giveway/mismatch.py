@@ -2,39 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from fmus.checking.fitting import fit, prepare
+from fmus.checking.manoeuvres import Trace
+from fmus.checking.prediction import position_errors
 
+if TYPE_CHECKING:
     from giveway.run_result import EgoResult
     from giveway.tracks import EgoTrack
 
-    Array = NDArray[np.float64]
-
-_MOVING = 0.05  # [m/s] below it brakes hold, and the model does not apply
-_ENOUGH = 20  # steps to judge by
 _TOLERATED = 0.05  # [m] over the horizon
-
-
-@dataclass(frozen=True)
-class Mismatch:
-    """How far the model was off.
-
-    Attributes:
-        position_error: [m] 95 % of the predictions over the horizon were closer.
-        speed_error: [m/s] root mean square, one step ahead.
-        mass: M [kg] that fits best; nan if the drive does not tell.
-        friction: alpha [N.s/m] likewise.
-    """
-
-    position_error: float
-    speed_error: float
-    mass: float
-    friction: float
+_SURE = 0.1  # half width of M's 95 % interval, relative, up to which a fit is worth telling
 
 
 def remark(ego: EgoResult, time_step: float, margin: float) -> str:
@@ -46,74 +27,41 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
         margin: the error that its controller allows for [m].
     """
     config = ego.config
+    if config.controller != "mpc" or not len(ego.track.time):
+        return ""  # the PID has no model
     mass, friction = config.vehicle.mass, config.vehicle.friction
-    horizon = config.mpc.horizon
-    found = measure(ego.track, mass, friction, time_step, horizon)
-    if found is None or found.position_error <= max(_TOLERATED, 1.5 * margin):
+    trace = _trace(ego.track, time_step)
+    errors = position_errors(trace, mass, friction, config.mpc.horizon)
+    error = float(np.percentile(errors, 95)) if errors.size else 0.0
+    if not error > max(_TOLERATED, 1.5 * margin):
         return ""
-    fitting = ""
-    if np.isfinite(found.mass):
-        fitting = f" (M = {found.mass:.4g} kg and alpha = {found.friction:.4g} N.s/m fit better)"
     fmu, profile = config.vehicle.fmu, config.vehicle.profile
     named = f" --profile {profile}" if profile else ""
     return (
         f"ego '{ego.id}': the vehicle does not answer as the controller's M = {mass:g} kg, alpha = "
-        f"{friction:g} N.s/m predict: off by up to {found.position_error:.2g} m in "
-        f"{horizon * time_step:.3g} s{fitting}; match them with: giveway fmu identify {fmu}{named} "
-        f"-o {profile or 'car.toml'}"
+        f"{friction:g} N.s/m predict: off by up to {error:.2g} m in "
+        f"{config.mpc.horizon * time_step:.3g} s{_fitting(trace)}; match them with: giveway fmu "
+        f"identify {fmu}{named} -o {profile or 'car.toml'}"
     )
 
 
-def measure(
-    track: EgoTrack, mass: float, friction: float, time_step: float, horizon: int
-) -> Mismatch | None:
-    """Compare a drive with M v' + alpha v = u; None: it does not tell.
+def _trace(track: EgoTrack, time_step: float) -> Trace:
+    """A run's drive, with the way that the speeds add up to in the model's manner.
 
-    Args:
-        track: of the vehicle.
-        mass: M [kg].
-        friction: alpha [N.s/m].
-        time_step: [s].
-        horizon: steps that are predicted at once.
+    Where an FMU adds them up in another one (the exact way of a step is half a change of speed
+    more than forward Euler's), M and alpha are right all the same.
     """
-    v, u, s = track.speed, track.force, track.position
-    moving = np.minimum(v[:-1], v[1:]) > _MOVING
-    if np.count_nonzero(moving) < _ENOUGH:
-        return None
-    change = np.diff(v)
-    error = change - time_step / mass * (u[:-1] - friction * v[:-1])
-    speed_error = float(np.sqrt(np.mean(error[moving] ** 2)))
-    fitted = _fit(v[:-1][moving], u[:-1][moving], change[moving], time_step)
-    return Mismatch(
-        _position_error(v, u, s, mass, friction, time_step, horizon), speed_error, *fitted
+    steps = len(track.speed) - 1
+    way = np.concatenate(([0.0], np.cumsum(time_step * track.speed[:-1])))
+    nothing = np.zeros(steps)
+    return Trace(
+        time_step, track.force[:-1], way, track.speed, track.acceleration, cost=nothing, warnings=()
     )
 
 
-def _position_error(
-    v: Array, u: Array, s: Array, mass: float, friction: float, time_step: float, horizon: int
-) -> float:
-    """The 95th percentile of how far off [m] the model is after ``horizon`` steps of driving."""
-    starts = np.arange(max(0, len(v) - horizon))
-    driving = np.lib.stride_tricks.sliding_window_view(v, horizon + 1).min(axis=1) > _MOVING
-    starts = starts[driving[: len(starts)]]
-    if not len(starts):
-        return 0.0
-    speed, position = v[starts], s[starts]
-    for k in range(horizon):
-        ahead = speed + time_step / mass * (u[starts + k] - friction * speed)
-        position = position + 0.5 * time_step * (speed + ahead)
-        speed = ahead
-    return float(np.percentile(np.abs(position - s[starts + horizon]), 95))
-
-
-def _fit(v: Array, u: Array, change: Array, time_step: float) -> tuple[float, float]:
-    """M and alpha by least squares; nan where the drive does not tell them apart."""
-    nothing = float("nan"), float("nan")
-    A = np.stack([u, -v], axis=1) * time_step
-    solution, _, rank, singular = np.linalg.lstsq(A / np.linalg.norm(A, axis=0), change, rcond=None)
-    if rank < 2 or singular[-1] < 1e-3 * singular[0]:
-        return nothing
-    per_mass, rate = solution / np.linalg.norm(A, axis=0)
-    if not per_mass > 0.0:
-        return nothing
-    return 1.0 / per_mass, max(0.0, rate / per_mass)
+def _fitting(trace: Trace) -> str:
+    """M and alpha that fit better, in brackets; empty where the drive does not tell."""
+    found = fit([prepare(trace)], actuator=False)
+    if found is None or not found.intervals[0] <= _SURE * found.mass:
+        return ""
+    return f" (M = {found.mass:.4g} kg and alpha = {found.friction:.4g} N.s/m fit better)"
