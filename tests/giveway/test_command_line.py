@@ -1,5 +1,6 @@
 """The command line as a user types it: real processes, real SUMO, real signals."""
 
+import contextlib
 import os
 import re
 import signal
@@ -9,6 +10,8 @@ import time
 from pathlib import Path
 
 import pytest
+
+from giveway.heartbeat import Heartbeat
 
 
 def giveway(*words: object, cwd: Path, timeout: float = 300) -> subprocess.CompletedProcess[str]:
@@ -123,6 +126,13 @@ def test_an_unwritable_results_folder_is_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def step_of(journal: Path) -> int:
+    """How far a run is, by its heartbeat."""
+    with contextlib.suppress(OSError):
+        return Heartbeat(journal).read().step
+    return 0
+
+
 def test_ctrl_c_keeps_the_rows_and_exits_130(tmp_path: Path) -> None:
     words = ["--pedestrians", "6000", "--spawn-area", "20,-200,120,-10", "--out", "r"]
     words += ["--ego-travel-distance", "70", "--no-pictures"]
@@ -130,15 +140,15 @@ def test_ctrl_c_keeps_the_rows_and_exits_130(tmp_path: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-u", "-m", "giveway", "run", *words],
         cwd=tmp_path,
+        env=os.environ | {"TMPDIR": str(tmp_path)},  # the journal, to be watched
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
     started = time.monotonic()
-    while not (tmp_path / "r").exists():  # made when the request has been accepted
+    while not any(step_of(journal) > 5 for journal in tmp_path.glob("giveway-journal-*")):
         assert time.monotonic() - started < 200
         time.sleep(0.05)
-    time.sleep(4.0)
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 130

@@ -1,5 +1,6 @@
 """A run whose process dies: the report, the rows, the exit code, on real processes."""
 
+import contextlib
 import json
 import os
 import signal
@@ -11,6 +12,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from giveway.heartbeat import Heartbeat
+
 LONG = ["--pedestrians", "3000", "--spawn-area", "20,-200,120,-10", "--no-pictures"]
 LONG += ["--regulation-reference-speed", "0.1", "--time-limit", "120"]
 
@@ -19,6 +22,7 @@ def start(folder: Path, *words: str) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-m", "giveway", "run", *words, "--out", "r"],
         cwd=folder,
+        env=os.environ | {"TMPDIR": str(folder)},  # the journal, to be watched
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -38,9 +42,14 @@ def child_of(process: subprocess.Popen[str]) -> int:
 
 
 def wait_for_the_loop(folder: Path) -> None:
+    """Until some steps have been done, however busy the machine is."""
     deadline = time.monotonic() + 200
-    while not (folder / "r" / "manifest.json").exists():
+    while True:
         assert time.monotonic() < deadline
+        for journal in folder.glob("giveway-journal-*"):
+            with contextlib.suppress(OSError):
+                if Heartbeat(journal).read().step > 5:
+                    return
         time.sleep(0.05)
 
 
@@ -48,7 +57,6 @@ def test_a_native_crash_keeps_the_rows_and_says_where_it_was(tmp_path: Path) -> 
     process = start(tmp_path, *LONG)
     child = child_of(process)
     wait_for_the_loop(tmp_path)
-    time.sleep(4.0)
     os.kill(child, signal.SIGSEGV)
     _, errors = process.communicate(timeout=120)
     assert process.returncode == 1
