@@ -146,8 +146,8 @@ def _variable(
 
 def _roles(element: Element, kind: str, version: str) -> tuple[str, str]:
     """Causality and variability, with the defaults of the standard (FMI 3: 2.4.7.4)."""
-    causality = element.get("causality", "local")
-    variability = element.get("variability")
+    causality = clean(element.get("causality", "local"), MAX_UNIT)  # it will stand in messages
+    variability = clean(element.get("variability"), MAX_UNIT)
     if version == "1.0":
         if variability == "parameter":
             return "parameter", "fixed"

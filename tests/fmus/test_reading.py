@@ -365,6 +365,10 @@ def test_texts_are_one_line_of_visible_characters(fmi2):
     unit = read_model(fmi2('unit="N"', f'unit="{rude}"')).variables["u"].unit
     assert unit.isprintable()
     assert len(unit) <= 60
+    odd = read_model(fmi2('causality="input"', f'causality="{rude}" variability="{rude}"'))
+    for text in (odd.variables["u"].causality, odd.variables["u"].variability):
+        assert text.isprintable()
+        assert len(text) <= 60
 
 
 # ---- interfaces that cannot be run ----
