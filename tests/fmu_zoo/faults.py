@@ -45,7 +45,7 @@ FAULTS: Final = {
     "huge": "its speed is 1e300",
     "jump": "its position is 50 m further",
     "frozen": "nothing moves any more",
-    "chatter": "Model Exchange: it always needs one more event iteration",
+    "chatter": "in 'event': it always needs one more event iteration",
     "memory": "takes 300 MB",
     # it talks
     "message_latin1": "a message in Latin-1",

@@ -36,6 +36,7 @@ typedef struct {
     bool held;            /* the brake holds the standing car */
     bool shifted;         /* into the second gear */
     bool frozen;          /* nothing moves any more */
+    bool chatters;        /* every event iteration needs another */
     bool undefined;       /* after a discard that has to be undone */
     double added[QUANTITY_COUNT]; /* what a fault adds to an output: also NaN */
     double rate_fault;    /* what a fault adds to the derivatives */

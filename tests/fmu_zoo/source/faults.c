@@ -165,7 +165,10 @@ static Status frozen(Instance *self, FaultEntry *fault, double time, double step
     return OK;
 }
 
-static Status chatter(Instance *self, FaultEntry *fault, double time, double step) { return OK; } /* fmi?.c looks for it */
+static Status chatter(Instance *self, FaultEntry *fault, double time, double step) {
+    self->car.chatters = true;
+    return OK;
+}
 
 static Status refuse_start_value(Instance *self, FaultEntry *fault, double time, double step) { return OK; } /* instance.c */
 

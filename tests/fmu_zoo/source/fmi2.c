@@ -166,7 +166,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
     Status status = misbehave(self, AT_EVENT, self->car.time, 0.0);
     double shift = self->car.value[Q_gear_time];
     info->valuesOfContinuousStatesChanged = car_event(&self->car);
-    info->newDiscreteStatesNeeded = has_fault(self, "chatter");
+    info->newDiscreteStatesNeeded = self->car.chatters;
     info->terminateSimulation = self->ended;
     info->nominalsOfContinuousStatesChanged = fmi2False;
     info->nextEventTimeDefined = !self->car.shifted && shift > self->car.time;

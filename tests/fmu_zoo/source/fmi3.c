@@ -166,7 +166,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *needUpdate, fmi
     Status status = misbehave(self, AT_EVENT, self->car.time, 0.0);
     double shift = self->car.value[Q_gear_time];
     *valuesChanged = car_event(&self->car);
-    *needUpdate = has_fault(self, "chatter");
+    *needUpdate = self->car.chatters;
     *terminateSimulation = self->ended;
     *nominalsChanged = fmi3False;
     *nextEventTimeDefined = !self->car.shifted && shift > self->car.time;
