@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
 from fmus.errors import FmuOutputError
@@ -63,6 +63,7 @@ class Motion:
             self.acceleration = wires[self._rate].to_si(outputs[self._rate])
         if self._place is not None:
             self.position = wires[self._place].to_si(outputs[self._place])
+        self._answered = nan if self.speed else 0.0  # at a speed: whatever comes first
         self._judge(0.0, 0.0, 0.0)
 
     def count_from(self, position: float) -> None:
@@ -89,12 +90,12 @@ class Motion:
         position = led = self.position + 0.5 * duration * (before + speed)
         if place is not None:
             position = wires[place].scale * outputs[place] + wires[place].shift - self._origin
+        if speed != before or isnan(self._answered):
+            self._answered = force
         if place is None:  # cruising: its speed tells nothing until the force is another one
             changed = speed != before or abs(force - self._answered) < DRIVEN
         else:
             changed = speed != before or position != self.position
-        if speed != before:
-            self._answered = force
         self.speed, self.position = speed, position
         if rate is not None:
             self.acceleration = wires[rate].scale * outputs[rate] + wires[rate].shift

@@ -258,5 +258,6 @@ def _explained(error: Any) -> str:
     if error["type"] == "missing":
         return f"{place}: missing; add it (docs/vehicles.md)"
     if error["type"] == "value_error":
-        return f"{place}: {error['ctx']['error']}"
+        table = ".".join((*tables, key))
+        return f"[{table}]: {error['ctx']['error']}" if table else str(error["ctx"]["error"])
     return f"{place} = {error['input']!r}: {str(error['msg']).removeprefix('Input ')}"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import zipfile
 from contextlib import ExitStack
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fmus import bundled_fmu, fmi
+from fmus import VehicleFmu, bundled_fmu, fmi, make_profile
 from fmus.fmi.reading import read_model
 from fmus.model import Channel, Kind
 
@@ -109,3 +109,50 @@ def run(load, start) -> Callable[..., Instance]:
         return instance
 
     return ran
+
+
+@pytest.fixture
+def open_car(zoo) -> Iterator[Callable[..., VehicleFmu]]:
+    """Open a car of the zoo in this process; it is closed after the test.
+
+    Keys of its profile's tables can be changed (None: left out). ``like``: the car whose profile
+    it has.
+    """
+    with ExitStack() as stack:
+
+        def opened(path, *, step=0.05, start_values=None, like=None, **tables):
+            profile = make_profile(changed(zoo.profile(like or path), tables), "the test's profile")
+            return stack.enter_context(
+                VehicleFmu(path, step_size=step, profile=profile, start_values=start_values)
+            )
+
+        yield opened
+
+
+def changed(values: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    for key, value in changes.items():
+        if isinstance(value, dict) and isinstance(values.get(key), dict):
+            changed(values[key], value)
+        elif value is None:
+            values.pop(key, None)
+        else:
+            values[key] = value
+    return values
+
+
+@pytest.fixture
+def redescribed(tmp_path: Path) -> Callable[..., Path]:
+    """A copy of an FMU with something else in its model description."""
+
+    def make(path: Path, old: str, new: str) -> Path:
+        copy = tmp_path / path.name
+        with zipfile.ZipFile(path) as source, zipfile.ZipFile(copy, "w") as target:
+            for name in source.namelist():
+                data = source.read(name)
+                if name == "modelDescription.xml":
+                    assert old in data.decode()
+                    data = data.decode().replace(old, new).encode()
+                target.writestr(name, data)
+        return copy
+
+    return make
