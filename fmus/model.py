@@ -73,6 +73,7 @@ class Variable:
     minimum: float | None = None  # in its unit
     maximum: float | None = None
     settable: bool = False  # before the start
+    negated: bool = False  # FMI 1's negatedAlias: what stands under the reference, times -1
 
     @property
     def scalar(self) -> bool:

@@ -69,6 +69,8 @@ def _setting(calls: Calls, variable: Variable, whole: Sequence[Any]) -> Setting:
         ready = [_ready(variable, ctype, value) for value in whole]
     except ValueError as error:
         raise _unfit(calls, variable, whole, str(error)) from None
+    if variable.negated and ctype.type is not c_char_p:
+        ready = [_negated(variable, value) for value in ready]
     array = (ctype.type * len(ready))(*ready)
     return Setting(variable.name, variable.reference, ctype, array)
 
@@ -106,6 +108,11 @@ def _unfit(calls: Calls, variable: Variable, value: Any, expected: str) -> FmuSt
     )
 
 
+def _negated(variable: Variable, value: Any) -> Any:
+    """What stands under a negated alias's reference, or the alias of it: not, or minus."""
+    return 1 - value if variable.is_boolean else -value
+
+
 def bounds(ctype: CType) -> tuple[int, int]:
     """The smallest and the greatest whole number of a C type."""
     bits = 8 * sizeof(ctype.type)
@@ -137,7 +144,7 @@ class Transfer:
             self.view[index] = _start(channel)
         if not channels:
             return
-        if len(set(types)) == 1 and types[0].type is c_double and _all_scalar(channels):
+        if len(set(types)) == 1 and types[0].type is c_double and _all_plain(channels):
             self.function = calls.function(calls.name(verb, types[0].suffix))
             references = [channel.variable.reference for channel in channels]
             self.arguments = calls.arguments(references, buffer)
@@ -182,10 +189,16 @@ class _Group:
         elements: list[Any] = []
         for variable in variables:
             first[variable.name] = len(elements)
-            elements += start_list(variable)
+            start = start_list(variable)
+            elements += [_negated(variable, v) for v in start] if variable.negated else start
         convert = _converter(ctype)
         self._values: Any = (ctype.type * len(elements))(*map(convert, elements))
         self._places = [(i, first[c.variable.name] + c.element) for i, c in channels]
+        self._negated = [
+            (i, first[c.variable.name] + c.element, c.variable)
+            for i, c in channels
+            if c.variable.negated
+        ]
         self._convert = convert
         references = [variable.reference for variable in variables]
         self.function = calls.function(calls.name(verb, ctype.suffix))
@@ -195,11 +208,15 @@ class _Group:
         values, convert = self._values, self._convert
         for index, place in self._places:
             values[place] = convert(view[index])
+        for index, place, variable in self._negated:
+            values[place] = convert(_negated(variable, view[index]))
 
     def empty(self, view: memoryview[float]) -> None:
         values = self._values
         for index, place in self._places:
             view[index] = values[place]
+        for index, place, variable in self._negated:
+            view[index] = _negated(variable, values[place])
 
 
 def _converter(ctype: CType) -> Callable[[float], Any]:
@@ -227,8 +244,8 @@ def _start(channel: Channel) -> float:
     return float(start_list(channel.variable)[channel.element])
 
 
-def _all_scalar(channels: Iterable[Channel]) -> bool:
-    return all(channel.variable.scalar for channel in channels)
+def _all_plain(channels: Iterable[Channel]) -> bool:
+    return all(c.variable.scalar and not c.variable.negated for c in channels)
 
 
 def _nothing() -> int:

@@ -62,8 +62,6 @@ def whole(where: str, element: Element, name: str) -> int | None:
 def read_variables(root: Element, version: str, where: str) -> dict[str, Variable]:
     """All variables by name, in the order of the file.
 
-    FMI 1's negated aliases are left out: their value is another variable's with the other sign.
-
     Args:
         root: of the model description.
         version: "1.0", "2.0" or "3.0".
@@ -99,7 +97,7 @@ def _elements(root: Element, version: str, where: str) -> Iterator[tuple[Element
             if element.tag in TYPES:
                 yield element, element
             continue
-        if element.tag != "ScalarVariable" or element.get("alias") == "negatedAlias":
+        if element.tag != "ScalarVariable":
             continue
         value = next((child for child in element.children if child.tag in TYPES), None)
         if value is None:
@@ -141,6 +139,7 @@ def _variable(
         minimum=next((limit for limit in minima if limit is not None), None),
         maximum=next((limit for limit in maxima if limit is not None), None),
         settable=variability != "constant" and changeable,
+        negated=version == "1.0" and element.get("alias") == "negatedAlias",
     )
 
 
