@@ -1,9 +1,13 @@
 """The documentation says what the program does."""
 
+import re
+import tomllib
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
+from fmus import VehicleProfile, make_profile
 from giveway.configfile import options
 from giveway.metrics import PEDESTRIAN_FIELDS, SUMMARY_FIELDS
 from giveway.schema import EGO_COLUMNS, TIMING_COLUMNS, TRAJECTORY_COLUMNS
@@ -30,3 +34,29 @@ def test_every_option_is_documented_with_flag_unit_and_meaning() -> None:
         description = str(option.field.description).replace("|", "/")
         assert f"| `{option.location[-1]}` | `{option.flag}` | {option.unit or ''} |" in text
         assert description in text
+
+
+def toml_blocks(page: str) -> list[str]:
+    text = (DOCS / page).read_text(encoding="utf-8")
+    return re.findall(r"```toml\n(.*?)```", text, flags=re.DOTALL)
+
+
+@pytest.mark.parametrize("block", toml_blocks("vehicles.md"))
+def test_every_profile_in_the_guide_is_one(block: str) -> None:
+    """A block is a whole profile, or a part of one that the rest is given to."""
+    values = tomllib.loads(block)
+    inputs, outputs = values.get("inputs", {}), values.get("outputs", {})
+    if set(inputs) == {"force", "brake_force"}:  # two examples of odd axes
+        inputs["drive_force"] = inputs.pop("force")
+    inputs = inputs or {"force": {"variable": "F"}}
+    outputs = {"speed": {"variable": "v"}} | outputs
+    make_profile(values | {"inputs": inputs, "outputs": outputs}, "vehicles.md")
+
+
+def test_the_guide_names_every_key_of_a_profile() -> None:
+    text = (DOCS / "vehicles.md").read_text(encoding="utf-8")
+    for table in VehicleProfile.model_fields.values():
+        for kind in (table.annotation, *get_args(table.annotation)):
+            fields = getattr(kind, "model_fields", {})
+            missing = [name for name in fields if name not in text]
+            assert not missing, kind
