@@ -42,7 +42,8 @@ def load(layers: Sequence[Layer]) -> tuple[RunConfig, Scenario]:
         own = [Layer(layer.origin, settings)]
     layers = [*own, *layers]
     config = build_config([*_identified(layers), *layers])
-    return _placed(_each_identified(config), scenario), scenario
+    own_model = _model_of(build_config(layers))
+    return _placed(_each_identified(config, own_model), scenario), scenario
 
 
 def _identified(layers: Sequence[Layer]) -> list[Layer]:
@@ -56,15 +57,25 @@ def _identified(layers: Sequence[Layer]) -> list[Layer]:
     return [Layer(str(profile), {"vehicle": _model_in(profile)})] if profile else []
 
 
-def _each_identified(config: RunConfig) -> RunConfig:
-    """``config`` in which those entries of ``egos`` that name an FMU have what belongs to it."""
+def _model_of(config: RunConfig) -> dict[str, float]:
+    return {"mass": config.vehicle.mass, "friction": config.vehicle.friction}
+
+
+def _each_identified(config: RunConfig, set_model: dict[str, float]) -> RunConfig:
+    """``config`` in which those entries of ``egos`` that name an FMU have what belongs to it.
+
+    Args:
+        config: of the run; its vehicle's M and alpha may be those of its profile.
+        set_model: M and alpha without that: what was identified of another FMU is no other's.
+    """
+    identified = {} if _model_of(config) == set_model else set_model
     entries = []
     for entry in config.egos:
         vehicle = entry.get("vehicle")
         if isinstance(vehicle, Mapping) and {"fmu", "profile"} & set(vehicle):
             profile = vehicle.get("profile", "")
             known = _model_in(profile) if profile else {}
-            entry = {**entry, "vehicle": {"profile": profile, **known, **vehicle}}
+            entry = {**entry, "vehicle": {"profile": profile, **identified, **known, **vehicle}}
         entries.append(entry)
     return config.model_copy(update={"egos": tuple(entries)})
 
@@ -100,12 +111,20 @@ def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
     """``config`` with absolute paths, so that it means the same from any folder."""
     if config.scenario not in available():
         config = config.model_copy(update={"scenario": str(scenario.config_file)})
-    vehicle = config.vehicle
-    files = {
-        key: Path(getattr(vehicle, key)) for key in ("fmu", "profile") if getattr(vehicle, key)
-    }
-    absolute = {key: str(path.absolute()) for key, path in files.items() if path.is_file()}
-    return config.model_copy(update={"vehicle": vehicle.model_copy(update=absolute)})
+    vehicle = config.vehicle.model_copy(update=_absolute(config.vehicle.model_dump()))
+    egos = [
+        {**ego, "vehicle": {**ego["vehicle"], **_absolute(ego["vehicle"])}}
+        if isinstance(ego.get("vehicle"), Mapping)
+        else ego
+        for ego in config.egos
+    ]
+    return config.model_copy(update={"vehicle": vehicle, "egos": tuple(egos)})
+
+
+def _absolute(vehicle: Mapping[str, Any]) -> dict[str, str]:
+    """The files that a vehicle's settings name, as far as there are such files."""
+    named = {key: Path(str(vehicle[key])) for key in ("fmu", "profile") if vehicle.get(key)}
+    return {key: str(path.absolute()) for key, path in named.items() if path.is_file()}
 
 
 def as_layer(config: RunConfig | dict[str, Any] | str | Path) -> Layer:

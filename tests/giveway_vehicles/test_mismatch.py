@@ -1,71 +1,70 @@
-"""The remark on a vehicle that the controller's M and alpha do not describe."""
+"""A vehicle that answers otherwise than the controller thinks is said at the end, with numbers."""
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+import re
 
-import numpy as np
 import pytest
+import tomlkit
 
-from giveway.config import RunConfig
-from giveway.mismatch import remark
-
-H = 0.05  # [s]
-FORCE = np.repeat([2000.0, 0.0, -3000.0, 1000.0, -500.0, 3000.0, -2000.0], 20)  # [N]
+import giveway as library
 
 
-def drive(mass, friction, *, exact=False, force=FORCE, start=4.0):
-    """A run's ego whose vehicle moves as M v' + alpha v = u, by forward Euler or exactly."""
-    decay = np.exp(-friction / mass * H)
-    speed, position = [start], [0.0]
-    for u in force:
-        v, end = speed[-1], u / friction
-        if exact:
-            speed.append(end + (v - end) * decay)
-            position.append(position[-1] + end * H + (v - end) * (1 - decay) * mass / friction)
-        else:
-            speed.append(v + H / mass * (u - friction * v))
-            position.append(position[-1] + H * v)
-    acceleration = np.diff(speed, prepend=start) / H
-    track = SimpleNamespace(
-        time=H * np.arange(len(speed)),
-        speed=np.array(speed),
-        position=np.array(position),
-        acceleration=acceleration,
-        force=np.append(force, 0.0),
+@pytest.fixture
+def remarks(zoo, tmp_path, own_temp):
+    """The remarks of a short run of a car about how it answered."""
+
+    def run(values=None, vehicle=None, controller="mpc", **model):
+        car = zoo.car(values=values or {})
+        profile = zoo.profile(car)
+        if model:
+            profile["model"] = {"r_squared": 1.0, "speed_error": 0.0, "horizon": 0.75,
+                                "time_step": 0.05, **model}  # fmt: skip
+        path = tmp_path / "car.toml"
+        path.write_text(tomlkit.dumps(profile), encoding="utf-8")
+        settings = {"fmu": str(car), "profile": str(path), "isolation": "none", **(vehicle or {})}
+        result = library.run(
+            {"seed": 4, "time_limit": 12.0, "controller": controller, "vehicle": settings}
+        )
+        return [remark for remark in result.remarks if "does not answer" in remark]
+
+    return run
+
+
+HEAVY = {"mass": 1600.0, "friction": 40.0}
+
+
+def test_a_car_as_the_controller_thinks_is_not_remarked(remarks):
+    assert remarks() == []
+
+
+def test_a_heavier_car_is_told_with_what_it_is(remarks):
+    (remark,) = remarks(HEAVY)
+    assert "the controller's M = 1000 kg, alpha = 100 N.s/m" in remark
+    mass, friction = map(
+        float, re.search(r"M = ([\d.]+) kg and alpha = ([\d.]+) N\.s/m fit", remark).groups()
     )
-    return SimpleNamespace(id="ego", track=track, config=RunConfig())
+    assert mass == pytest.approx(1600.0, rel=0.02)
+    assert friction == pytest.approx(40.0, abs=20.0)
+    assert "giveway fmu identify" in remark
 
 
-@pytest.mark.parametrize("exact", [False, True])
-def test_the_models_own_car_is_no_mismatch_however_it_is_solved(exact):
-    assert remark(drive(1000.0, 100.0, exact=exact), H, 0.0) == ""
+def test_the_controller_that_is_told_so_is_content(remarks):
+    assert remarks(HEAVY, {"mass": 1600.0, "friction": 40.0}) == []
 
 
-def test_another_mass_is_named_with_what_fits():
-    ego = drive(1500.0, 100.0)
-    text = remark(ego, H, 0.0)
-    assert "M = 1000 kg" in text
-    assert "M = 1500 kg and alpha = 100 N.s/m fit better" in text
-    assert text.endswith("giveway fmu identify fmi2 -o car.toml")
+def test_a_profile_that_knows_it_is_content(remarks):
+    assert remarks(HEAVY, position_error=0.01, mass=1600.0, friction=40.0) == []
 
 
-def test_what_the_controller_allows_for_is_no_mismatch():
-    assert remark(drive(1500.0, 100.0), H, 1.0) == ""
+def test_an_error_that_the_margin_covers_is_content(remarks):
+    assert remarks({"mass": 1100.0}, position_error=1.0, mass=1000.0, friction=100.0) == []
 
 
-def test_the_pid_has_no_model():
-    ego = drive(1500.0, 100.0)
-    ego.config = RunConfig(controller="pid")
-    assert remark(ego, H, 0.0) == ""
+def test_the_pid_has_no_model_to_be_wrong(remarks):
+    assert remarks(HEAVY, controller="pid") == []
 
 
-@pytest.mark.parametrize("steps", [0, 1, 5, 14, 15, 16])
-def test_a_run_that_ends_within_the_horizon_does_not_tell(steps):
-    remark(drive(1500.0, 100.0, force=FORCE[:steps]), H, 0.0)
-
-
-def test_a_drive_without_forces_names_no_mass():
-    text = remark(drive(1500.0, 700.0, force=np.zeros(100), start=12.0), H, 0.0)
-    assert "does not answer" in text
-    assert "fit better" not in text
+def test_our_own_vehicle_is_not_remarked(own_temp):
+    result = library.run({"seed": 4, "time_limit": 3.0})
+    assert not [remark for remark in result.remarks if "does not answer" in remark]
