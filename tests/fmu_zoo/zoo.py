@@ -16,7 +16,7 @@ from fmu_zoo import compiling
 from fmu_zoo.cars import Car, Fault, profile, settings
 from fmu_zoo.description import IDENTIFIER, describe
 from fmu_zoo.faults import FAULTS
-from fmus import build
+from fmus.packing import write_archive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -124,7 +124,7 @@ class Zoo:
         folder = self._folder / str(len(self._built))
         folder.mkdir()
         path = folder / f"{file}.fmu"
-        build.write_archive(path, self.members(car, path))
+        write_archive(path, self.members(car, path))
         path.with_suffix(".toml").write_text(tomlkit.dumps(profile(car)), encoding="utf-8")
         self._cars[path] = car
         return path

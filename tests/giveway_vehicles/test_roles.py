@@ -136,7 +136,7 @@ def test_units_make_no_difference(zoo):
 
 
 @pytest.mark.parametrize("array", [True, "structural"])
-def test_elements_of_arrays_play_the_parts(zoo, profiled, giveway, tmp_path, array):
+def test_elements_of_arrays_play_the_parts(zoo, profiled, array):
     """An array has one unit at most: the profile says those of its elements."""
     car = zoo.car(role="force", fmi="3.0", array=array)
     profile = profiled(
@@ -148,11 +148,9 @@ def test_elements_of_arrays_play_the_parts(zoo, profiled, giveway, tmp_path, arr
             "acceleration": {"unit": "m/s2"},
         },
     )
-    words = ["run", "shared_space", "--seed", SEED, "--ego-initial-speed", 2, "--out", "r"]
-    done = giveway(*words, "--vehicle", car, "--profile", profile)
-    assert done.returncode == 0, done.stderr
-    rows = pd.read_csv(tmp_path / "r" / "ego.csv")
-    require_physics(rows, {"role": "force"}, 1e-5)  # six digits are written
+    vehicle = {"fmu": str(car), "profile": str(profile)}
+    result = library.run({"seed": SEED, "ego": {"initial_speed": 2.0}, "vehicle": vehicle})
+    require_physics(result.ego, {"role": "force"}, 1e-9)
 
 
 @pytest.mark.parametrize("role", PHYSICS)
@@ -163,3 +161,12 @@ def test_each_role_from_the_command_line(zoo, giveway, tmp_path, role):
     done = giveway(*words, "--vehicle", car, "--profile", car.with_suffix(".toml"))
     assert done.returncode == 0, done.stderr
     require_physics(pd.read_csv(tmp_path / "r" / "ego.csv"), options, 1e-5)
+
+
+@pytest.mark.parametrize("fmi", ["2.0", "3.0"])
+def test_names_and_units_without_doubt_need_no_profile(zoo, fmi):
+    car = zoo.car(role="force", fmi=fmi, units={"speed": KMH, "initial_speed": KMH})
+    result = library.run(
+        {"seed": SEED, "ego": {"initial_speed": 2.0}, "vehicle": {"fmu": str(car)}}
+    )
+    require_physics(result.ego, {"role": "force"}, 1e-9)
