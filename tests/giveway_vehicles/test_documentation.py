@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from pathlib import Path
 
 import pytest
 
-from fmus import VehicleFmu, make_profile, read_profile
+from fmus import VehicleFmu, read_profile
 
 PAGE = Path(__file__).parents[2] / "docs" / "vehicles.md"
 SECTIONS = dict(re.findall(r"^### (.+?)\n(.*?)(?=^##)", PAGE.read_text("utf-8"), re.M | re.S))
-BLOCKS = re.findall(r"^```toml\n(.*?)^```", PAGE.read_text("utf-8"), re.M | re.S)
 H = 0.05  # [s]
 PER_CENT = (0.01, 0.0)
 CARS = {  # by the beginning of the section: the zoo's car, its M [kg] and alpha [N.s/m]
@@ -89,15 +87,5 @@ def test_a_worked_example_drives_its_car(zoo, tmp_path, beginning):
         assert car.position > 5.0
 
 
-@pytest.mark.parametrize("number", range(len(BLOCKS)))
-def test_every_table_has_only_keys_that_there_are(number):
-    least = {"inputs": {"force": {"variable": "u"}}, "outputs": {"speed": {"variable": "v"}}}
-    values = tomllib.loads(BLOCKS[number])
-    if values.get("inputs", {}).keys() == {"force", "brake_force"}:  # two odd axes, side by side
-        values["inputs"].pop("brake_force")
-    make_profile(least | values, PAGE.name)
-
-
 def test_the_examples_are_all_there():
-    assert len(BLOCKS) >= len(CARS) + 4
     assert sum(any(title.startswith(name) for name in CARS) for title in SECTIONS) == len(CARS)
