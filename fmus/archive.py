@@ -12,6 +12,7 @@ import io
 import re
 import stat
 import struct
+import unicodedata
 import zipfile
 import zlib
 from contextlib import contextmanager
@@ -78,7 +79,7 @@ def _open(path: Path, _state: tuple[int, int, int]) -> Archive:
         if info.file_size > MAX_DESCRIPTION:
             msg = f"{path}: {DESCRIPTION} of {_megabytes(info.file_size)}"
             raise _beyond(msg, _megabytes(MAX_DESCRIPTION))
-        description = archive.read(info)
+        description = b"".join(_chunks(archive, info))  # read() would inflate beyond that size
         guard(description, f"{path}: {DESCRIPTION}", ROOT)
         if sum(member.file_size for member in members.values()) <= CHECKED_AT_ONCE:
             for member in members.values():
@@ -196,12 +197,14 @@ def _examined(path: Path, infos: Sequence[zipfile.ZipInfo]) -> dict[str, zipfile
             raise _refused(path, info, fault)
         if info.is_dir():
             continue
-        other = folded.setdefault(info.filename.casefold(), info.filename)
+        plain = unicodedata.normalize("NFC", info.filename).casefold()
+        other = folded.setdefault(plain, info.filename)
         if info.filename in members or other != info.filename:
-            raise _refused(path, info, "twice in the archive (capitals do not count)")
+            what = "twice in the archive (capitals and how accents are coded do not count)"
+            raise _refused(path, info, what)
         members[info.filename] = info
     for name, info in members.items():
-        parents = name.casefold().split("/")[:-1]
+        parents = unicodedata.normalize("NFC", name).casefold().split("/")[:-1]
         if any("/".join(parents[: n + 1]) in folded for n in range(len(parents))):
             raise _refused(path, info, "lies in a folder that is also a file")
     _require_sane_sizes(path, members)
@@ -222,7 +225,7 @@ def _fault(info: zipfile.ZipInfo) -> str:
         return "an absolute path"
     if ".." in parts:
         return "a path that leads out of the archive"
-    if "." in parts or "" in parts:
+    if not all(part.strip(". ") for part in parts):  # ".. " is ".." on Windows
         return "not a plain path"
     if file_type not in (0, stat.S_IFREG, stat.S_IFDIR):
         return "a symbolic link" if file_type == stat.S_IFLNK else "a special file"

@@ -40,6 +40,7 @@ __all__ = ["binary_of", "describe", "findings", "model_of", "read_model"]
 VERSIONS: Final = re.compile(r"(1\.0|2\.0|3\.0)(\.\d+)?")
 TAGS: Final = {Kind.CO_SIMULATION: "CoSimulation", Kind.MODEL_EXCHANGE: "ModelExchange"}
 TRUE: Final = frozenset({"true", "1"})
+MAX_IDENTIFIER: Final = 240  # characters: with a suffix it is a file's name
 KEPT: Final = VARIABLE_TAGS | {
     *("CoSimulation", "ModelExchange", "ScheduledExecution", "DefaultExperiment"),
     *("Implementation", "CoSimulation_StandAlone", "CoSimulation_Tool", "Capabilities"),  # FMI 1
@@ -189,7 +190,8 @@ def _fmi1_interface(root: Element, where: str) -> dict[Kind, Interface]:
 
 def _identifier(element: Element, where: str) -> str:
     identifier = element.get("modelIdentifier")
-    if not identifier or not identifier.isprintable() or set(identifier) & set('/\\:"'):
+    named = 0 < len(identifier) <= MAX_IDENTIFIER and identifier.isprintable()
+    if not named or set(identifier) & set('/\\:"'):
         what = f"modelIdentifier {printable(identifier, 60)!r}; expected a name in C"
         raise broken(where, element, what)
     return identifier
