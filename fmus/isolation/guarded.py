@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import socket
 import subprocess
 from contextlib import suppress
@@ -10,7 +11,14 @@ from typing import TYPE_CHECKING, Final
 
 from fmus.isolation.burial import Death, decoded
 from fmus.isolation.protocol import BURY, FORK, MESSAGE
-from fmus.isolation.spawning import DEATH_TIMEOUT, IMPORT_TIMEOUT, kill_group, no_process, spawn
+from fmus.isolation.remains import kill_marked
+from fmus.isolation.spawning import (
+    DEATH_TIMEOUT,
+    IMPORT_TIMEOUT,
+    kill_group,
+    no_process,
+    spawn,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -51,6 +59,7 @@ class GuardedKeeper:
             ms = b"%d" % round(1e3 * patience)
             return decoded(self._ask(BURY, ms, patience + DEATH_TIMEOUT))
         except (OSError, ValueError, TypeError):
+            kill_marked(self._folder)
             return _LOST
 
     def close(self) -> None:
@@ -74,6 +83,7 @@ class GuardedKeeper:
 
     def _dismiss(self) -> None:
         """Have none: it ends, with all that it watches over, when the socket is closed."""
+        self._wake()
         self._control.close()
         if not self._proven:  # still importing
             self._process.kill()
@@ -81,6 +91,13 @@ class GuardedKeeper:
             self._process.wait(DEATH_TIMEOUT)
         except subprocess.TimeoutExpired:
             kill_group(self._process)
+        if self._process.returncode:  # it was killed itself
+            kill_marked(self._folder)
+
+    def _wake(self) -> None:
+        """An FMU may have stopped it."""
+        with suppress(OSError):
+            self._process.send_signal(signal.SIGCONT)
 
     def _begin(self) -> socket.socket:
         here, there = socket.socketpair()
@@ -96,6 +113,7 @@ class GuardedKeeper:
     def _ask(self, what: bytes, argument: bytes, timeout: float, *files: int) -> bytes:
         """The guardian's answer; those to questions that were interrupted are passed over."""
         self._number += 1
+        self._wake()
         self._control.settimeout(timeout)
         socket.send_fds(self._control, [b"%d %s %s" % (self._number, what, argument)], files)
         while True:

@@ -26,12 +26,13 @@ from typing import Final
 
 from fmus.isolation.burial import Death, PrintedTail, out_of_memory_kills
 from fmus.isolation.protocol import BURY, FORK, MESSAGE
-from fmus.isolation.spawning import remove
+from fmus.isolation.remains import remove
 from fmus.isolation.worker import Order, read_order, serve
 
 _WATCH: Final = 1000  # [ms] between looks whether the vehicle's process is still there
 _HIGH: Final = 200  # FMUs that close or write to files that are not theirs try low numbers
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
+_PTRACE_DETACH: Final = 17
 _DEAF_TO = (  # what an FMU may send to its parent process
     signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGTERM, signal.SIGALRM,
     signal.SIGUSR1, signal.SIGUSR2, signal.SIGTSTP,
@@ -146,7 +147,9 @@ class _Guardian:
         """Take note of the worker's death, if it has died, and of those of others."""
         with suppress(ChildProcessError):
             while (found := os.waitpid(-1, os.WNOHANG))[0]:
-                if found[0] == self._worker:
+                if os.WIFSTOPPED(found[1]):
+                    _let_go(*found)
+                elif found[0] == self._worker:
                     self._lay_out(*found, killed=False)
 
     def _lay_out(self, worker: int, status: int, *, killed: bool) -> None:
@@ -211,6 +214,12 @@ def _kill_all_children(worker: int) -> None:
                 with suppress(ProcessLookupError):
                     os.kill(int(pid), signal.SIGKILL)
             os.waitpid(-1, 0)
+
+
+def _let_go(pid: int, status: int) -> None:
+    """Trace no process that wanted to be traced, as protection against copying does."""
+    ptrace = ctypes.CDLL(None)["ptrace"]
+    ptrace(_PTRACE_DETACH, pid, None, ctypes.c_long(os.WSTOPSIG(status)))
 
 
 def _prctl(option: int, value: int = 1) -> None:

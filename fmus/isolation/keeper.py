@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from fmus.isolation.guarded import GuardedKeeper
 from fmus.isolation.plain import PlainKeeper
+from fmus.isolation.remains import scratch_of
 from fmus.isolation.worker import Order
 
 if TYPE_CHECKING:
@@ -49,5 +50,5 @@ def make_keeper(prepared: Prepared, folder: Path) -> Keeper:
     """
     order = Order(prepared.without_source(), folder / "fmu")
     (folder / "order").write_bytes(pickle.dumps(order))
-    (folder / "scratch").mkdir()
+    scratch_of(folder).mkdir()
     return (GuardedKeeper if sys.platform == "linux" else PlainKeeper)(prepared.path, folder)

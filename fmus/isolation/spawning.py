@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from fmus.errors import FmuCrashError
 from fmus.isolation.burial import PrintedTail
+from fmus.isolation.remains import scratch_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -47,7 +47,7 @@ def spawn(
     Raises:
         FmuCrashError: it cannot be started.
     """
-    scratch = str(folder / "scratch")
+    scratch = str(scratch_of(folder))
     values = [a if isinstance(a, int) else str(a) for a in arguments]
     flags = {
         "-E": sys.flags.ignore_environment,
@@ -86,16 +86,6 @@ def kill_group(process: subprocess.Popen[bytes]) -> None:
         else:
             os.killpg(process.pid, signal.SIGKILL)
     process.wait()
-
-
-def remove(folder: Path) -> None:
-    """Remove a folder, also where what made its folders had a umask that forbids it."""
-    for place, names, _files in os.walk(folder):
-        for inner in (Path(place, name) for name in names):
-            with suppress(OSError):
-                if not inner.is_symlink():
-                    inner.chmod(0o700)
-    shutil.rmtree(folder, ignore_errors=True)
 
 
 def no_process(path: Path, printed: bytes) -> FmuCrashError:

@@ -20,7 +20,7 @@ from fmus.errors import (
 )
 from fmus.isolation.keeper import Keeper, make_keeper
 from fmus.isolation.protocol import LOAD, QUIT, START, STEP, GarbledError, Line, Text
-from fmus.isolation.spawning import remove
+from fmus.isolation.remains import remove
 from fmus.preparation import prepare, unpack
 from fmus.text import printable
 
