@@ -65,6 +65,20 @@ class Guard:
             "position and speed, or raise position_jump in [limits]"
         )
 
+    def drift(self, drift: float, way: float, at: float) -> str:
+        """What is wrong with a position that leaves the speed's integral, step by step.
+
+        Args:
+            drift: position beyond what the speed accounts for, since the start [m].
+            way: that the speed accounts for [m].
+            at: time [s].
+        """
+        position, speed = self._names["position"], self._names["speed"]
+        return (
+            f"{position} has moved by {way + drift:.4g} m at {at:.10g} s, where {speed} accounts "
+            f"for {way:.4g} m; check the units of both, or leave out [outputs.position]"
+        )
+
     def watch(self, changed: bool, force: float, speed: float, step: float, at: float) -> str:
         """A warning about a state that stands still though it is driven; empty if there is none.
 

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from fmus.wiring import Wiring
 
 
+_SLIP = 0.2  # share of its way by which a position may differ from what the speed accounts for
 _REVERSING = -0.05  # [m/s] beyond what a stop within a step may overshoot
 
 
@@ -45,11 +46,20 @@ class Motion:
         self._guard = Guard(self._limit, self._jump, prepared.frozen_time, self.names)
         self._answered = 0.0  # [N] under which the speed last changed
         self._origin = 0.0  # [m] where the FMU's own position is 0
+        self._way = self._drift = 0.0  # [m] that the speed accounts for; and the position beyond it
 
     @property
     def state(self) -> tuple[float, float, float]:
         """Position, speed and acceleration."""
         return self.position, self.speed, self.acceleration
+
+    def save(self) -> tuple[float, ...]:
+        """What :meth:`restore` needs."""
+        return (*self.state, self._way, self._drift)
+
+    def restore(self, saved: tuple[float, ...]) -> None:
+        """Go back to a saved motion."""
+        self.position, self.speed, self.acceleration, self._way, self._drift = saved
 
     def begin(self, outputs: memoryview[float]) -> None:
         """Take over a first state as it is.
@@ -102,6 +112,10 @@ class Motion:
         else:
             self.acceleration = (speed - before) / duration
         self._judge(position - led, 0.5 * duration * abs(speed - before), time)
+        self._way += 0.5 * duration * abs(before + speed)
+        self._drift += position - led
+        if abs(self._drift) > self._jump + _SLIP * self._way:
+            raise FmuOutputError(f"{self._path}: {self._guard.drift(self._drift, self._way, time)}")
         self._note(self._guard.watch(changed, force, speed, duration, time))
         if speed < _REVERSING:
             backwards = f"{self.names['speed']} = {speed:.3g} m/s at {time:.10g} s: it reverses"

@@ -54,6 +54,15 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
     raise FmuProfileError(msg)
 
 
+def step_to_run_with(fmu_step: float, usual: float = 0.05) -> str:
+    """The flag that a run needs for an FMU's own step [s]; empty if the usual step fits."""
+    try:
+        make_pace(usual, fmu_step)
+    except FmuProfileError:
+        return f" and run with --time-step {fmu_step:g}"
+    return ""
+
+
 def between(
     start: tuple[float, float], end: tuple[float, float], duration: float, share: float
 ) -> tuple[float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tempfile
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from math import isfinite
+from math import isclose, isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Protocol, Self
 
@@ -13,7 +13,7 @@ from fmus import fmi
 from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
 from fmus.instance import STATUS_NAMES, WARNING
 from fmus.motion import Motion
-from fmus.pace import between
+from fmus.pace import between, step_to_run_with
 from fmus.preparation import Prepared, prepare, unpack
 from fmus.starting import reach, require_place, start_values
 
@@ -75,7 +75,7 @@ class SavedState:
 
     step: int
     handle: Any = field(repr=False)
-    motion: tuple[float, float, float] = field(repr=False)
+    motion: tuple[float, ...] = field(repr=False)
 
 
 class VehicleFmu:
@@ -291,7 +291,7 @@ class VehicleFmu:
         if not self.between_steps:
             msg = f"{self.path}: within a step of the FMU its state cannot be saved; step on"
             raise FmuStateError(msg)
-        state = SavedState(self._steps, self._instance.save(), self._motion.state)
+        state = SavedState(self._steps, self._instance.save(), self._motion.save())
         self._saved.add(state)
         return state
 
@@ -306,9 +306,8 @@ class VehicleFmu:
         self._refusal = ""
         self._steps = state.step
         self.time = state.step * self._step_size
-        motion = self._motion
-        motion.position, motion.speed, motion.acceleration = state.motion
-        self._show(motion)
+        self._motion.restore(state.motion)
+        self._show(self._motion)
         self._ends = ((0.0, 0.0), (self.position, self.speed))
 
     def free_state(self, state: SavedState) -> None:
@@ -362,12 +361,22 @@ class VehicleFmu:
     def _fail(self) -> None:
         self._refuse(f"failed at {self.time:.10g} s; start it again or restore a saved state")
 
+    def _own_step(self) -> str:
+        """The step that the FMU may be made for, where it can do only one."""
+        wanted, interface = self.prepared.model.default_step, self.prepared.wiring.interface
+        if interface.variable_step or wanted is None or isclose(wanted, self._pace.step):
+            return ""
+        return (
+            "; it does steps of one length only, and its default experiment's is "
+            f"{wanted:g} s: add step = {wanted:g} to [fmu]{step_to_run_with(wanted)}"
+        )
+
     def _step_failed(self, force: float, status: int) -> NoReturn:
         self._fail()
         said = self._instance.journal.take() or "without a message"
         end = (self._steps + self._pace.stretch) * self._step_size
         msg = (
             f"{self.path}: no step from {self.time:.10g} s to {end:.10g} s under {force:g} N: the "
-            f"FMU returned '{STATUS_NAMES[status]}', {said}"
+            f"FMU returned '{STATUS_NAMES[status]}', {said}{self._own_step()}"
         )
         raise FmuStepError(msg)

@@ -126,7 +126,7 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
         OSError: the child cannot be started, or the heartbeat not be made.
     """
     heartbeat = Heartbeat.supervised_by(os.getpid(), journal)
-    environment = os.environ | {JOURNAL_VARIABLE: str(journal)}
+    environment = os.environ | {JOURNAL_VARIABLE: str(journal), **_temporary(journal)}
     with _Relay() as relay:
         # Like any program on this terminal: same process group, same files (also <(...)).
         with _held_back():
@@ -141,6 +141,13 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
             sys.stdout.write(_SHOW_CURSOR)
             sys.stdout.flush()
     return verdict
+
+
+def _temporary(journal: Path) -> dict[str, str]:
+    """Where the child puts its temporary files: what a crash leaves goes with the journal."""
+    folder = journal / "tmp"
+    folder.mkdir(exist_ok=True)
+    return dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder))
 
 
 @contextlib.contextmanager

@@ -21,7 +21,8 @@ from fmus import (
     prepare,
     read_profile,
 )
-from fmus.checking import convergence, opener_of, remedy
+from fmus.checking import convergence, goes_the_wrong_way, opener_of, remedy
+from fmus.profile import Axis
 from giveway.departures import DEFAULT_SPEED
 from giveway.errors import VehicleError
 
@@ -76,7 +77,7 @@ def open_for(
         stack: closes the vehicle.
 
     Raises:
-        FmuError: it cannot be loaded, or its steps do not converge.
+        FmuError: it cannot be loaded, its steps do not converge, or it goes the wrong way.
     """
     settings = config.vehicle
     path, profile = fmu_path(settings), _profile(settings)
@@ -93,7 +94,7 @@ def open_for(
     if not ours:
         profile = choose_profile(path, profile)
         if profile.fmu.self_check:
-            _require_converged(path, profile, config, time_step, isolated)
+            _require_sound(path, profile, config, time_step)
     vehicle = open_vehicle(
         path,
         step_size=time_step,
@@ -110,19 +111,20 @@ def open_for(
     return vehicle, described
 
 
-def _require_converged(
+def _require_sound(
     path: Path,
     profile: VehicleProfile,
     config: RunConfig,
     time_step: float,
-    isolated: bool | None,
 ) -> None:
     """Drive an FMU for some seconds in its full steps and in smaller ones, once per process.
+
+    It is always isolated: a crash here would cost the rows of the run that is to come.
 
     One that fails whatever its step is left to the run, which keeps the rows up to then.
 
     Raises:
-        FmuError: its steps do not converge.
+        FmuError: its steps do not converge, or it goes the wrong way.
     """
     key = (sha256(path.read_bytes()).hexdigest(), profile.model_dump_json(), time_step)
     if key in _converged:
@@ -130,7 +132,7 @@ def _require_converged(
     speed = config.ego.initial_speed
     try:
         result = convergence(
-            opener_of(path, step_size=time_step, profile=profile, isolated=isolated),
+            opener_of(path, step_size=time_step, profile=profile),
             profile.fmu.step or time_step,
             force=min(_CHECK_FORCE, config.mpc.force_limit),
             start_speed=DEFAULT_SPEED if speed is None else speed,
@@ -141,6 +143,13 @@ def _require_converged(
         return
     if result.problem:
         raise FmuOutputError(f"{path}: {result.problem}; {remedy(result)}")
+    if any(goes_the_wrong_way(trace) for trace in result.traces[:1]):
+        role = next(role for role, axis in profile.inputs if isinstance(axis, Axis))
+        msg = (
+            f"{path}: a force forwards slows it down, and one backwards does not; turn the sign: "
+            f"add the line gain = -1.0 to [inputs.{role}], or to [outputs.speed]"
+        )
+        raise FmuOutputError(msg)
     _converged.add(key)
 
 

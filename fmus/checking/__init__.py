@@ -5,7 +5,13 @@ from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, identify
 from fmus.checking.manoeuvres import Opener, Phase, Trace, drive
 from fmus.checking.opening import opener_of, without_guards
-from fmus.checking.self_check import Convergence, convergence, remedy, require_converged
+from fmus.checking.self_check import (
+    Convergence,
+    convergence,
+    goes_the_wrong_way,
+    remedy,
+    require_converged,
+)
 
 __all__ = [
     "CheckReport",
@@ -19,6 +25,7 @@ __all__ = [
     "check",
     "convergence",
     "drive",
+    "goes_the_wrong_way",
     "identify",
     "opener_of",
     "remedy",

@@ -33,6 +33,7 @@ RELATIVE = 0.05  # of the largest speed or way of the finer run
 SPEED_FLOOR = 0.05  # [m/s]
 POSITION_FLOOR = 0.05  # [m]
 LARGEST_ACCELERATION = 15.0  # [m/s2] of a road vehicle; what one step may change
+_CLEARLY = 0.1  # [m/s2]
 DRIVE, COAST, BRAKE = 1.0, 0.5, 1.5  # [s] of the manoeuvre's parts
 
 _UNABLE = (FmuInterfaceError, FmuProfileError, FmuStartError)  # at a finer step: it cannot be had
@@ -255,6 +256,18 @@ def compare(coarse: Trace, fine: Trace) -> Disagreement | None:
             excess = float(ratio[at])
             worst = Disagreement(quantity, unit, at * step, float(one[at]), float(two[at]))
     return worst
+
+
+def goes_the_wrong_way(trace: Trace) -> bool:
+    """Whether a force forwards slows a vehicle down and one backwards does not.
+
+    Args:
+        trace: of the :func:`manoeuvre`; on a slope, or with a slow actuator, a vehicle whose signs
+            are right still gains more by driving than by braking.
+    """
+    change = np.diff(trace.speed) / trace.step_size
+    driven, braked = change[trace.force > 0.0], change[trace.force < 0.0]
+    return bool(driven.mean() < min(0.0, braked.mean()) - _CLEARLY)
 
 
 def milliseconds(step: float) -> str:

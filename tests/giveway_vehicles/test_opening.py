@@ -97,3 +97,9 @@ def test_it_starts_at_the_speed_of_the_ego_without_a_parameter_for_it(zoo, run):
     assert result.ego["speed"].iloc[0] == pytest.approx(4.0, abs=0.02)
     assert result.ego["position"].iloc[0] == 0.0
     assert any("driven up to" in remark for remark in result.remarks)
+
+
+def test_an_fmu_whose_force_has_the_wrong_sign_is_refused_before_the_run(zoo, run):
+    car = zoo.car(spoken={"force": (-1.0, 0.0)})
+    with pytest.raises(VehicleError, match=r"gain = -1\.0 to \[inputs\.force\]"):
+        run(car)
