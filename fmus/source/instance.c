@@ -8,6 +8,7 @@
 #include <string.h>
 
 #define SERIALIZED_FORMAT 20190501.0 /* the first value of a serialised state */
+#define SERIALIZED_VALUES 14
 
 /* ---- creation and messages ---- */
 
@@ -200,6 +201,8 @@ Status instance_restore(Instance *self, const Snapshot *saved) {
     self->discretisation.dt = 0.0; /* the parameters may differ */
     return STATUS_OK;
 }
+
+size_t snapshot_size(void) { return SERIALIZED_VALUES * sizeof(double); }
 
 Status snapshot_serialize(const Instance *self, const Snapshot *s, void *bytes, size_t size) {
     if (s == NULL) return instance_error(self, "no saved state to serialise");

@@ -45,7 +45,7 @@ typedef struct {
     double stop_time; /* [s] infinite where the host defines none */
 } Snapshot;
 
-enum { SERIALIZED_VALUES = 14, MESSAGE_SIZE = 512 };
+enum { MESSAGE_SIZE = 512 };
 
 typedef struct Instance Instance;
 struct Instance {
@@ -79,7 +79,8 @@ Status instance_reset(Instance *self, const char *function);
 Status instance_save(const Instance *self, Snapshot **saved);
 Status instance_restore(Instance *self, const Snapshot *saved);
 
-/* SERIALIZED_VALUES doubles, in a buffer of `size` bytes that may be unaligned. */
+/* Doubles, in a buffer of `size` bytes that may be unaligned. */
+size_t snapshot_size(void);
 Status snapshot_serialize(const Instance *self, const Snapshot *saved, void *bytes, size_t size);
 Status snapshot_deserialize(const Instance *self, const void *bytes, size_t size, Snapshot **saved);
 
