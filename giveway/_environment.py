@@ -12,6 +12,7 @@ from pathlib import Path
 from giveway.errors import InstallationError
 
 ROOMS = ("controller", "pedestrian_model", "fmus", "sumo_scenarios")
+_WITH_KERNELS = ("giveway", "controller", "pedestrian_model")
 
 
 def check_rooms() -> None:
@@ -50,11 +51,11 @@ def kernel_cache() -> Path:
 
 
 def _fingerprint() -> str:
-    """Changes with any source file: numba sees a change in a kernel's own file only."""
+    """Changes with any file that may hold kernels: numba sees a change in a kernel's own only."""
     house = Path(__file__).resolve().parent.parent
     stamps = [
         (str(path), status.st_mtime_ns, status.st_size)
-        for room in ("giveway", *ROOMS)
+        for room in _WITH_KERNELS
         for path in sorted((house / room).rglob("*.py"))
         for status in [path.stat()]
     ]

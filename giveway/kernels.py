@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import shutil
+import time
+from fnmatch import fnmatch
 from typing import TYPE_CHECKING
 
 import numba
@@ -12,8 +16,13 @@ from giveway._environment import kernel_cache
 from pedestrian_model import Crowd
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rich.console import Console
 
+_MARKER = "compiled-by-numba-"
+_FOLDERS = "kernels-*"
+_KEPT = 30 * 86400.0  # [s] since the last run
 _MESSAGE = "Compiling the numerical kernels (once after installation, about half a minute) ..."
 
 
@@ -22,8 +31,10 @@ def compile_kernels_once(console: Console) -> None:
 
     A tiny run touches them all; numba keeps the machine code in the user's cache folder.
     """
-    marker = kernel_cache() / f"compiled-by-numba-{numba.__version__}"
+    marker = kernel_cache() / f"{_MARKER}{numba.__version__}"
     if marker.exists():
+        with contextlib.suppress(OSError):
+            marker.touch()  # still in use
         return
     with console.status(_MESSAGE):
         if not console.is_terminal:
@@ -32,8 +43,23 @@ def compile_kernels_once(console: Console) -> None:
     try:
         marker.parent.mkdir(parents=True, exist_ok=True)
         marker.touch()
+        forget_old_kernels(marker.parent)
     except OSError:
         return  # without a writable cache they are compiled in every process: slow, not wrong
+
+
+def forget_old_kernels(folder: Path) -> None:
+    """Remove the kernels of versions that nobody has run for a month.
+
+    Args:
+        folder: of the present ones; its neighbours are the others.
+    """
+    if not fnmatch(folder.name, _FOLDERS):
+        return  # the user's own choice: nothing there is known to be ours
+    for other in folder.parent.glob(_FOLDERS):
+        used = [file.stat().st_mtime for file in (other, *other.glob(f"{_MARKER}*"))]
+        if other != folder and time.time() - max(used) > _KEPT:
+            shutil.rmtree(other, ignore_errors=True)
 
 
 def _tiny_run() -> None:

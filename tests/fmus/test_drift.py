@@ -17,7 +17,7 @@ def test_a_position_in_another_unit_than_declared_is_found_within_metres(zoo, ki
     path = zoo.car(spoken={"position": (kilo, 0.0)})
     with VehicleFmu(path, step_size=0.05, profile=make_profile(zoo.profile(path), "t")) as vehicle:
         vehicle.start(speed=4.0)
-        with pytest.raises(FmuOutputError, match="position has moved by .* check the units"):
+        with pytest.raises(FmuOutputError, match=r"position has moved by .* check the units"):
             drive(vehicle, 20)
         assert vehicle.time < 1.0
 

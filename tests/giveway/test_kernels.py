@@ -3,7 +3,10 @@
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
+
+from giveway.kernels import forget_old_kernels
 
 SCRIPT = """
 import io, sys
@@ -44,3 +47,19 @@ def test_after_the_first_compilation_nothing_is_compiled(tmp_path: Path) -> None
     )
     assert again.returncode == 0, again.stderr
     assert "Compiling" not in again.stdout
+
+
+def test_kernels_of_versions_long_gone_are_forgotten(tmp_path: Path) -> None:
+    ours, old, recent, other = (
+        tmp_path / name for name in ("kernels-a", "kernels-b", "kernels-c", "something")
+    )
+    month = time.time() - 31 * 86400
+    for folder in (ours, old, recent, other):
+        folder.mkdir()
+        (folder / "compiled-by-numba-0").touch()
+    for path in (ours, old, other, recent):
+        os.utime(path, (month, month))
+    for folder in (ours, old, other):
+        os.utime(folder / "compiled-by-numba-0", (month, month))
+    forget_old_kernels(ours)
+    assert {folder.name for folder in tmp_path.iterdir()} == {"kernels-a", "kernels-c", "something"}
