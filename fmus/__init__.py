@@ -22,7 +22,8 @@ from fmus.isolation import IsolatedVehicle, open_vehicle
 from fmus.model import FmuDescription
 from fmus.preparation import choose_profile, prepare
 from fmus.profile import VehicleProfile, make_profile, read_profile
-from fmus.vehicle import SavedState, Vehicle, VehicleFmu
+from fmus.vehicle import SavedState, VehicleFmu
+from fmus.vehicle_protocol import Vehicle
 
 __all__ = [
     "FmuArchiveError",

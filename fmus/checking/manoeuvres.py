@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fmus.errors import FmuError
-from fmus.vehicle import Vehicle
+from fmus.vehicle_protocol import Vehicle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from fmus.checking.manoeuvres import Opener
     from fmus.profile import Value, VehicleProfile
-    from fmus.vehicle import Vehicle
+    from fmus.vehicle_protocol import Vehicle
 
 
 UNGUARDED = Limits(speed=1e9, position_jump=1e9)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from fmus.profile import Value, VehicleProfile
-    from fmus.vehicle import Vehicle
+    from fmus.vehicle_protocol import Vehicle
 
 __all__ = ["IsolatedVehicle", "open_vehicle"]
 
