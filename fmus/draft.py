@@ -87,6 +87,11 @@ class Draft:
         return [f"[{entry.table}] {entry.doubt}" for entry in self.entries if entry.doubt]
 
     @property
+    def open_lines(self) -> bool:
+        """A line is marked as open, be it one that may stay so."""
+        return any(not (e.sure and all(line.sure for line in e.lines)) for e in self.entries)
+
+    @property
     def values(self) -> dict[str, Any]:
         """What is sure, as the profile's nested tables."""
         values: dict[str, Any] = {}
@@ -105,7 +110,7 @@ class Draft:
             f"# Vehicle profile of {printable(self.model.path.name, 100)}, drafted from what the "
             "FMU says about itself."
         ]
-        if not self.confident:
+        if self.open_lines:
             head.append('# Lines with "# ?" are open: decide them, and take away the "# ?".')
         head += [f"# {printable(remark, 160)}" for remark in self.remarks]
         taken = {line.value for entry in self.entries for line in entry.lines}

@@ -14,7 +14,14 @@ from fmus.errors import FmuProfileError
 from fmus.guessing import ROLES, alone, guesses
 from fmus.model import Kind
 from fmus.profile import make_profile
-from fmus.questions import channel_name, contradiction, listed, numbers, unit_question
+from fmus.questions import (
+    axis_question,
+    channel_name,
+    contradiction,
+    listed,
+    numbers,
+    unit_question,
+)
 from fmus.text import printable
 
 if TYPE_CHECKING:
@@ -33,7 +40,7 @@ NAMED: Final = 3  # doubts in an error
 def draft_profile(model: Model) -> Draft:
     """Guess a profile from names, units and causality."""
     inputs = [v for v in model.variables.values() if v.causality == "input"]
-    entries, used = _inputs(model, inputs)
+    entries, used = _inputs(model, inputs) if numbers(inputs) else _without_inputs(model)
     idle = [v.name for v in inputs if v.name not in used]
     entries = [_fmu(model), *entries, *_outputs(model), *_initial(model)]
     return Draft(model, tuple(entries), tuple(_remarks(model, idle if used else [])))
@@ -97,7 +104,7 @@ def _inputs(model: Model, inputs: Sequence[Variable]) -> tuple[list[Entry], set[
         key=lambda way: -_merit(ranked, way),
     )
     if not ways:
-        return [_no_input(ranked, inputs)], set()
+        return [_no_input(model, ranked, inputs)], set()
     way = ways[0]
     rivals = [other for other in ways[1:] if _merit(ranked, other) == _merit(ranked, way)]
     entries = [_axis("inputs", role, ranked[role]) for role in way]
@@ -131,7 +138,22 @@ def _merit(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> float:
     return fits * 100.0 + weakest + both
 
 
-def _no_input(ranked: dict[str, list[Guess]], inputs: Sequence[Variable]) -> Entry:
+def _without_inputs(model: Model) -> tuple[list[Entry], set[str]]:
+    """Some tools export what is to change during the run as tunable parameters."""
+    tunable = [
+        v
+        for v in model.variables.values()
+        if v.causality == "parameter" and v.variability == "tunable"
+    ]
+    entries, _ = _inputs(model, tunable)
+    if not tunable or "?" in {line.value for entry in entries for line in entry.lines}:
+        return _inputs(model, [])
+    names = " and ".join(f"'{printable(str(entry.lines[0].value), 40)}'" for entry in entries)
+    doubt = f"the FMU has no input; is it driven by {names}, tunable? Then take the lines"
+    return [_open(entry, doubt) for entry in entries], set()
+
+
+def _no_input(model: Model, ranked: dict[str, list[Guess]], inputs: Sequence[Variable]) -> Entry:
     for one, other in (("throttle", "brake"), ("drive_force", "brake_force")):
         for present, missing in ((one, other), (other, one)):
             if ranked[present] and not ranked[missing]:
@@ -140,6 +162,10 @@ def _no_input(ranked: dict[str, list[Guess]], inputs: Sequence[Variable]) -> Ent
                 line = Line("variable", "?", "an input of the FMU", sure=False)
                 return Entry(f"inputs.{missing}", (line,), "", printable(doubt), sure=False)
     names = numbers(inputs)
+    hint = axis_question(model, inputs)
+    if hint is not None:
+        name, line, doubt = hint
+        return Entry("inputs.force", (Line("variable", name, sure=False), line), "", doubt, False)
     has = f"its inputs are {listed(names)}" if names else "it has no numeric input"
     doubt = f'no input that drives a vehicle; {has}; add [inputs.force] variable = "..."'
     lines = (
@@ -240,7 +266,8 @@ def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = Fal
     if pedal:
         comment = "N at the wheels, fully pressed; giveway fmu identify measures it"
         lines.append(Line("full_force", PEDAL_FORCE[role], comment, sure=False))
-        doubt = doubt or f"the FMU does not say how strong it is; write full_force = {_force(role)}"
+        strength = f"the FMU does not say how strong it is; write full_force = {_force(role)}"
+        doubt = f"{doubt}; {strength}" if doubt else strength
     if alternative:
         return Entry(place, tuple(lines), "or else:", "", sure=False)
     return Entry(place, tuple(lines), "", doubt, sure)

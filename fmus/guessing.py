@@ -56,6 +56,7 @@ WANTED: Final = _set(
     "ref reference set setpoint sp target desired des demand dem request req cruise"
 )
 AT_START: Final = _set("0 start init initial begin")
+SHORT: Final = {"pdl": "pedal", "ped": "pedal", "accl": "accel", "trq": "torque"}
 DRIVE: Final = _set(
     "drive driving traction tractive propulsion propulsive thrust engine motor accelerating"
 )
@@ -103,7 +104,7 @@ ROLES: Final = {
     ),
     "brake": Role(
         units.NONE,
-        _set("brake brakes brakepedal brk brakeposition braking bpps"),
+        _set("brake brakes brakepedal brkpedal brk brakeposition braking bpps"),
         BRAKE | _set("bpps"),
         _set("park parking") | AT_START,
     ),
@@ -211,7 +212,7 @@ def _parts(name: str) -> list[str]:
 
 def _words(text: str) -> list[str]:
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])|(?<=[a-zA-Z])(?=\d)", " ", text)
-    return re.findall(r"[^\W_]+", spaced.lower())
+    return [SHORT.get(word, word) for word in re.findall(r"[^\W_]+", spaced.lower())]
 
 
 def _guess(model: Model, role: str, variable: Variable) -> Guess | None:

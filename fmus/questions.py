@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from fmus import units
 from fmus.draft import Line
-from fmus.guessing import FORCES, ROLES
+from fmus.guessing import ELSEWHERE, FORCES, ROLES, words_of
 from fmus.model import Channel
 from fmus.text import printable
 
@@ -15,28 +15,61 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from fmus.guessing import Guess
-    from fmus.model import Dimension, Variable
+    from fmus.model import Dimension, Model, Variable
+
+
+POWERED: Final = frozenset(["wheel", "wheels", "engine", "motor", "rear", "front"])  # what drives
 
 
 def unit_question(variable: Variable, wanted: Dimension, *, pedal: bool) -> tuple[Line, str]:
     """No unit, or one that nobody knows."""
     common = units.COMMON[wanted]
     name = printable(variable.name, 60)
-    guess = _unit_in(variable.name, wanted) or common.split(",")[0]
+    told = _unit_in(variable.name, wanted)
+    guess = told or common.split(",")[0]
     if pedal and (variable.maximum or 0.0) > 1.0:
-        guess = "%"
+        told = guess = "%"
     if variable.unit:
         unit = printable(variable.unit, 40)
         line = Line("unit", "?", f"{common}: nobody knows the FMU's '{unit}'", sure=False)
         return line, f"'{name}' is in '{unit}', an unknown unit; add unit = \"{guess}\" or its like"
-    line = Line("unit", "?", f"{common}: the FMU does not say", sure=False)
+    line = Line("unit", told or "?", f"{common}: the FMU does not say", sure=False)
     return line, f"'{name}' has no unit; add unit = \"{guess}\", or what it is ({common})"
 
 
 def _unit_in(name: str, wanted: Dimension) -> str:
-    """The unit that a name ends with: ``speed_kmh``."""
+    """The unit that a name ends with, as it is usually written: km/h for ``speed_kmh``."""
     last = re.split(r"[_.\s]", name)[-1]
-    return last if last and units.named(last).dimension == wanted and last != name else ""
+    unit = units.named(last)
+    if not last or last == name or unit.dimension != wanted:
+        return ""
+    usual = units.COMMON[wanted].split(", ")
+    return next((u for u in usual if units.named(u).factor == unit.factor), last)
+
+
+def axis_question(model: Model, inputs: Sequence[Variable]) -> tuple[str, Line, str] | None:
+    """A torque or a command in per cent, the only one there is: a force, but for a gain.
+
+    Returns:
+        the name, the line with the gain, the question; None: there is no such input, or two.
+    """
+    for dimension, what, line in (
+        (units.TORQUE, "ratio of the gears / radius of the wheels [m]", "1/m"),
+        (units.NONE, "the force at 1, which is 100 % [N]", "N at 100 %"),
+    ):
+        found = [
+            v
+            for v in inputs
+            if v.scalar and v.is_real and (unit := model.unit_of(v)) is not None
+            if units.to_si(unit).dimension == dimension
+            and not (ELSEWHERE - POWERED) & set(words_of(v.name))
+        ]
+        if len(found) == 1:
+            name = printable(found[0].name, 60)
+            kind = f"'{name}' is in {printable(found[0].unit, 40)}, {units.quantity(dimension)}"
+            doubt = f"no input is a force; {kind}: if it drives and brakes, add gain = {what}"
+            return found[0].name, Line("gain", "?", line, sure=False), doubt
+    return None
 
 
 def contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, str]:

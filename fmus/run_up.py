@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fmus.errors import FmuStartError
+from fmus.text import printable
 
 if TYPE_CHECKING:
     from fmus.vehicle import VehicleFmu
@@ -15,6 +16,7 @@ _CLOSE = 0.3  # [m/s] from which on the integrator works
 _LIMIT = 120.0  # [s] of simulated time
 _RESPONSE = 0.5  # [s] time constant of the approach
 _INTEGRATION = 4.0  # [s] of the integrator: what the model's friction does not account for
+_STILL = 0.02  # [m/s] less is no motion
 _STRONGEST = 3.0  # [m/s2] that is asked for
 
 
@@ -25,7 +27,7 @@ def run_up(vehicle: VehicleFmu, speed: float) -> float:
         FmuStartError: it does not get there.
     """
     mass, friction = vehicle.prepared.run_up_mass, vehicle.prepared.run_up_friction
-    h, integral, settled = vehicle.step_size, 0.0, 0.0
+    h, integral, settled, first = vehicle.step_size, 0.0, 0.0, vehicle.speed
     for _ in range(round(_LIMIT / h)):
         error = speed - vehicle.speed
         wanted = error / _RESPONSE + integral
@@ -36,9 +38,28 @@ def run_up(vehicle: VehicleFmu, speed: float) -> float:
         settled = settled + h if abs(speed - vehicle.speed) <= _NEAR else 0.0
         if settled >= _SETTLED and vehicle.between_steps:
             return vehicle.time
+    if abs(vehicle.speed - first) < _STILL:
+        msg = (
+            f"{vehicle.path}: does not reach its initial speed of {speed:g} m/s: no force moves it "
+            f"(it is at {vehicle.speed:.4g} m/s after {_LIMIT:g} s); a gear, ignition or brake may "
+            f"have to be set under [parameters]{_idle(vehicle)}"
+        )
+        raise FmuStartError(msg)
     msg = (
         f"{vehicle.path}: does not reach its initial speed of {speed:g} m/s within {_LIMIT:g} s "
         f"(it is at {vehicle.speed:.4g} m/s); name its parameter for it, [initial.speed] variable "
         "= ..., or start slower (--ego-initial-speed)"
     )
     raise FmuStartError(msg)
+
+
+def _idle(vehicle: VehicleFmu) -> str:
+    """The inputs that nobody drives, which keep their start values."""
+    prepared = vehicle.prepared
+    driven = {wire.channel.variable.name for wire in prepared.wiring.inputs}
+    idle = [
+        f"{v.name} = {v.start or '?'}"
+        for v in prepared.model.variables.values()
+        if v.causality == "input" and v.name not in driven
+    ]
+    return f"; inputs that keep their start values: {printable(', '.join(idle))}" if idle else ""

@@ -249,7 +249,8 @@ def _verdict(drafted: Draft, draft: Path | None) -> Text:
     doubts = drafted.doubts
     where = f"Draft written to {draft}" if draft is not None else "Draft above"
     if not doubts:
-        return Text(f"{where}: complete, every guess is sure.", style="green")
+        rest = "; what is marked '# ?' may stay so" if drafted.open_lines else ""
+        return Text(f"{where}: complete, every guess is sure{rest}.", style="green")
     text = Text(f"{where}: {len(doubts)} open question{'s' * (len(doubts) > 1)}:", style="yellow")
     for doubt in doubts:
         text.append(f"\n  {printable(doubt)}", style="not bold default")

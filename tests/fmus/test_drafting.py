@@ -170,7 +170,7 @@ def questions(draft):
     [
         (["force"], ["speed [m/s]"], "[inputs.force] 'force' has no unit; add unit = \"N\""),
         (["force [N]"], ["speed"], "[outputs.speed] 'speed' has no unit; add unit = \"m/s\""),
-        (["force [N]"], ["speed_kmh"], 'add unit = "kmh"'),
+        (["force [N]"], ["speed_kmh"], 'add unit = "km/h"'),
         (["force [N]"], ["v [m/s]", "x"], "[outputs.position] 'x' has no unit; add unit = \"m\""),
         (["force [N]"], ["speed [warp]"], "'warp', an unknown unit"),
     ],
