@@ -37,11 +37,20 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
         return ""
     fmu, profile = config.vehicle.fmu, config.vehicle.profile
     named = f" --profile {profile}" if profile else ""
-    return (
+    missed = (
         f"ego '{ego.id}': the vehicle does not answer as the controller's M = {mass:g} kg, alpha = "
         f"{friction:g} N.s/m predict: off by up to {error:.2g} m in "
-        f"{config.mpc.horizon * time_step:.3g} s{_fitting(trace)}; match them with: giveway fmu "
-        f"identify {fmu}{named} -o {profile or 'car.toml'}"
+        f"{config.mpc.horizon * time_step:.3g} s"
+    )
+    if margin > 0.0:  # identified: once more would find the same
+        return (
+            f"{missed}, {margin:.2g} m as identified: at forces that do not arrive, or too late; "
+            f"see its limits with: giveway fmu check {fmu}{named}, and keep to them by "
+            "--force-limit"
+        )
+    return (
+        f"{missed}{_fitting(trace)}; match them with: giveway fmu identify {fmu}{named} "
+        f"-o {profile or 'car.toml'}"
     )
 
 

@@ -230,4 +230,4 @@ def _observe(report: CheckReport) -> None:
     add(observe.matches_model(model, response, expected))
     add(observe.actuator_lag(model, response.step_size, expected))
     if full is not None and rolling is not None:
-        add(observe.actuator_limits(model, full, rolling, expected))
+        add(observe.actuator_limits(model, response, full, rolling, expected))

@@ -10,7 +10,7 @@ from fmus.checking.consistency import SPEED_UNITS, unit_of
 from fmus.checking.findings import Finding
 from fmus.checking.fitting import fit, prepare
 from fmus.checking.prediction import position_errors
-from fmus.checking.saturation import saturation
+from fmus.checking.saturation import Resisted, saturation
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -25,6 +25,8 @@ START_TOLERANCE = 0.05  # [m/s]
 MASS_TOLERANCE = 0.05  # of the controller's M
 POSITION_TOLERANCE = 0.1  # [m] at the horizon of the controller
 NO_VEHICLE = 0.3  # of R squared: below, M and alpha say nothing
+WEAK = 2.0  # [m/s2] a force limit that brakes no harder is hardly one of this vehicle
+FIRM = 6.0  # [m/s2] hard braking of a loaded truck on a dry road
 LATE = 2.0  # steps of lag and dead time that are worth a warning
 
 
@@ -174,22 +176,51 @@ def matches_model(model: Fit | None, response: Trace, expected: Expected) -> Fin
     known = 0.0 if expected.identified is None else 1.5 * expected.identified.position_error
     if abs(ratio - 1.0) <= MASS_TOLERANCE and off <= max(POSITION_TOLERANCE, known):
         return Finding(name, "pass", text)
+    lead = _missing_lead(model.mass, response.step_size, expected)
+    if lead is not None:
+        return Finding(
+            name, "warn", text,
+            f"it takes about {lead:.2g} s to its set-point: write `lead = {lead:.2g}` in "
+            "[inputs.speed_setpoint], and it answers as the controller thinks",
+        )  # fmt: skip
     return Finding(
         name, "warn", text, "'giveway fmu identify' writes its own M and alpha into the profile"
     )
 
 
-def actuator_limits(model: Fit | None, full: Trace, rolling: Trace, expected: Expected) -> Finding:
-    """Do the largest forces of the controller arrive?"""
-    name = "force limits"
+def _missing_lead(mass: float, step: float, expected: Expected) -> float | None:
+    """The time constant [s] of a speed controller whose profile names none.
+
+    With a lead T of one step, v' = (v_set - v) / tau = T / tau (u - alpha v) / M: it seems tau / T
+    times as heavy as the inverse map's M.
+    """
+    setpoint = expected.profile.inputs.speed_setpoint if expected.profile else None
+    if setpoint is None or setpoint.lead is not None or expected.profile is None:
+        return None
+    lead = step * mass / expected.profile.inverse_map.mass
+    return lead if lead >= LATE * step else None
+
+
+def actuator_limits(
+    model: Fit | None, response: Trace, full: Trace, rolling: Trace, expected: Expected
+) -> Finding:
+    """Do the largest forces of the controller arrive, and are they enough?"""
+    name, largest = "force limits", expected.largest_force
     if model is None:
         return Finding(name, "skip", "not to be said without a model")
-    drive, brake = (
-        saturation([trace], sign, model) for trace, sign in ((full, 1.0), (rolling, -1.0))
-    )
-    lowest = min(drive, brake)
+    resisted = Resisted.of(model, [prepare(response), prepare(rolling)])
+    drive = saturation([full], 1.0, resisted, [response])
+    brake = saturation([rolling], -1.0, resisted)
+    lowest, hardest = min(drive, brake), largest / resisted.mass
     if not np.isfinite(lowest):
-        return Finding(name, "pass", f"{expected.largest_force:.0f} N drive as they should")
+        lagging = _missing_lead(resisted.mass, response.step_size, expected) is not None
+        if hardest >= WEAK or lagging:  # a lead mends that
+            return Finding(name, "pass", f"{largest:.0f} N drive as they should")
+        enough = float(f"{FIRM * resisted.mass:.1g}")
+        return Finding(
+            name, "warn", f"{largest:.0f} N brake it with {hardest:.2g} m/s² at most",
+            f"for this mass check, identify and run it with --force-limit {enough:.0f}",
+        )  # fmt: skip
     which = "drive" if drive <= brake else "brake"
     return Finding(
         name, "warn", f"no more than {lowest:.0f} N of {which} force arrive",

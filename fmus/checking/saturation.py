@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -13,10 +14,56 @@ from fmus.checking.fitting import STANDSTILL, Fit, fit, prepare
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
+    from fmus.checking.fitting import Drive
     from fmus.checking.manoeuvres import Trace
 
 SATURATED = 0.85  # less of the force than this share arrives: the actuator is at its limit
+_ENOUGH = 20  # steps for four coefficients
+BEYOND = 1.5  # of a limit: what arrives beyond it shows that it is none
 SHORTEST = 0.3  # [s] of a phase from which a force is read
+
+
+@dataclass(frozen=True)
+class Resisted:
+    """M v' + alpha v + c_0 + c_2 v |v| = F of a vehicle that rolls forwards.
+
+    M and alpha alone would take the rolling resistance of a truck for a drive that falls short.
+    """
+
+    mass: float  # M [kg]
+    friction: float  # alpha [N.s/m]
+    constant: float  # c_0 [N]
+    quadratic: float  # c_2 [N.s2/m2]
+    lag: float  # [s]
+    delay: float  # [s]
+
+    @classmethod
+    def of(cls, model: Fit, drives: Sequence[Drive]) -> Self:
+        """The least squares of all four, with the actuator of ``model``."""
+        plain = cls(model.mass, model.friction, 0.0, 0.0, model.lag, model.delay)
+        acting = [mean_force(d.force, d.step, model.lag, model.delay)[d.used] for d in drives]
+        if sum(force.size for force in acting) < _ENOUGH:
+            return plain
+        u = np.concatenate(acting)
+        v = np.concatenate([d.speed[:-1][d.used] for d in drives])
+        y = np.concatenate([d.acceleration[d.used] for d in drives])
+        X = np.column_stack((u, -v, -np.ones_like(v), -v * np.abs(v)))
+        scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
+        solution, *_ = np.linalg.lstsq(X / scale, y, rcond=None)
+        inverse, *resistance = (solution / scale).tolist()
+        if inverse <= 0.0:
+            return plain
+        alpha, c_0, c_2 = (share / inverse for share in resistance)
+        return cls(1.0 / inverse, alpha, c_0, c_2, model.lag, model.delay)
+
+    def force(
+        self, speed: NDArray[np.float64], acceleration: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """What must act [N]."""
+        drag = self.friction * speed + self.constant + self.quadratic * speed * np.abs(speed)
+        return self.mass * acceleration + drag
 
 
 def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
@@ -33,27 +80,58 @@ def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
         model = fit(known)
         for side, sign in ((0, 1.0), (1, -1.0)):
             if model is not None and not np.isfinite(limits[side]):
-                limits[side] = saturation(group, sign, model)
+                resisted = Resisted.of(model, known)
+                limits[side] = min(
+                    _limit(trace, sign, resisted, before, strongest)
+                    for trace, before, strongest in zip(
+                        group, tests[weaker - 1], tests[-1], strict=True
+                    )
+                )
     return limits[0], limits[1]
 
 
-def saturation(traces: Sequence[Trace], sign: float, model: Fit) -> float:
-    """The smallest force [N] of one sign that falls short of the model, or infinity."""
+def _limit(trace: Trace, sign: float, model: Resisted, weaker: Trace, strongest: Trace) -> float:
+    """What a test shows of a limit [N], unless with the most force far more arrives."""
+    limit = saturation([trace], sign, model, [weaker])
+    most = max((arrives for _, arrives in arriving(strongest, sign, model)), default=0.0)
+    return limit if most <= BEYOND * limit else np.inf
+
+
+def saturation(
+    traces: Sequence[Trace], sign: float, model: Resisted, weaker: Sequence[Trace] = ()
+) -> float:
+    """The smallest force [N] of one sign that falls short of the model, or infinity.
+
+    Args:
+        traces: of the forces in question.
+        sign: of those that count.
+        model: of the vehicle.
+        weaker: the same tests with less force. Where more arrives the more is asked for, as in a
+            higher gear, there is no limit.
+    """
+    lesser = [arriving(trace, sign, model) for trace in weaker] or [[] for _ in traces]
     found = [
         arrives
-        for trace in traces
+        for trace, before in zip(traces, lesser, strict=True)
         for should, arrives in arriving(trace, sign, model)
-        if arrives < SATURATED * should
+        if arrives < SATURATED * should and not _grows(should, arrives, before)
     ]
     return max(min(found), 0.0) if found else np.inf
 
 
-def arriving(trace: Trace, sign: float, model: Fit) -> list[tuple[float, float]]:
+def _grows(should: float, arrives: float, before: Sequence[tuple[float, float]]) -> bool:
+    """As much more arrives than in the weaker test as was asked for."""
+    if not before or not 0.0 < before[-1][0] < should or before[-1][1] <= 0.0:
+        return False
+    return arrives / before[-1][1] >= SATURATED * should / before[-1][0]
+
+
+def arriving(trace: Trace, sign: float, model: Resisted) -> list[tuple[float, float]]:
     """Force that should act and that does [N], of the later half of each phase of one sign."""
     h = trace.step_size
     edges = np.flatnonzero(np.diff(trace.force)) + 1
     should = mean_force(trace.force, h, model.lag, model.delay)
-    does = model.mass * np.diff(trace.speed) / h + model.friction * trace.speed[:-1]
+    does = model.force(trace.speed[:-1], np.diff(trace.speed) / h)
     pairs = []
     for begin, end in pairwise([0, *edges.tolist(), trace.force.size]):
         half = slice((begin + end + 1) // 2, end)

@@ -54,6 +54,13 @@ def test_what_the_controller_allows_for_is_no_mismatch():
     assert remark(drive(1500.0, 100.0), H, 1.0) == ""
 
 
+def test_an_identified_vehicle_is_not_sent_to_be_identified_again():
+    text = remark(drive(2500.0, 100.0), H, 0.05)
+    assert "0.05 m as identified" in text
+    assert "giveway fmu check fmi2" in text
+    assert "identify" not in text.replace("identified", "")
+
+
 def test_the_pid_has_no_model():
     ego = drive(1500.0, 100.0)
     ego.config = RunConfig(controller="pid")
