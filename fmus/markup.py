@@ -8,7 +8,7 @@ parser (expat) that reads the rest.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NoReturn
 from xml.parsers import expat
 
 from fmus.errors import FmuArchiveError, FmuFileError
@@ -63,7 +63,7 @@ def guard(data: bytes, where: str, root: str) -> None:
         FmuArchiveError: a document type, or beyond all measure.
         FmuFileError: not well-formed, or another first element.
     """
-    _walk(data, where, root, None, lambda _tag: None)
+    _Walk(where, root, None, lambda _tag: None).go(data)
 
 
 def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
@@ -93,61 +93,79 @@ def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
         else:
             open_elements.pop()
 
-    _walk(data, where, root, start, end)
+    _Walk(where, root, start, end).go(data)
     return top.children[0]
 
 
-def _walk(
-    data: bytes,
-    where: str,
-    root: str,
-    start: Callable[[str, dict[str, str], int], None] | None,
-    end: Callable[[str], None],
-) -> None:
-    parser = expat.ParserCreate()
-    depth = count = 0
+class _Walk:
+    """One pass over a document, which counts what goes by.
 
-    def refuse(what: str) -> None:
-        msg = f"{where}, line {parser.CurrentLineNumber}: {what}; no tool exports such a file"
-        raise FmuArchiveError(msg)
+    Args:
+        where: of the document, for messages.
+        root: the first element's name.
+        start: called with the name, the attributes and the line of each element; None: nobody is.
+        end: called with its name.
+    """
 
-    def on_start(tag: str, attributes: dict[str, str]) -> None:
-        nonlocal depth, count
-        if not count and tag != root:
-            line = parser.CurrentLineNumber
-            what = f"<{printable(tag, 60)}> instead of <{root}>; export the model again"
-            raise FmuFileError(f"{where}, line {line}: {what}")
-        depth += 1
-        count += 1
-        if depth > MAX_DEPTH:
-            refuse(f"more than {MAX_DEPTH} elements within each other")
-        if count > MAX_ELEMENTS:
-            refuse(f"more than {MAX_ELEMENTS} elements")
+    def __init__(
+        self,
+        where: str,
+        root: str,
+        start: Callable[[str, dict[str, str], int], None] | None,
+        end: Callable[[str], None],
+    ) -> None:
+        self._where, self._root, self._start, self._end = where, root, start, end
+        self._depth = self._count = 0
+        self._parser = parser = expat.ParserCreate()
+        parser.StartDoctypeDeclHandler = self._on_doctype
+        parser.StartElementHandler = self._on_start
+        parser.EndElementHandler = self._on_end
+
+    def go(self, data: bytes) -> None:
+        """Over all of it.
+
+        Raises:
+            FmuArchiveError: a document type, or beyond all measure.
+            FmuFileError: not well-formed, or another first element.
+        """
+        parser = self._parser
+        try:
+            for place in range(0, len(data), CHUNK):
+                parser.Parse(data[place : place + CHUNK], False)
+                if place + CHUNK - parser.CurrentByteIndex > MAX_TOKEN:
+                    self._refuse(f"a tag of more than {MAX_TOKEN >> 20} MB")
+            parser.Parse(b"", True)
+        except expat.ExpatError as error:
+            msg = f"{self._where}: not well-formed XML: {printable(error)}; export the model again"
+            raise FmuFileError(msg) from None
+        except (LookupError, ValueError) as error:  # an encoding that nobody knows
+            msg = f"{self._where}: {printable(error)}; expected UTF-8; export the model again"
+            raise FmuFileError(msg) from None
+
+    def _on_start(self, tag: str, attributes: dict[str, str]) -> None:
+        line = self._parser.CurrentLineNumber
+        if not self._count and tag != self._root:
+            what = f"<{printable(tag, 60)}> instead of <{self._root}>; export the model again"
+            raise FmuFileError(f"{self._where}, line {line}: {what}")
+        self._depth += 1
+        self._count += 1
+        if self._depth > MAX_DEPTH:
+            self._refuse(f"more than {MAX_DEPTH} elements within each other")
+        if self._count > MAX_ELEMENTS:
+            self._refuse(f"more than {MAX_ELEMENTS} elements")
         if len(attributes) > MAX_ATTRIBUTES:
-            refuse(f"an element with {len(attributes)} attributes")
-        if start is not None:
-            start(tag, attributes, parser.CurrentLineNumber)
+            self._refuse(f"an element with {len(attributes)} attributes")
+        if self._start is not None:
+            self._start(tag, attributes, line)
 
-    def on_end(tag: str) -> None:
-        nonlocal depth
-        depth -= 1
-        end(tag)
+    def _on_end(self, tag: str) -> None:
+        self._depth -= 1
+        self._end(tag)
 
-    def on_doctype(*_declaration: object) -> None:
-        refuse("a document type (<!DOCTYPE ...>); a model description has none")
+    def _on_doctype(self, *_declaration: object) -> None:
+        self._refuse("a document type (<!DOCTYPE ...>); a model description has none")
 
-    parser.StartDoctypeDeclHandler = on_doctype
-    parser.StartElementHandler = on_start
-    parser.EndElementHandler = on_end
-    try:
-        for place in range(0, len(data), CHUNK):
-            parser.Parse(data[place : place + CHUNK], False)
-            if place + CHUNK - parser.CurrentByteIndex > MAX_TOKEN:
-                refuse(f"a tag of more than {MAX_TOKEN >> 20} MB")
-        parser.Parse(b"", True)
-    except expat.ExpatError as error:
-        msg = f"{where}: not well-formed XML: {printable(error)}; export the model again"
-        raise FmuFileError(msg) from None
-    except (LookupError, ValueError) as error:  # an encoding that nobody knows
-        msg = f"{where}: {printable(error)}; expected UTF-8; export the model again"
-        raise FmuFileError(msg) from None
+    def _refuse(self, what: str) -> NoReturn:
+        line = self._parser.CurrentLineNumber
+        msg = f"{self._where}, line {line}: {what}; no tool exports such a file"
+        raise FmuArchiveError(msg)
