@@ -18,7 +18,6 @@ from fmus.errors import FmuProfileError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from fmus.model import Kind
 
 Value = bool | int | float | str | list[float]
 
@@ -193,11 +192,6 @@ class VehicleProfile(Table):
                 else:
                     flat[name] = value
         return flat
-
-    def kind(self, offered: tuple[Kind, ...]) -> Kind:
-        """The kind to run among those that the FMU offers (Co-Simulation first)."""
-        wanted = self.fmu.kind
-        return next((kind for kind in offered if kind == wanted), offered[0])
 
 
 def _is_value(value: object) -> bool:

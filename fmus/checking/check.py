@@ -10,15 +10,12 @@ from fmus.checking import observations as observe
 from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
 from fmus.checking.manoeuvres import Phase, try_to_drive
-from fmus.checking.prediction import simulate
 from fmus.checking.self_check import convergence, milliseconds, plain, remedy
 from fmus.errors import FmuCrashError, FmuError, FmuOutputError, FmuStepError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    import numpy as np
-    from numpy.typing import NDArray
 
     from fmus.checking.manoeuvres import Attempt, Opener, Trace
     from fmus.checking.self_check import Convergence
@@ -58,17 +55,6 @@ class CheckReport:
     def passed(self) -> bool:
         """Whether no test failed."""
         return all(finding.verdict != "fail" for finding in self.findings)
-
-    def expected_response(self) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
-        """(n + 1,) position [m] and speed [m/s] of the controller's model in the response."""
-        trace = self.traces.get("response")
-        if trace is None:
-            return None
-        model = self.expected
-        position, speed = simulate(
-            trace.force, trace.step_size, model.mass, model.friction, float(trace.speed[0])
-        )
-        return position + trace.position[0], speed
 
 
 def check(
