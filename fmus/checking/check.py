@@ -16,7 +16,6 @@ from fmus.errors import FmuCrashError, FmuError, FmuOutputError, FmuStepError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-
     from fmus.checking.manoeuvres import Attempt, Opener, Trace
     from fmus.checking.self_check import Convergence
     from fmus.profile import VehicleProfile
