@@ -46,7 +46,7 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
         return (
             f"{missed}, {margin:.2g} m as identified: at forces that do not arrive, or too late; "
             f"see its limits with: giveway fmu check {fmu}{named}, and keep to them by "
-            "--force-limit"
+            "--mpc-force-limit"
         )
     return (
         f"{missed}{_fitting(trace)}; match them with: giveway fmu identify {fmu}{named} "

@@ -23,8 +23,8 @@ POOR_FIT = 0.9  # of R squared, below which a remark says so
 def saturation_remarks(limits: tuple[float, float]) -> list[str]:
     """On the largest drive and brake force that arrive [N], where they were reached."""
     return [
-        f"no more than {limit:.0f} N of {name} force arrive: run with --force-limit {limit:.0f} or "
-        f"less{' (which bounds the brakes, too)' if name == 'drive' else ''}"
+        f"no more than {limit:.0f} N of {name} force arrive: run with --mpc-force-limit "
+        f"{limit:.0f} or less{' (which bounds the brakes, too)' if name == 'drive' else ''}"
         for name, limit in zip(("drive", "brake"), limits, strict=True)
         if np.isfinite(limit)
     ]

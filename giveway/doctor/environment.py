@@ -141,7 +141,7 @@ def _vehicle() -> list[Finding]:
                 vehicle.step(0.0)
                 findings.append(ok(subject, f"the bundled FMU steps ({vehicle.position:.3f} m)"))
         except FmuError as problem:
-            remedy = "reinstall giveway, or name another FMU with --vehicle-fmu"
+            remedy = "reinstall giveway, or name another FMU with --vehicle"
             findings.append(error(subject, str(problem), remedy))
     return findings
 
