@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from fmus.errors import FmuProfileError
+from fmus.text import printable
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -254,4 +255,5 @@ def _explained(error: Any) -> str:
     if error["type"] == "value_error":
         table = ".".join((*tables, key))
         return f"[{table}]: {error['ctx']['error']}" if table else str(error["ctx"]["error"])
-    return f"{place} = {error['input']!r}: {str(error['msg']).removeprefix('Input ')}"
+    given = printable(repr(error["input"]), 60)
+    return f"{place} = {given}: {str(error['msg']).removeprefix('Input ')}"

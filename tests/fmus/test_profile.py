@@ -167,3 +167,9 @@ def test_what_is_no_file(tmp_path):
         read_profile(tmp_path / "car.toml")
     with pytest.raises(FmuProfileError, match="cannot be read"):
         read_profile(tmp_path)
+
+
+def test_a_message_shows_the_beginning_of_a_long_value(refusal):
+    said = refusal(f'[inputs.force]\nvariable = "u"\n[fmu]\nkind = "{"x" * 5000}"\n' + SPEED)
+    assert said.startswith("[fmu] kind = 'xxx")
+    assert len(said) < 200
