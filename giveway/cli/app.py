@@ -118,7 +118,7 @@ def _run(
             code = fail("interrupted before the run began", INTERRUPTED)
         except GivewayError as error:
             code = fail(str(error), error.exit_code)
-    raise typer.Exit(code)
+        raise SystemExit(code)  # in here: a failed run that dies on its way out is no success
 
 
 def _config(
