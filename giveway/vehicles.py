@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
 _CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
 _SAME_STEP = 1e-6  # relative
+_OTHER_SIZE = 2.0  # times as heavy, or as light, as the defaults' car
 _converged: set[tuple[str, str, float]] = set()  # what has passed the self-check in this process
 _BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
 
@@ -194,7 +195,37 @@ def model_remark(config: RunConfig, time_step: float) -> str:
         text += f"; the MPC keeps {margin:.2g} m more than the safe distance for its errors"
     if abs(model.time_step - time_step) > _SAME_STEP * time_step:
         text += f"; it was fitted for steps of {model.time_step:g} s and not {time_step:g} s"
-    return text
+    return text + _other_size(config)
+
+
+def _other_size(config: RunConfig) -> str:
+    """The flags for a vehicle of another size than that of the defaults; empty for a car.
+
+    Forces that move 1000 kg as they should hardly brake a truck.
+    """
+    usual = type(config)()
+    ratio = config.vehicle.mass / usual.vehicle.mass
+    if 1.0 / _OTHER_SIZE < ratio < _OTHER_SIZE:
+        return ""
+    flags = [
+        f"{flag} {float(f'{ratio * default:.2g}'):.10g}"
+        for flag, value, default in (
+            ("--mpc-force-limit", config.mpc.force_limit, usual.mpc.force_limit),
+            ("--mpc-force-rate-limit", config.mpc.force_rate_limit, usual.mpc.force_rate_limit),
+            (
+                "--pid-proportional-gain",
+                config.pid.proportional_gain,
+                usual.pid.proportional_gain,
+            ),
+        )
+        if value == default
+    ]
+    if not flags:
+        return ""
+    return (
+        f"; forces and gains that are still those of {usual.vehicle.mass:g} kg would be, for the "
+        f"same accelerations, {' '.join(flags)}"
+    )
 
 
 def _model(config: RunConfig) -> FittedModel | None:

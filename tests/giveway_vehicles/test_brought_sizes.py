@@ -1,0 +1,51 @@
+"""A truck is told which forces and gains are still those of the paper's car."""
+
+from __future__ import annotations
+
+import pytest
+
+from giveway.config import RunConfig
+from giveway.vehicles import model_remark
+
+PROFILE = """
+[inputs.force]
+variable = "F"
+[outputs.speed]
+variable = "v"
+[model]
+mass = {mass}
+friction = 100.0
+r_squared = 0.999
+speed_error = 0.01
+position_error = 0.1
+horizon = 0.75
+time_step = 0.05
+"""
+
+
+@pytest.fixture
+def remark(tmp_path):
+    def of(mass, **tables):
+        path = tmp_path / "car.toml"
+        path.write_text(PROFILE.format(mass=mass), encoding="utf-8")
+        vehicle = {"profile": str(path), "mass": mass, "friction": 100.0}
+        return model_remark(RunConfig.model_validate({"vehicle": vehicle, **tables}), 0.05)
+
+    return of
+
+
+@pytest.mark.parametrize("mass", [600.0, 1000.0, 1900.0])
+def test_a_car_keeps_the_defaults(remark, mass):
+    assert "--" not in remark(mass)
+
+
+def test_a_truck_gets_the_same_accelerations(remark):
+    assert remark(18_000.0).endswith(
+        "for the same accelerations, --mpc-force-limit 140000 --mpc-force-rate-limit 18000 "
+        "--pid-proportional-gain 43000"
+    )
+
+
+def test_what_has_been_set_is_not_advised(remark):
+    text = remark(18_000.0, mpc={"force_limit": 1e5, "force_rate_limit": 18_000.0})
+    assert text.endswith("for the same accelerations, --pid-proportional-gain 43000")
