@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from math import exp
+from math import exp, nan
 
 import pytest
 
-from fmus import FmuPlatformError, FmuStartError, FmuStateError, FmuVariableError
+from fmus import FmuPlatformError, FmuStartError, FmuStateError, FmuVariableError, bundled_fmu
+from fmus.instance import ERROR
 
 VERSIONS = ("1.0", "2.0", "3.0")
 SAVING = {"1.0": "", "2.0": "canGetAndSetFMUstate", "3.0": "canGetAndSetFMUState"}
@@ -43,6 +44,16 @@ def test_inputs_count_from_the_step_in_which_they_are_written(zoo, version, run)
     car.inputs[0] = 0.0
     car.tick(H, H)
     assert car.outputs[1] == pytest.approx(moved(0.0, H, speed)[1], rel=1e-12)
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_an_input_that_is_refused_ends_the_step_before_it_begins(version, run):
+    car = run(bundled_fmu(version), {"force": 700.0}, 1)
+    before = list(car.outputs)
+    car.inputs[0] = nan
+    assert car.tick(H, H) == ERROR
+    assert "expected a finite number" in car.journal.take()
+    assert list(car.outputs) == before
 
 
 @pytest.mark.parametrize(

@@ -247,6 +247,27 @@ def test_runge_kutta_is_of_order_four():
     assert orders == pytest.approx([4.0, 4.0], abs=0.15)
 
 
+class Clock:
+    """x' = 4 t^3, a function of the time alone, which Runge-Kutta's weights (Simpson's) know."""
+
+    nx, nz = 1, 0
+
+    def derivatives(self, time, x, slope):
+        ctypes.c_double.from_address(slope).value = 4.0 * time**3
+
+    def undefined(self, slope, time):
+        return ""
+
+
+def test_every_stage_of_a_step_has_its_time():
+    solver = RungeKutta(Clock(), 1e-6)
+    solver.restart(1.0, np.array([1.0]), np.ones(1))
+    time = 1.0
+    while time < 3.0:
+        time = solver.step(3.0)
+        assert solver.x[0] == pytest.approx(time**4, rel=1e-13)
+
+
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
 @pytest.mark.parametrize("kind", [RungeKutta, Cvode])
 def test_the_error_follows_the_tolerance(kind, tolerance):

@@ -72,6 +72,21 @@ def test_a_reply_in_drops_does_not_stretch_the_time_out():
     line.close()
 
 
+def test_every_request_has_a_time_out_of_its_own():
+    here, there = socket.socketpair()
+    line = Line(here)
+    with there:
+        for number, timeout in enumerate((0.05, 0.05, 0.01, 5.0), start=1):
+            if number < 4:
+                with pytest.raises(TimeoutError):
+                    line.ask(STEP, 1.0, 0.0, timeout)
+            else:
+                there.sendall(REPLY.pack(DONE, number, 0, 1.0, 2.0, 3.0))
+                assert line.ask(STEP, 1.0, 0.0, timeout)[0]
+            assert here.gettimeout() == timeout
+    line.close()
+
+
 @pytest.fixture
 def few_files():
     """So few that the connection's number is among those that the zoo writes into."""
