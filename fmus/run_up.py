@@ -16,6 +16,7 @@ _CLOSE = 0.3  # [m/s] from which on the integrator works
 _LIMIT = 120.0  # [s] of simulated time
 _RESPONSE = 0.5  # [s] time constant of the approach
 _INTEGRATION = 4.0  # [s] of the integrator: what the model's friction does not account for
+_BACKWARDS = 1.0  # [m/s] so much is no creeping
 _STILL = 0.02  # [m/s] less is no motion
 _STRONGEST = 3.0  # [m/s2] that is asked for
 
@@ -38,6 +39,14 @@ def run_up(vehicle: VehicleFmu, speed: float) -> float:
         settled = settled + h if abs(speed - vehicle.speed) <= _NEAR else 0.0
         if settled >= _SETTLED and vehicle.between_steps:
             return vehicle.time
+    if vehicle.speed < first - _BACKWARDS:
+        role = vehicle.prepared.wiring.inputs[0].role
+        msg = (
+            f"{vehicle.path}: forces forwards drive it backwards (it is at {vehicle.speed:.4g} m/s "
+            f"after {_LIMIT:g} s, and not at its initial speed of {speed:g} m/s); turn the sign "
+            f"with gain = -1.0 in [inputs.{role}], or in [outputs.speed]"
+        )
+        raise FmuStartError(msg)
     if abs(vehicle.speed - first) < _STILL:
         msg = (
             f"{vehicle.path}: does not reach its initial speed of {speed:g} m/s: no force moves it "

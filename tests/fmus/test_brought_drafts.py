@@ -129,3 +129,16 @@ def test_a_car_that_no_force_moves_names_the_inputs_that_nobody_sets(zoo):
         pytest.raises(FmuStartError, match=r"no force moves it .* spare_input = "),
     ):
         vehicle.start(speed=4.0)
+
+
+def test_a_car_with_the_sign_of_its_force_turned_is_told_the_line(zoo):
+    car = zoo.car(initial=(), spoken={"force": (-1.0, 0.0)})
+    values = zoo.profile(car)
+    values.pop("initial", None)
+    with (
+        VehicleFmu(car, step_size=0.05, profile=make_profile(values, "test")) as vehicle,
+        pytest.raises(
+            FmuStartError, match=r"drive it backwards .* gain = -1.0 in \[inputs.force\]"
+        ),
+    ):
+        vehicle.start(speed=4.0)
