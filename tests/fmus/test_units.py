@@ -139,3 +139,15 @@ def test_any_text_has_an_answer(text):
     assert unit.name == text
     assert math.isfinite(unit.factor)
     assert unit.factor > 0
+
+
+@pytest.mark.parametrize(
+    ("product", "unit"),
+    [("V.A", "W"), ("A.s/s", "A"), ("J/s", "W"), ("N.m", "J"), ("N/m2", "Pa"), ("1/s", "Hz")],
+)
+def test_derived_units_are_what_they_are_derived_from(product, unit):
+    assert named(product) == Unit(product, 1.0, 0.0, named(unit).dimension)
+
+
+def test_a_current_is_a_base_quantity():
+    assert named("A").dimension == (0, 0, 0, 1, 0, 0, 0, 0)
