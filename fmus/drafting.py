@@ -252,6 +252,9 @@ def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = Fal
     elif variable.size > 1:
         doubt = f"'{printable(variable.name, 60)}' is an array of {variable.size}; which element?"
         sure = False
+    if variable.negated:
+        minus = f"'{printable(name, 60)}' is minus another variable: is it positive forwards?"
+        doubt = doubt or f"{minus} Then keep the line, else add gain = -1.0"
     pedal = role in {"throttle", "brake"}
     if best.fits is None:
         line, question = unit_question(variable, wanted, pedal=pedal)

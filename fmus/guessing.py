@@ -50,7 +50,7 @@ ELSEWHERE: Final = _set(
     "inclination angle disturbance disturb noise drag aero rolling resistance gravity error err "
     "rel relative lead leader front rear wheel wheels engine motor angular rot rotational omega "
     "rpm temperature gap headway max min limit lim lower upper bound ambient nominal mean average "
-    "spring damper support fixed vy vz ay az fy fz"
+    "spring damper support fixed vy vz ay az fy fz rev reverse reversed backward backwards"
 )
 WANTED: Final = _set(
     "ref reference set setpoint sp target desired des demand dem request req cruise"

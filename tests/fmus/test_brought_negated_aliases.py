@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from fmus.drafting import draft_profile
 from fmus.fmi.reading import read_model
 
 
@@ -59,3 +60,10 @@ def test_a_model_description_tells_which_they_are(reversed_car):
     plain, marked = reversed_car
     assert not any(v.negated for v in read_model(plain).variables.values())
     assert all(v.negated for v in read_model(marked).variables.values())
+
+
+def test_a_draft_asks_which_way_a_negated_alias_counts(reversed_car):
+    plain, marked = reversed_car
+    assert draft_profile(read_model(plain)).confident
+    asked = draft_profile(read_model(marked))
+    assert any("is minus another variable" in doubt for doubt in asked.doubts)
