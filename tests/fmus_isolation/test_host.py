@@ -66,8 +66,10 @@ def test_other_failures_are_told_as_in_this_process(isolated, zoo, behaviour):
 
 
 def test_warnings_come_across(isolated):
-    vehicle = isolated(behaviour="frozen")
-    motion(vehicle, steps=80)
+    vehicle = isolated(behaviour="frozen", at=0.0)
+    vehicle.start()
+    for _ in range(60):
+        vehicle.step(600.0)
     assert len(vehicle.warnings) == 1
     assert vehicle.warnings[0].startswith(f"{vehicle.path.name}: ")
 
