@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
 _SAME_STEP = 1e-6  # relative
 _OTHER_SIZE = 2.0  # times as heavy, or as light, as the defaults' car
-_converged: set[tuple[str, str, float]] = set()  # what has passed the self-check in this process
+_sound: set[tuple[str, str, float, float, float]] = set()  # what has passed in this process
 _BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
 
 
@@ -127,16 +127,19 @@ def _require_sound(
     Raises:
         FmuError: its steps do not converge, or it goes the wrong way.
     """
-    key = (sha256(path.read_bytes()).hexdigest(), profile.model_dump_json(), time_step)
-    if key in _converged:
-        return
     speed = config.ego.initial_speed
+    speed = DEFAULT_SPEED if speed is None else speed
+    force = min(_CHECK_FORCE, config.mpc.force_limit)
+    digest = sha256(path.read_bytes()).hexdigest()
+    key = (digest, profile.model_dump_json(), time_step, speed, force)
+    if key in _sound:
+        return
     try:
         result = convergence(
             opener_of(path, step_size=time_step, profile=profile),
             profile.fmu.step or time_step,
-            force=min(_CHECK_FORCE, config.mpc.force_limit),
-            start_speed=DEFAULT_SPEED if speed is None else speed,
+            force=force,
+            start_speed=speed,
         )
     except FmuStartCrashError:
         raise  # there will be no rows; and a hang is not to be waited for twice
@@ -151,7 +154,7 @@ def _require_sound(
             f"add the line gain = -1.0 to [inputs.{role}], or to [outputs.speed]"
         )
         raise FmuOutputError(msg)
-    _converged.add(key)
+    _sound.add(key)
 
 
 def model_margin(config: RunConfig, time_step: float) -> float:
