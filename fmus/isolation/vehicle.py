@@ -246,8 +246,10 @@ class IsolatedVehicle:
 
 def _close(owner: int, keeper: Keeper, folder: Path) -> None:
     if os.getpid() == owner:
-        keeper.close()
-        remove(folder)
+        try:
+            keeper.close()
+        finally:  # Ctrl-C while it is waited for
+            remove(folder)
 
 
 def _warnings(text: Text) -> list[str]:
