@@ -204,11 +204,11 @@ class _Ladder:
         return None
 
     def depends_on_step(self) -> bool:
-        """Whether how far the FMU comes before it fails depends on its step."""
-        done = [
-            rung.steps_done for rung in self._rungs.values() if not isinstance(rung.error, _UNABLE)
-        ]
-        return max(done) - min(done) > 1
+        """Whether how far the FMU comes before it fails, or what fails, depends on its step."""
+        able = [rung for rung in self._rungs.values() if not isinstance(rung.error, _UNABLE)]
+        done = [rung.steps_done for rung in able]
+        blamed = {plain(r.error).split()[0] for r in able if isinstance(r.error, FmuOutputError)}
+        return max(done) - min(done) > 1 or len(blamed) > 1
 
     def _attempt(self, step: float | None) -> _Rung:
         traces = []
