@@ -1,7 +1,7 @@
 """Rebuild the shipped FMUs: ``python -m fmus.build [--out DIR]``.
 
-The vehicle (``source/``) and the controller (``controller_source/``): two FMI versions each, five
-platforms, one compiler (the pinned ``ziglang`` of the extra
+The vehicle (``source/``) and the controller (``controller_fmu/source/``): two FMI versions each,
+five platforms, one compiler (the pinned ``ziglang`` of the extra
 ``giveway[build]``), no system compiler. The same bytes come out on every machine: the compiler is
 pinned, nothing of the build folder or the clock enters a binary, and the archive is stored (not
 compressed, which would depend on the zlib at hand) with fixed dates in a fixed order.
@@ -21,8 +21,8 @@ from string import Template
 from typing import Final
 
 from fmus.bundled import FILES, MODEL, FmiVersion
-from fmus.controller_description import model_description
-from fmus.controller_parameters import (
+from fmus.controller_fmu.description import model_description
+from fmus.controller_fmu.parameters import (
     CONTROLLER,
     CONTROLLER_FILES,
     ControllerParameters,
@@ -116,7 +116,7 @@ _UNITS: Final = (
 )
 REGULATOR: Final = Recipe(
     CONTROLLER,
-    Path(__file__).parent / "controller_source",
+    Path(__file__).parent / "controller_fmu" / "source",
     (*(f"{unit}.{kind}" for unit in _UNITS for kind in "hc"), "variables.c", "snapshot.c"),
     CONTROLLER_FILES,
     ("-fno-math-errno",),  # sqrt is the processor's, and no library's

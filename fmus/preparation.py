@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from fmus.bundled import BUNDLED_PROFILE, is_bundled
-from fmus.commands import Command, make_command
+from fmus.driving.commands import Command, make_command
+from fmus.driving.pace import Pace, make_pace
 from fmus.errors import FmuProfileError, FmuVariableError
-from fmus.pace import Pace, make_pace
 from fmus.wiring import Wiring, wire
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ def _chosen(model: Model, profile: VehicleProfile | None) -> VehicleProfile:
         return profile
     if is_bundled(model.path):
         return BUNDLED_PROFILE
-    from fmus.drafting import draft_profile, require_confident
+    from fmus.drafts.drafting import draft_profile, require_confident
 
     return require_confident(draft_profile(model), model.path)
 

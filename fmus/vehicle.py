@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, Self
 
 from fmus import fmi
+from fmus.driving.motion import Motion
+from fmus.driving.pace import between, step_to_run_with
+from fmus.driving.starting import reach, require_place, start_values
 from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
 from fmus.instance import STATUS_NAMES, WARNING
-from fmus.motion import Motion
-from fmus.pace import between, step_to_run_with
 from fmus.preparation import Prepared, prepare, unpack
-from fmus.starting import reach, require_place, start_values
 
 if TYPE_CHECKING:
     import os

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
-from fmus.controller_export import export_controller
-from fmus.controller_parameters import CONTROLLER_FILES, ControllerParameters
+from fmus.controller_fmu.export import export_controller
+from fmus.controller_fmu.parameters import CONTROLLER_FILES, ControllerParameters
 from fmus.errors import FmuError
 from giveway.assembly import control_step
 from giveway.cli.run import layers_of

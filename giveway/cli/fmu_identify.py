@@ -169,7 +169,7 @@ def _text(path: Path, file: Path | None, profile: VehicleProfile) -> str:
     from fmus.bundled import is_bundled
 
     if not is_bundled(path):
-        from fmus.drafting import draft_profile
+        from fmus.drafts.drafting import draft_profile
         from fmus.fmi.reading import read_model
 
         text: str = draft_profile(read_model(path)).toml

@@ -14,7 +14,7 @@ from rich.text import Text
 from fmus import FmuError
 from fmus.archive import open_archive
 from fmus.binaries import this_platform
-from fmus.drafting import draft_profile
+from fmus.drafts.drafting import draft_profile
 from fmus.errors import FmuPlatformError
 from fmus.fmi.reading import binary_of, findings, model_of
 from fmus.model import Unit
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from fmus.draft import Draft
+    from fmus.drafts.draft import Draft
     from fmus.model import Interface, Model, Variable
 
 SHOWN: Final = 12  # rows of a list

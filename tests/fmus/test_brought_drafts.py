@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fmus import VehicleFmu
-from fmus.drafting import draft_profile
+from fmus.drafts.drafting import draft_profile
 from fmus.errors import FmuStartError, FmuStepError
 from fmus.model import Interface, Kind, Model, Variable
 from fmus.profile import make_profile

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from fmus.drafting import draft_profile
+from fmus.drafts.drafting import draft_profile
 from fmus.fmi.reading import read_model
 
 

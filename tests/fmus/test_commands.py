@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fmus.commands import make_command
+from fmus.driving.commands import make_command
 from fmus.model import Channel, Variable
 from fmus.profile import make_profile
 from fmus.wiring import Wire

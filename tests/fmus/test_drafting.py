@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmus import bundled_fmu, units
-from fmus.drafting import draft_profile, require_confident
+from fmus.drafts.drafting import draft_profile, require_confident
+from fmus.drafts.guessing import words_of
 from fmus.errors import FmuProfileError
 from fmus.fmi.reading import read_model
-from fmus.guessing import words_of
 from fmus.model import Interface, Kind, Model, Unit, Variable
 from fmus.profile import make_profile
 

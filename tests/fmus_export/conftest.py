@@ -23,12 +23,12 @@ from controller import (
     PidParameters,
     Regulator,
 )
-from fmus.controller_export import export_controller
+from fmus.controller_fmu.export import export_controller
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from fmus.controller_parameters import ControllerParameters
+    from fmus.controller_fmu.parameters import ControllerParameters
 
 FAR = 1e9  # nobody
 

@@ -14,8 +14,8 @@ from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
 from fmus import describe
-from fmus.controller_export import bundled_controller, export_controller
-from fmus.controller_parameters import ControllerParameters
+from fmus.controller_fmu.export import bundled_controller, export_controller
+from fmus.controller_fmu.parameters import ControllerParameters
 from fmus.errors import FmuBuildError, FmuFileError, FmuVariableError
 from giveway.errors import ConfigError, ControlError, ResultsError
 

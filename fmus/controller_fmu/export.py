@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 from xml.etree import ElementTree
 
-from fmus.controller_description import model_description
-from fmus.controller_parameters import CONTROLLER_FILES, ControllerParameters, token_of
+from fmus.controller_fmu.description import model_description
+from fmus.controller_fmu.parameters import CONTROLLER_FILES, ControllerParameters, token_of
 from fmus.errors import FmuBuildError, FmuFileError
 from fmus.packing import write_archive
 
@@ -20,7 +20,7 @@ _DESCRIPTION: Final = "modelDescription.xml"
 
 def bundled_controller(fmi_version: FmiVersion = "2.0") -> Path:
     """The shipped controller FMU, with the start values of the paper."""
-    return Path(__file__).parent / CONTROLLER_FILES[fmi_version]
+    return Path(__file__).parent.parent / CONTROLLER_FILES[fmi_version]
 
 
 def export_controller(

@@ -9,12 +9,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from fmus.draft import Draft, Entry, Line, toml_value
-from fmus.errors import FmuProfileError
-from fmus.guessing import ROLES, alone, guesses
-from fmus.model import Kind
-from fmus.profile import make_profile
-from fmus.questions import (
+from fmus.drafts.draft import Draft, Entry, Line, toml_value
+from fmus.drafts.guessing import ROLES, alone, guesses
+from fmus.drafts.questions import (
     axis_question,
     channel_name,
     contradiction,
@@ -22,13 +19,16 @@ from fmus.questions import (
     numbers,
     unit_question,
 )
+from fmus.errors import FmuProfileError
+from fmus.model import Kind
+from fmus.profile import make_profile
 from fmus.text import printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-    from fmus.guessing import Guess
+    from fmus.drafts.guessing import Guess
     from fmus.model import Model, Variable
     from fmus.profile import VehicleProfile
 

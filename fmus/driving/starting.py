@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fmus.driving.motion import Motion, names_of
+from fmus.driving.run_up import run_up
 from fmus.errors import FmuOutputError, FmuStartError, FmuStepError
-from fmus.motion import Motion, names_of
-from fmus.run_up import run_up
 
 if TYPE_CHECKING:
     from fmus.model import Channel

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
+from fmus.driving.guards import DRIVEN, Guard
 from fmus.errors import FmuOutputError
-from fmus.guards import DRIVEN, Guard
 
 if TYPE_CHECKING:
     from fmus.preparation import Prepared

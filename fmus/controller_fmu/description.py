@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import quoteattr
 
-from fmus.controller_parameters import (
+from fmus.controller_fmu.parameters import (
     CONTROLLER,
     FAR_AWAY,
     HORIZON_MAX,

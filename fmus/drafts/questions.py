@@ -6,15 +6,15 @@ import re
 from typing import TYPE_CHECKING, Final
 
 from fmus import units
-from fmus.draft import Line
-from fmus.guessing import ELSEWHERE, FORCES, ROLES, words_of
+from fmus.drafts.draft import Line
+from fmus.drafts.guessing import ELSEWHERE, FORCES, ROLES, words_of
 from fmus.model import Channel
 from fmus.text import printable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fmus.guessing import Guess
+    from fmus.drafts.guessing import Guess
     from fmus.model import Dimension, Model, Variable
 
 

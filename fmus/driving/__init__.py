@@ -1,0 +1,1 @@
+"""Driving an FMU: inverse maps, steps, what comes out, and what no car does."""
