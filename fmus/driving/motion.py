@@ -112,8 +112,9 @@ class Motion:
         else:
             self.acceleration = (speed - before) / duration
         self._judge(position - led, 0.5 * duration * abs(speed - before), time)
-        self._way += 0.5 * duration * abs(before + speed)
-        self._drift += position - led
+        if changed:  # what is frozen is the watchdog's
+            self._way += 0.5 * duration * abs(before + speed)
+            self._drift += position - led
         if abs(self._drift) > self._jump + _SLIP * self._way:
             raise FmuOutputError(f"{self._path}: {self._guard.drift(self._drift, self._way, time)}")
         self._note(self._guard.watch(changed, force, speed, duration, time))

@@ -96,6 +96,12 @@ def test_a_segfault_in_our_own_process_keeps_the_rows(zoo, giveway, tmp_path):
         ({"behaviour": "error", "phase": "initialise"}, {}, r"the axle broke"),
         ({"spoken": {"speed": (1 / 3.6, 0.0)}}, {}, r"start at 4 m/s, but speed = 14\.4 m/s"),
         ({"euler": True, "values": {"lag": 0.02}}, {}, r"do not converge.*step = 0\.0\d+"),
+        ({"spoken": {"force": (-1.0, 0.0)}}, {}, r"slows it down.*gain = -1\.0"),
+        (
+            {"spoken": {"speed": (1 / 3.6, 0.0)}, "initial": ()},
+            {},
+            r"position has moved by .* where speed accounts for .*units",
+        ),
     ],
 )
 def test_an_unfit_fmu_is_refused_in_one_line(zoo, giveway, profiled, options, tables, says):
@@ -123,7 +129,10 @@ def test_the_diverging_fmu_of_a_real_tool_is_no_success(giveway, tmp_path):
     [
         ({"behaviour": "frozen", "at": AT}, "speed has not changed for 2 s"),
         ({"values": {"mass": 3000.0}}, "does not answer as the controller's M = 1000 kg"),
-        ({"spoken": {"speed": (1 / 3.6, 0.0)}, "initial": ()}, "does not answer as"),
+        (
+            {"spoken": {"speed": (1 / 3.6, 0.0)}, "initial": (), "outputs": ("speed",)},
+            "does not answer as",
+        ),
         ({"initial": ()}, "no parameter for the initial speed: driven up to 4"),
     ],
 )
