@@ -46,7 +46,7 @@ class Prepared:
         binary: this platform's binary in the archive.
         solver: of Model Exchange; None: the best there is.
         tolerance: of Model Exchange, relative; None: the default.
-        rewinds: whether a step that the FMU discards may be done again in smaller ones.
+        ours: a shipped FMU: nobody watches it, and no step of it is discarded.
         speed_limit: [m/s] beyond which the FMU is at fault.
         position_jump: [m] likewise.
         frozen_time: [s] without a change that are worth a warning.
@@ -66,7 +66,7 @@ class Prepared:
     binary: str
     solver: Literal["cvode", "rk4"] | None
     tolerance: float | None
-    rewinds: bool
+    ours: bool
     speed_limit: float
     position_jump: float
     frozen_time: float
@@ -129,7 +129,7 @@ def prepare(
         binary=binary_of(model, wiring.interface),
         solver=profile.fmu.solver,
         tolerance=profile.fmu.tolerance,
-        rewinds=profile is not BUNDLED_PROFILE,  # keeping the state costs time at every step
+        ours=profile is BUNDLED_PROFILE,
         speed_limit=profile.limits.speed,
         position_jump=profile.limits.position_jump,
         frozen_time=profile.limits.frozen_time,

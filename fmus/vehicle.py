@@ -99,7 +99,7 @@ class VehicleFmu:
             folder,
             solver=prepared.solver,
             tolerance=prepared.tolerance,
-            rewinds=prepared.rewinds,
+            rewinds=not prepared.ours,  # keeping the state costs time at every step
         )
         stack.callback(self._instance.close)
         self._resources = stack.pop_all()
@@ -195,23 +195,24 @@ class VehicleFmu:
         if not isfinite(force):
             msg = f"{self.path}: force {force} N at {self.time:.10g} s; expected a finite number"
             raise FmuStepError(msg)
-        pace, motion, done = self._pace, self._motion, self._earlier + self._steps
-        if done % pace.stretch == 0:
+        motion, done, stretch = self._motion, self._earlier + self._steps, self._pace.stretch
+        if stretch == 1 or done % stretch == 0:
             self._drive(force, done)
         self._steps += 1
         self.time = self._steps * self._step_size
-        if pace.stretch > 1:
-            share = (done % pace.stretch + 1) / pace.stretch
-            self.position, self.speed = between(*self._ends, pace.step, share)
-            self.acceleration = motion.acceleration
+        self.acceleration = motion.acceleration
+        if stretch == 1:
+            self.position, self.speed = motion.position, motion.speed
         else:
-            self.position, self.speed, self.acceleration = motion.state
+            share = (done % stretch + 1) / stretch
+            self.position, self.speed = between(*self._ends, self._pace.step, share)
 
     def _drive(self, force: float, done: int) -> None:
         """One step of the controller in those of the FMU; or the FMU's one, if that is longer."""
         pace, motion, tick = self._pace, self._motion, self._tick
         self._command.apply(force, motion.speed, self._inputs)
-        motion.keep_bounds(self._inputs)
+        if self.prepared.bounds:
+            motion.keep_bounds(self._inputs)
         h, substeps = pace.step, pace.substeps
         first = done // pace.stretch * substeps
         for number in range(first, first + substeps):
@@ -226,7 +227,8 @@ class VehicleFmu:
             self._show(motion)
             self._fail()
             raise
-        self._ends = (self._ends[1], (motion.position, motion.speed))
+        if pace.stretch > 1:
+            self._ends = (self._ends[1], (motion.position, motion.speed))
 
     def _show(self, motion: Motion) -> None:
         self.position, self.speed, self.acceleration = motion.state

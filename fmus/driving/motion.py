@@ -44,6 +44,7 @@ class Motion:
         self._limit = prepared.speed_limit
         self._jump = prepared.position_jump
         self._guard = Guard(self._limit, self._jump, prepared.frozen_time, self.names)
+        self._trusted = prepared.ours
         self._answered = 0.0  # [N] under which the speed last changed
         self._origin = 0.0  # [m] where the FMU's own position is 0
         self._way = self._drift = 0.0  # [m] that the speed accounts for; and the position beyond it
@@ -95,26 +96,46 @@ class Motion:
         Raises:
             FmuOutputError: no car has it.
         """
-        wires, before, place, rate = self._wires, self.speed, self._place, self._rate
-        speed = wires[0].scale * outputs[0] + wires[0].shift
-        position = led = self.position + 0.5 * duration * (before + speed)
+        wires, before, here = self._wires, self.speed, self.position
+        place, rate = self._place, self._rate
+        wire = wires[0]
+        self.speed = speed = wire.scale * outputs[0] + wire.shift
         if place is not None:
-            position = wires[place].scale * outputs[place] + wires[place].shift - self._origin
-        if speed != before or isnan(self._answered):
-            self._answered = force
-        if place is None:  # cruising: its speed tells nothing until the force is another one
-            changed = speed != before or abs(force - self._answered) < DRIVEN
+            wire = wires[place]
+            self.position = wire.scale * outputs[place] + wire.shift - self._origin
         else:
-            changed = speed != before or position != self.position
-        self.speed, self.position = speed, position
+            self.position = here + 0.5 * duration * (before + speed)
         if rate is not None:
-            self.acceleration = wires[rate].scale * outputs[rate] + wires[rate].shift
+            wire = wires[rate]
+            self.acceleration = wire.scale * outputs[rate] + wire.shift
         else:
             self.acceleration = (speed - before) / duration
-        self._judge(position - led, 0.5 * duration * abs(speed - before), time)
+        if not self._trusted:
+            self._watch(before, here, force, duration, time)
+        elif not isfinite(self.position + speed + self.acceleration):
+            self._judge(0.0, 0.0, time)
+
+    def _watch(
+        self, before: float, here: float, force: float, duration: float, time: float
+    ) -> None:
+        """Look at a step that led from the speed ``before`` [m/s] and the position ``here`` [m].
+
+        Raises:
+            FmuOutputError: no car does that.
+        """
+        speed, position = self.speed, self.position
+        way = 0.5 * duration * (before + speed)
+        drift = position - (here + way)
+        self._judge(drift, 0.5 * duration * abs(speed - before), time)
+        if speed != before or isnan(self._answered):
+            self._answered = force
+        if self._place is None:  # cruising: its speed tells nothing until the force is another one
+            changed = speed != before or abs(force - self._answered) < DRIVEN
+        else:
+            changed = speed != before or position != here
         if changed:  # what is frozen is the watchdog's
-            self._way += 0.5 * duration * abs(before + speed)
-            self._drift += position - led
+            self._way += abs(way)
+            self._drift += drift
         if abs(self._drift) > self._jump + _SLIP * self._way:
             raise FmuOutputError(f"{self._path}: {self._guard.drift(self._drift, self._way, time)}")
         self._note(self._guard.watch(changed, force, speed, duration, time))
