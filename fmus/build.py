@@ -35,7 +35,10 @@ ZIG_VERSION: Final = "0.16.0"
 SOURCE: Final = Path(__file__).parent / "source"
 WINDOWS_RUNTIME: Final = "windows_runtime.c"
 FRONT_ENDS: Final[dict[FmiVersion, str]] = {"2.0": "fmi2.c", "3.0": "fmi3.c"}
-SHARED: Final[dict[FmiVersion, str]] = {"2.0": "fmi2_rest.h", "3.0": "fmi3_rest.h"}  # in SOURCE
+SHARED: Final[dict[FmiVersion, tuple[str, ...]]] = {  # in SOURCE
+    "2.0": ("fmi2_begin.h", "fmi2_rest.h"),
+    "3.0": ("fmi3_begin.h", "fmi3_rest.h"),
+}
 
 COMPILE: Final = (
     "-std=c11",
@@ -169,7 +172,7 @@ def compile_library(
 def _members(recipe: Recipe, version: FmiVersion) -> dict[str, bytes]:
     """All files of one FMU, in the order of the archive."""
     sources = {name: recipe.read(name) for name in (*recipe.files, FRONT_ENDS[version])}
-    sources[SHARED[version]] = VEHICLE.read(SHARED[version])
+    sources |= {name: VEHICLE.read(name) for name in SHARED[version]}
     build_token, description = _describe(recipe, version, sources)
     sources["token.h"] = f'#define MODEL_TOKEN "{build_token}"\n'.encode()
     with tempfile.TemporaryDirectory() as folder:
