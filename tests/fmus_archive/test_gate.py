@@ -4,44 +4,18 @@ from __future__ import annotations
 
 import os
 import random
-import re
 import stat
 import struct
-import subprocess
-import sys
-import textwrap
 import zipfile
 
 import pytest
 
 from fmus import bundled_fmu
-from fmus.archive import extract, open_archive
+from fmus.archive import open_archive
 from fmus.errors import FmuArchiveError, FmuFileError
 
 DESCRIPTION = b'<?xml version="1.0"?><fmiModelDescription fmiVersion="2.0"/>'
 MEGABYTE = 1 << 20
-
-
-def refused(kind, *named):
-    """The error is of this class, on one line, and its message names all of these."""
-    lookaheads = "".join(f"(?=.*{re.escape(str(word))})" for word in named)
-    return pytest.raises(kind, match=rf"^{lookaheads}[^\n]+\Z")
-
-
-@pytest.fixture
-def archive(tmp_path):
-    """Writes an FMU with a model description and these members (name or ZipInfo -> bytes)."""
-
-    def write(*members, description=DESCRIPTION, name="car.fmu"):
-        path = tmp_path / name
-        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
-            if description is not None:
-                file.writestr("modelDescription.xml", description)
-            for member, data in members:
-                file.writestr(member, data)
-        return path
-
-    return write
 
 
 def with_mode(name, mode):
@@ -63,24 +37,24 @@ def test_a_sound_fmu_passes():
 # ---- no archive at all ----
 
 
-def test_missing(tmp_path):
+def test_missing(tmp_path, refused):
     with refused(FmuFileError, tmp_path / "no.fmu", "no such file"):
         open_archive(tmp_path / "no.fmu")
 
 
-def test_a_folder(tmp_path):
+def test_a_folder(tmp_path, refused):
     with refused(FmuFileError, tmp_path, "a folder"):
         open_archive(tmp_path)
 
 
-def test_empty(tmp_path):
+def test_empty(tmp_path, refused):
     path = tmp_path / "car.fmu"
     path.touch()
     with refused(FmuFileError, path, "empty"):
         open_archive(path)
 
 
-def test_a_pipe_is_not_waited_for(tmp_path):
+def test_a_pipe_is_not_waited_for(tmp_path, refused):
     path = tmp_path / "car.fmu"
     os.mkfifo(path)
     with refused(FmuFileError, path, "not a regular file"):
@@ -88,7 +62,7 @@ def test_a_pipe_is_not_waited_for(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may read all")
-def test_unreadable(archive):
+def test_unreadable(archive, refused):
     path = archive()
     path.chmod(0)
     with refused(FmuFileError, path, "Permission denied"):
@@ -96,7 +70,7 @@ def test_unreadable(archive):
 
 
 @pytest.mark.parametrize("data", [b"I am no FMU\n", b"PK\x03\x04", b"\x7fELF" + bytes(100)])
-def test_not_a_zip_archive(tmp_path, data):
+def test_not_a_zip_archive(tmp_path, data, refused):
     path = tmp_path / "car.fmu"
     path.write_bytes(data)
     with refused(FmuFileError, path, "not a zip archive"):
@@ -104,7 +78,7 @@ def test_not_a_zip_archive(tmp_path, data):
 
 
 @pytest.mark.parametrize("part", [0.1, 0.5, 0.9, 0.999])
-def test_cut_off(tmp_path, part):
+def test_cut_off(tmp_path, part, refused):
     data = bundled_fmu("2.0").read_bytes()
     path = tmp_path / "car.fmu"
     path.write_bytes(data[: int(len(data) * part)])
@@ -112,7 +86,7 @@ def test_cut_off(tmp_path, part):
         open_archive(path)
 
 
-def test_damaged_inside(tmp_path):
+def test_damaged_inside(tmp_path, refused):
     data = bytearray(bundled_fmu("2.0").read_bytes())
     first = data.index(b"\x7fELF")
     data[first + 4000 : first + 4016] = b"damaged bytes..."
@@ -146,19 +120,19 @@ def test_whatever_byte_is_wrong_the_answer_is_a_line(archive, tmp_path, seed):
 # ---- no FMU inside ----
 
 
-def test_without_a_model_description(archive):
+def test_without_a_model_description(archive, refused):
     path = archive(("readme.txt", b""), description=None)
     with refused(FmuFileError, path, "no modelDescription.xml"):
         open_archive(path)
 
 
-def test_zipped_with_its_folder(archive):
+def test_zipped_with_its_folder(archive, refused):
     path = archive(("car/modelDescription.xml", DESCRIPTION), description=None)
     with refused(FmuFileError, path, "in its folder car/", "zip the contents"):
         open_archive(path)
 
 
-def test_an_fmu_in_an_archive(archive):
+def test_an_fmu_in_an_archive(archive, refused):
     path = archive(("delivery/car.fmu", b""), description=None)
     with refused(FmuFileError, path, "delivery/car.fmu", "unpack it"):
         open_archive(path)
@@ -186,13 +160,13 @@ def test_an_fmu_in_an_archive(archive):
         ("resources/" + "n" * 2000, "too long"),
     ],
 )
-def test_a_name_that_no_fmu_needs(archive, name, reason):
+def test_a_name_that_no_fmu_needs(archive, name, reason, refused):
     path = archive((name, b"evil"))
     with refused(FmuArchiveError, path, reason):
         open_archive(path)
 
 
-def test_a_name_that_hides_its_end_behind_a_nul(archive):
+def test_a_name_that_hides_its_end_behind_a_nul(archive, refused):
     path = archive(("resources/a.txtXevil", b""))
     path.write_bytes(path.read_bytes().replace(b"a.txtXevil", b"a.txt\0evil"))
     with refused(FmuArchiveError, path, "control characters"):
@@ -207,20 +181,20 @@ def test_a_name_that_hides_its_end_behind_a_nul(archive):
         ("resources/stra\N{LATIN SMALL LETTER SHARP S}e", "resources/STRASSE"),
     ],
 )
-def test_two_names_that_are_one_on_some_systems(archive, one, other):
+def test_two_names_that_are_one_on_some_systems(archive, one, other, refused):
     members = [(name, b"") for name in (one, other) if name != "modelDescription.xml"]
     with refused(FmuArchiveError, "twice"):
         open_archive(archive(*members))
 
 
 @pytest.mark.filterwarnings("ignore:Duplicate name")
-def test_the_same_name_twice(archive):
+def test_the_same_name_twice(archive, refused):
     path = archive(("modelDescription.xml", b"<other/>"))
     with refused(FmuArchiveError, path, "modelDescription.xml", "twice"):
         open_archive(path)
 
 
-def test_a_file_that_is_also_a_folder(archive):
+def test_a_file_that_is_also_a_folder(archive, refused):
     path = archive(("resources", b"a file"), ("resources/a.txt", b""))
     with refused(FmuArchiveError, path, "resources/a.txt", "also a file"):
         open_archive(path)
@@ -238,13 +212,13 @@ def test_a_file_that_is_also_a_folder(archive):
         (stat.S_IFSOCK, "special file"),
     ],
 )
-def test_only_files_and_folders(archive, kind, reason):
+def test_only_files_and_folders(archive, kind, reason, refused):
     path = archive((with_mode("resources/link", kind | 0o777), b"/etc/passwd"))
     with refused(FmuArchiveError, path, "resources/link", reason):
         open_archive(path)
 
 
-def test_encrypted(archive):
+def test_encrypted(archive, refused):
     path = archive(("resources/secret", b"x" * 100))
     data = bytearray(path.read_bytes())
     last = data.rindex(b"PK\x01\x02")
@@ -255,7 +229,7 @@ def test_encrypted(archive):
 
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
-def test_a_compression_that_fmi_does_not_allow(archive, method):
+def test_a_compression_that_fmi_does_not_allow(archive, method, refused):
     info = zipfile.ZipInfo("resources/data")
     info.compress_type = method
     path = archive((info, b"x" * 100))
@@ -266,13 +240,13 @@ def test_a_compression_that_fmi_does_not_allow(archive, method):
 # ---- bombs ----
 
 
-def test_a_bomb(archive):
+def test_a_bomb(archive, refused):
     path = archive(("resources/zeros", bytes(64 * MEGABYTE)))
     with refused(FmuArchiveError, path, "resources/zeros", "zip bomb", "64 MB"):
         open_archive(path)
 
 
-def test_a_bomb_of_many_small_parts(archive):
+def test_a_bomb_of_many_small_parts(archive, refused):
     part = bytes(MEGABYTE)
     path = archive(*((f"resources/{n}", part) for n in range(40)))
     with refused(FmuArchiveError, path, "zip bomb", "40 MB"):
@@ -292,7 +266,7 @@ def test_large_resources_that_do_not_compress_much(archive):
     assert open_archive(path).members["resources/map"].file_size == 16 * MEGABYTE
 
 
-def test_members_that_share_their_bytes(archive, tmp_path):
+def test_members_that_share_their_bytes(archive, tmp_path, refused):
     """A zip bomb without a high ratio per member: many entries of the list, one body."""
     path = archive(*((f"resources/{n}", b"x" * 1000) for n in range(3)))
     data = path.read_bytes()
@@ -306,7 +280,7 @@ def test_members_that_share_their_bytes(archive, tmp_path):
         open_archive(path)
 
 
-def test_a_list_of_members_that_is_a_bomb_itself(archive):
+def test_a_list_of_members_that_is_a_bomb_itself(archive, refused):
     path = archive()
     data = bytearray(path.read_bytes())
     end = data.rindex(b"PK\x05\x06")
@@ -317,164 +291,7 @@ def test_a_list_of_members_that_is_a_bomb_itself(archive):
         open_archive(path)
 
 
-def test_very_many_members(archive):
+def test_very_many_members(archive, refused):
     path = archive(*((str(n), b"") for n in range(50_000)))
     with refused(FmuArchiveError, path, "50001 members"):
         open_archive(path)
-
-
-# ---- the model description as XML ----
-
-OPEN, CLOSE = b"<fmiModelDescription>", b"</fmiModelDescription>"
-LAUGHS = b"""<?xml version="1.0"?><!DOCTYPE lolz [<!ENTITY lol "lol">
-<!ENTITY lol2 "&lol;&lol;&lol;&lol;&lol;&lol;&lol;&lol;&lol;&lol;">
-<!ENTITY lol3 "&lol2;&lol2;&lol2;&lol2;&lol2;&lol2;&lol2;&lol2;&lol2;&lol2;">]>
-<fmiModelDescription modelName="&lol3;"/>"""
-XXE = (
-    b'<?xml version="1.0"?><!DOCTYPE d [<!ENTITY x SYSTEM "file:///etc/passwd">]>'
-    b'<fmiModelDescription modelName="&x;"/>'
-)
-
-
-@pytest.mark.parametrize("xml", [LAUGHS, XXE, b"<!DOCTYPE html><html/>"])
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
-def test_a_document_type_is_refused_at_sight(archive, xml, encoding):
-    text = xml.decode().replace("?>", f' encoding="{encoding.removesuffix("-sig")}"?>', 1)
-    path = archive(description=text.encode(encoding))
-    with refused(FmuArchiveError, path, "modelDescription.xml, line 1", "DOCTYPE"):
-        open_archive(path)
-
-
-@pytest.mark.parametrize(
-    "xml",
-    [
-        b"",
-        b"not XML",
-        b"<fmiModelDescription>",
-        b"<fmiModelDescription/><second/>",
-        b'<fmiModelDescription a="1" a="2"/>',
-        b'<fmiModelDescription modelName="&unknown;"/>',
-        b'<fmiModelDescription modelName="\x00"/>',
-        b'<fmiModelDescription modelName="\xff"/>',
-        b'<?xml version="1.0" encoding="no-such-encoding"?><fmiModelDescription/>',
-    ],
-)
-def test_a_model_description_that_is_no_xml(archive, xml):
-    path = archive(description=xml)
-    with refused(FmuFileError, path, "modelDescription.xml", "export the model again"):
-        open_archive(path)
-
-
-def test_elements_within_elements_without_end(archive):
-    path = archive(description=OPEN + b"<a>" * 100_000)
-    with refused(FmuArchiveError, path, "64 elements within each other"):
-        open_archive(path)
-
-
-def test_elements_without_number(archive):
-    path = archive(description=OPEN + b"<b/>" * 600_000 + CLOSE)
-    with refused(FmuArchiveError, path, "600000 elements"):
-        open_archive(path)
-
-
-def test_attributes_without_number(archive):
-    attributes = b" ".join(b'a%d=""' % n for n in range(5000))
-    path = archive(description=OPEN + b"<Unit " + attributes + b"/>" + CLOSE)
-    with refused(FmuArchiveError, path, "5000 attributes"):
-        open_archive(path)
-
-
-def test_an_attribute_without_end(archive):
-    path = archive(description=OPEN + b'<Unit name="' + bytes(range(65, 91)) * 400_000)
-    with refused(FmuArchiveError, path, "a tag of more than 4 MB"):
-        open_archive(path)
-
-
-def test_another_first_element(archive):
-    path = archive(description=b'<?xml version="1.0"?>\n<svg/>')
-    with refused(FmuFileError, path, "line 2", "<svg>", "fmiModelDescription"):
-        open_archive(path)
-
-
-def test_what_an_fmu_says_cannot_steer_the_terminal(archive):
-    path = archive(("resources/\N{RIGHT-TO-LEFT OVERRIDE}evil", b""))
-    with pytest.raises(FmuArchiveError) as caught:
-        open_archive(path)
-    assert str(caught.value).isprintable()
-
-
-# ---- memory ----
-
-HUGE = """
-import sys
-from pathlib import Path
-from fmus.archive import open_archive
-from fmus.errors import FmuFileError
-try:
-    open_archive(Path(sys.argv[1]))
-except FmuFileError as error:
-    status = Path("/proc/self/status").read_text()  # ru_maxrss would count the parent, too
-    most = int(status.partition("VmHWM:")[2].split()[0])
-    sys.exit(0 if most < 200 * 1024 else f"{most} KiB")
-sys.exit("not refused")
-"""
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-@pytest.mark.parametrize("kind", ["bomb", "members", "description", "elements"])
-def test_a_refusal_takes_little_memory(archive, kind):
-    if kind == "bomb":
-        path = archive(("resources/zeros", bytes(96 * MEGABYTE)))
-    elif kind == "members":
-        path = archive(*((str(n), b"") for n in range(50_000)))
-    elif kind == "description":
-        path = archive(description=OPEN + b" " * (96 * MEGABYTE) + CLOSE)
-    else:
-        path = archive(description=OPEN + b'<b c="d"/>' * 600_000 + CLOSE)
-    command = [sys.executable, "-c", textwrap.dedent(HUGE), path]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-
-
-# ---- unpacking ----
-
-
-def test_only_what_is_asked_for_is_unpacked(archive, tmp_path):
-    members = ("resources/a.txt", "resources/deep/b.txt", "binaries/linux64/c.so", "sources/d.c")
-    path = archive(*((name, name.encode()) for name in members))
-    folder = tmp_path / "out"
-    folder.mkdir()
-    extract(open_archive(path), folder, ["resources/", "binaries/linux64/"])
-    unpacked = {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*.*")}
-    assert unpacked == {name: name.encode() for name in members[:3]}
-
-
-def test_nothing_is_written_through_a_link_that_waits_there(archive, tmp_path):
-    path = archive(("resources/a.txt", b"evil"))
-    folder, victim = tmp_path / "out", tmp_path / "victim"
-    (folder / "resources").mkdir(parents=True)
-    (folder / "resources" / "a.txt").symlink_to(victim)
-    with refused(FmuFileError, path, "resources/a.txt", "exists"):
-        extract(open_archive(path), folder, ["resources/"])
-    assert not victim.exists()
-
-
-def test_a_file_that_changed_since_it_was_examined(archive, tmp_path):
-    path = archive(("resources/a.txt", b"good"))
-    examined = open_archive(path)
-    path.write_bytes(archive(("resources/b.txt", b"evil" * 100), name="other.fmu").read_bytes())
-    folder = tmp_path / "out"
-    folder.mkdir()
-    with refused(FmuArchiveError, path, "damaged"):
-        extract(examined, folder, ["resources/"])
-
-
-def test_damage_in_a_large_archive_shows_when_it_is_unpacked(archive, tmp_path, monkeypatch):
-    monkeypatch.setattr("fmus.archive.CHECKED_AT_ONCE", 0)
-    info = zipfile.ZipInfo("resources/a.txt")
-    path = archive((info, b"good " * 20))
-    data = path.read_bytes()
-    assert b"good good" in data
-    path.write_bytes(data.replace(b"good good", b"evil good", 1))
-    with refused(FmuArchiveError, path, "resources/a.txt"):
-        extract(open_archive(path), tmp_path, ["resources/"])
