@@ -1,6 +1,8 @@
-"""The vehicle as an FMU: the plant's source, the shipped FMUs, and what runs any vehicle FMU."""
+"""FMUs: the shipped vehicle, what runs anybody's, and the controller as one."""
 
 from fmus.bundled import bundled_fmu, is_bundled
+from fmus.controller_fmu.export import bundled_controller, export_controller
+from fmus.controller_fmu.parameters import ControllerParameters
 from fmus.errors import (
     FmuArchiveError,
     FmuBuildError,
@@ -26,6 +28,7 @@ from fmus.vehicle import SavedState, VehicleFmu
 from fmus.vehicle_protocol import Vehicle
 
 __all__ = [
+    "ControllerParameters",
     "FmuArchiveError",
     "FmuBuildError",
     "FmuCrashError",
@@ -46,9 +49,11 @@ __all__ = [
     "Vehicle",
     "VehicleFmu",
     "VehicleProfile",
+    "bundled_controller",
     "bundled_fmu",
     "choose_profile",
     "describe",
+    "export_controller",
     "is_bundled",
     "make_profile",
     "open_vehicle",
