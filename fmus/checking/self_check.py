@@ -259,15 +259,18 @@ def compare(coarse: Trace, fine: Trace) -> Disagreement | None:
 
 
 def goes_the_wrong_way(trace: Trace) -> bool:
-    """Whether a force forwards slows a vehicle down and one backwards does not.
+    """Whether a force forwards slows a vehicle down, and more so than none or one backwards.
+
+    A vehicle whose signs are right gains by driving, even where a slope or a slow actuator lets it
+    lose speed all the same.
 
     Args:
-        trace: of the :func:`manoeuvre`; on a slope, or with a slow actuator, a vehicle whose signs
-            are right still gains more by driving than by braking.
+        trace: of the :func:`manoeuvre`.
     """
     change = np.diff(trace.speed) / trace.step_size
     driven, braked = change[trace.force > 0.0], change[trace.force < 0.0]
-    return bool(driven.mean() < min(0.0, braked.mean()) - _CLEARLY)
+    rolling = change[trace.force == 0.0][-1]  # when a slow actuator has let go
+    return bool(driven.mean() < min(0.0, rolling, braked.mean()) - _CLEARLY)
 
 
 def milliseconds(step: float) -> str:
