@@ -1,8 +1,9 @@
-"""The fixture of all tests that need somebody else's FMU."""
+"""What tests of several folders need: somebody else's FMUs, and how a refusal has to look."""
 
 from __future__ import annotations
 
 import importlib.util
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -36,3 +37,14 @@ def zoo(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -
         pytest.skip("ziglang is not installed: pip install giveway[build]")
     assert pytestconfig.cache is not None
     return _load_zoo().Zoo(tmp_path_factory.mktemp("zoo"), pytestconfig.cache.mkdir("fmu_zoo"))
+
+
+@pytest.fixture(scope="session")
+def refused() -> Any:
+    """Expects an error of a class, on one line, whose message names all of these."""
+
+    def expect(kind: type[Exception], *named: object) -> Any:
+        lookaheads = "".join(f"(?=.*{re.escape(str(word))})" for word in named)
+        return pytest.raises(kind, match=rf"^{lookaheads}[^\n]+\Z")
+
+    return expect
