@@ -98,7 +98,7 @@ def read_toml(path: Path) -> Layer:
     """
     try:
         values = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-        return Layer(str(path), _anchored(values, path.parent.absolute()))
+        return Layer(str(path), anchored(values, path.parent.absolute()))
     except FileNotFoundError:
         msg = f"{path}: no such file; expected a giveway configuration (TOML)"
     except tomllib.TOMLDecodeError as error:
@@ -114,7 +114,7 @@ def read_toml_text(text: str, origin: str) -> Layer:
     return Layer(origin, tomllib.loads(text))
 
 
-def _anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
+def anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
     """``values`` with those files that exist relative to ``folder`` named absolutely."""
     vehicles = [values.get("vehicle")]
     if isinstance(values.get("egos"), list):

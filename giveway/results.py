@@ -144,6 +144,14 @@ def _plain(row: dict[Any, Any]) -> dict[str, Any]:
     return {str(k): v.item() if isinstance(v, np.generic) else v for k, v in row.items()}
 
 
+def rounded_row(row: dict[Any, Any]) -> dict[str, Any]:
+    """One row of a table as it is written: Python's own types, floats to six decimals."""
+    return {
+        key: round(value, _DECIMALS) + 0.0 if isinstance(value, float) else value
+        for key, value in _plain(row).items()
+    }
+
+
 def sumo_folder(folder: Path) -> Path:
     """Where SUMO's own outputs go; those of a former run are taken away.
 

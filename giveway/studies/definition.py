@@ -1,0 +1,199 @@
+"""The study file: what is varied, how often it is run, what is compared."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, Field, ValidationError, model_validator
+
+from giveway.configfile import anchored
+from giveway.errors import ConfigError
+from giveway.sections import Section
+
+Situation = Literal["general", "stop-and-wait", "non-stop"]
+
+BUNDLED = "bundled"
+_MOST_SEEDS = 1_000_000
+_NAME = r"^[\w.-]+$"
+
+
+def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
+    if not value:
+        msg = "expected at least one factor, like controller = ['mpc', 'pid']"
+        raise ValueError(msg)
+    return value
+
+
+class Comparison(Section):
+    """Which factor's levels are compared, run by run on the same crowds."""
+
+    factor: str = Field("controller", description="the factor whose levels are compared")
+    baseline: str | None = Field(
+        None, description="the level that is subtracted; none: the factor's last"
+    )
+    confidence: float = Field(0.95, description="of the intervals", gt=0.5, lt=1.0)
+    resamples: int = Field(
+        4999, description="of the bootstrap behind each interval", ge=99, le=1_000_000
+    )
+    minimum_pairs: int = Field(
+        30, description="a situation with fewer pairs is N.A.", ge=3, le=_MOST_SEEDS
+    )
+
+
+class Precision(Section):
+    """Sequential stopping: seeds are added until the interval is narrow enough."""
+
+    metric: str = Field("completion_time", description="whose mean difference is to be known")
+    situation: Situation = Field("general", description="in which situation")
+    width: float = Field(description="whole width of its interval, in the metric's unit", gt=0)
+    minimum: int = Field(100, description="seeds to begin with", ge=10, le=_MOST_SEEDS)
+    batch: int = Field(100, description="seeds that are added at a time", ge=1, le=_MOST_SEEDS)
+
+
+class StudyDefinition(Section):
+    """One study, as its TOML file has it."""
+
+    name: str = Field(description="of the study; names its results folder", pattern=_NAME)
+    description: str = Field("", description="for the report's title")
+    replications: int = Field(
+        100, description="seeds per cell; the most, with [precision]", ge=1, le=_MOST_SEEDS
+    )
+    first_seed: int = Field(1, description="they count up from here", ge=0, le=2**31 - 1)
+    reference: Literal["", "yang2019"] = Field(
+        "", description="published numbers that the report shows beside its own"
+    )
+    run: dict[str, Any] = Field(
+        default_factory=dict, description="settings of every run, as in a run's TOML file"
+    )
+    factors: Annotated[dict[str, Any], AfterValidator(_not_empty)] = Field(
+        description="option = [levels], or name = {level = {settings}}"
+    )
+    cells: tuple[dict[str, Any], ...] = Field(
+        (), description="combinations of levels by name; none: all of them, a grid"
+    )
+    comparison: Comparison = Comparison()
+    precision: Precision | None = None
+
+    @model_validator(mode="after")
+    def _seeds_in_range(self) -> StudyDefinition:
+        if self.first_seed + self.replications > 2**31:
+            msg = f"first_seed = {self.first_seed}: the last seed would be beyond 2147483647"
+            raise ValueError(msg)
+        return self
+
+
+def bundled_studies() -> tuple[str, ...]:
+    """The names of the studies that come with giveway."""
+    folder = files("giveway.studies") / BUNDLED
+    return tuple(
+        sorted(
+            entry.name.removesuffix(".toml")
+            for entry in folder.iterdir()
+            if entry.name.endswith(".toml")
+        )
+    )
+
+
+def find_study(name: str | Path) -> Path:
+    """The file of a bundled study, or of one's own.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    path = Path(name)
+    if path.suffix == ".toml":
+        return path
+    if str(name) in bundled_studies():
+        return Path(str(files("giveway.studies") / BUNDLED / f"{name}.toml"))
+    known = ", ".join(bundled_studies())
+    msg = f"study '{name}': no such study; expected a .toml file or one of {known}"
+    raise ConfigError(msg)
+
+
+def read_definition(path: Path) -> StudyDefinition:
+    """The study in a TOML file; paths in it are relative to its folder.
+
+    Raises:
+        ConfigError: the file is missing, not TOML, or holds what no study has.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        msg = f"{path}: no such file; expected a study (TOML), see giveway study --help"
+        raise ConfigError(msg) from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "not UTF-8 text"
+        msg = f"{path}: cannot be read ({reason}); expected a study (TOML)"
+        raise ConfigError(msg) from error
+    return parse_definition(text, str(path), path.parent.absolute())
+
+
+def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
+    """The study in a TOML text.
+
+    Args:
+        text: of the file.
+        origin: its name, for messages.
+        folder: what relative paths in it are relative to.
+
+    Raises:
+        ConfigError: one line that names the key, its value and what was expected.
+    """
+    try:
+        values = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        msg = f"{origin}: not valid TOML: {error}; mend the line named"
+        raise ConfigError(msg) from None
+    try:
+        return StudyDefinition.model_validate(_anchored(values, folder))
+    except ValidationError as error:
+        raise ConfigError(f"{origin}: {_explain(error.errors(include_url=False)[0])}") from None
+
+
+def _anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """``values`` with those files that exist relative to ``folder`` named absolutely."""
+    if isinstance(values.get("run"), dict):
+        anchored(values["run"], folder)
+    factors = values.get("factors")
+    if not isinstance(factors, dict):
+        return values
+    for name, levels in factors.items():
+        if name in {"scenario", "vehicle.fmu", "vehicle.profile"} and isinstance(levels, list):
+            table, _, key = name.rpartition(".")
+            for place, level in enumerate(levels):
+                nested = {table: {key: level}} if table else {key: level}
+                anchored(nested, folder)
+                levels[place] = (nested[table] if table else nested)[key]
+        elif isinstance(levels, dict):
+            for level in levels.values():
+                if isinstance(level, dict):
+                    anchored(level, folder)
+    return values
+
+
+def _explain(error: Any) -> str:
+    place = [str(part) for part in error["loc"]]
+    key = ".".join(place) or "study"
+    if error["type"] == "missing":
+        return f"{key}: missing; {_meaning(place)}"
+    if error["type"] == "extra_forbidden":
+        known = _fields(place[:-1])
+        return f"{key}: unknown key; expected one of {', '.join(known)}"
+    if error["type"] == "value_error":
+        return f"{key}: {error['ctx']['error']}"
+    expected = str(error["msg"]).removeprefix("Input ")
+    return f"{key} = {error['input']!r}: {expected} ({_meaning(place)})"
+
+
+def _fields(place: list[str]) -> dict[str, Any]:
+    tables: dict[str, type[Section]] = {"comparison": Comparison, "precision": Precision}
+    model = tables.get(place[0] if place else "", StudyDefinition)
+    return dict(model.model_fields)
+
+
+def _meaning(place: list[str]) -> str:
+    field = _fields(place[:-1]).get(place[-1]) if place else None
+    return str(field.description) if field is not None else "see docs/studies.md"

@@ -1,0 +1,222 @@
+"""From factors and levels to cells: the settings of every combination that is run."""
+
+from __future__ import annotations
+
+import difflib
+import itertools
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from giveway.configfile import Layer, merge, options
+from giveway.errors import ConfigError
+
+if TYPE_CHECKING:
+    from giveway.studies.definition import StudyDefinition
+
+_RESERVED = frozenset({"run", "cell", "seed", "ego", "ending", "scenario_name"})
+
+
+@dataclass(frozen=True)
+class Level:
+    """One value of a factor.
+
+    Attributes:
+        label: how tables and pictures call it.
+        value: the option's value; the label, for a level that has a name.
+        settings: what it sets.
+    """
+
+    label: str
+    value: str | bool | int | float
+    settings: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Factor:
+    """What is varied.
+
+    Attributes:
+        name: an option, as ``crowd.pedestrians``, or a name of the user's.
+        levels: its values.
+        unit: of an option; None without one.
+    """
+
+    name: str
+    levels: tuple[Level, ...]
+    unit: str | None = None
+
+    def level(self, label: object) -> Level | None:
+        """The level that is called ``label``, or has that value."""
+        wanted = label_of(label)
+        return next((level for level in self.levels if level.label == wanted), None)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One combination of levels.
+
+    Attributes:
+        number: from 1 on, in the order of the design.
+        levels: by factor.
+    """
+
+    number: int
+    levels: dict[str, Level]
+
+    @property
+    def label(self) -> str:
+        """Factor by factor, as in "crowd.pedestrians = 30, controller = mpc"."""
+        return ", ".join(f"{name} = {level.label}" for name, level in self.levels.items())
+
+    def layer(self, origin: str, shared: dict[str, Any]) -> Layer:
+        """Its settings on top of those that all cells share."""
+        layers = [Layer(origin, shared)]
+        layers += [Layer(origin, level.settings) for level in self.levels.values()]
+        return Layer(f"{origin}: cell {self.number} ({self.label})", merge(layers))
+
+
+@dataclass(frozen=True)
+class Design:
+    """Factors and the cells that are run."""
+
+    factors: tuple[Factor, ...]
+    cells: tuple[Cell, ...]
+
+    def factor(self, name: str) -> Factor:
+        """The factor of that name.
+
+        Raises:
+            ConfigError: there is none.
+        """
+        for factor in self.factors:
+            if factor.name == name:
+                return factor
+        names = ", ".join(factor.name for factor in self.factors)
+        msg = f"factor '{name}': not in this study; expected one of {names}"
+        raise ConfigError(msg)
+
+
+def design(definition: StudyDefinition, origin: str) -> Design:
+    """The cells of a study: every combination, or those that it lists.
+
+    Args:
+        definition: the study.
+        origin: its file, for messages.
+
+    Raises:
+        ConfigError: a factor or a cell cannot be used.
+    """
+    factors = tuple(_factors(definition.factors, origin))
+    if definition.cells:
+        chosen = [
+            _listed(entry, factors, f"{origin}: cells[{number}]")
+            for number, entry in enumerate(definition.cells)
+        ]
+    else:
+        grid = itertools.product(*(factor.levels for factor in factors))
+        names = [factor.name for factor in factors]
+        chosen = [dict(zip(names, levels, strict=True)) for levels in grid]
+    cells = tuple(Cell(number, levels) for number, levels in enumerate(chosen, start=1))
+    for a, b in itertools.combinations(cells, 2):
+        if a.label == b.label:
+            msg = f"{origin}: cells {a.number} and {b.number} are the same ({a.label}); drop one"
+            raise ConfigError(msg)
+    return Design(factors, cells)
+
+
+def label_of(value: object) -> str:
+    """How a value is written in a label."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list | tuple):
+        return ",".join(label_of(item) for item in value)
+    return f"{value:.12g}" if isinstance(value, float) else str(value)
+
+
+def _factors(tables: dict[str, Any], origin: str) -> list[Factor]:
+    found = []
+    for name, levels in tables.items():
+        place = f"{origin}: [factors] {name}"
+        if isinstance(levels, list):
+            found.append(_option_factor(name, levels, place))
+        elif isinstance(levels, dict) and all(isinstance(v, list) for v in levels.values()):
+            # crowd.pedestrians = [...] without quotes is a table within a table
+            found += [_option_factor(f"{name}.{key}", v, place) for key, v in levels.items()]
+        elif isinstance(levels, dict) and all(isinstance(v, dict) for v in levels.values()):
+            named = [Level(label, label, settings) for label, settings in levels.items()]
+            found.append(_factor(name, named, place))
+        else:
+            msg = (
+                f"{place} = {levels!r}: expected a list of values, or a table of named levels like "
+                '{ "short" = { mpc = { horizon = 10 } }, ... }'
+            )
+            raise ConfigError(msg)
+    names = [factor.name for factor in found]
+    for name in names:
+        if name in _RESERVED:
+            msg = f"{origin}: [factors] {name}: this name is taken by a column; choose another"
+            raise ConfigError(msg)
+        if names.count(name) > 1:
+            msg = f"{origin}: [factors] {name}: given twice; merge the two"
+            raise ConfigError(msg)
+    return found
+
+
+def _option_factor(name: str, values: list[Any], place: str) -> Factor:
+    known = {".".join(option.location): option for option in options()}
+    if name == "seed":
+        msg = f"{place}: seeds are not a factor; set replications and first_seed"
+        raise ConfigError(msg)
+    if name not in known:
+        close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+        hint = f"did you mean '{close[0]}'?" if close else "giveway config lists the options"
+        msg = f"{place}: no such option; {hint} (a factor of your own has named levels)"
+        raise ConfigError(msg)
+    option = known[name]
+    levels = []
+    for value in values:
+        settings: dict[str, Any] = {}
+        node = settings
+        for table in option.location[:-1]:
+            node = node.setdefault(table, {})
+        node[option.location[-1]] = value
+        shown = value if isinstance(value, str | bool | int | float) else label_of(value)
+        levels.append(Level(label_of(value), shown, settings))
+    return _factor(name, levels, place, option.unit)
+
+
+def _factor(name: str, levels: list[Level], place: str, unit: str | None = None) -> Factor:
+    if not levels:
+        msg = f"{place}: no levels; expected at least one"
+        raise ConfigError(msg)
+    labels = [level.label for level in levels]
+    for label in labels:
+        if labels.count(label) > 1:
+            msg = f"{place}: level '{label}' twice; drop one"
+            raise ConfigError(msg)
+    return Factor(name, tuple(levels), unit)
+
+
+def _listed(entry: dict[str, Any], factors: tuple[Factor, ...], place: str) -> dict[str, Level]:
+    """The levels that one entry of ``cells`` names."""
+    flat = {
+        f"{key}.{inner}" if isinstance(value, dict) else key: item
+        for key, value in entry.items()
+        for inner, item in (value.items() if isinstance(value, dict) else [("", value)])
+    }
+    names = [factor.name for factor in factors]
+    unknown = [key for key in flat if key not in names]
+    missing = [name for name in names if name not in flat]
+    if unknown or missing:
+        what = f"unknown factor '{unknown[0]}'" if unknown else f"no level of '{missing[0]}'"
+        msg = f"{place}: {what}; expected one level of each of {', '.join(names)}"
+        raise ConfigError(msg)
+    levels = {}
+    for factor in factors:
+        level = factor.level(flat[factor.name])
+        if level is None:
+            known = ", ".join(level.label for level in factor.levels)
+            msg = f"{place}: {factor.name} = {flat[factor.name]!r}: expected one of {known}"
+            raise ConfigError(msg)
+        levels[factor.name] = level
+    return levels

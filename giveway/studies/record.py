@@ -1,0 +1,110 @@
+"""What a study keeps of one run: its summary rows, or what became of it."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+Scalar = str | bool | int | float
+
+CRASHED = "crashed"
+FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class Task:
+    """One run to be made, in whatever process, on whatever machine.
+
+    Attributes:
+        run: id in its study, such as ``c2-s17`` (cell 2, seed 17).
+        key: content hash of everything that can change a number of it.
+        config: the effective configuration as JSON.
+        inputs: SHA-256 of each input file, by its name; a worker on another machine checks them.
+        software: identity of the code that planned it; a worker must be the same.
+    """
+
+    run: str
+    key: str
+    config: str
+    inputs: dict[str, str]
+    software: str
+
+
+@dataclass(frozen=True)
+class Computing:
+    """How a run was computed: all that may differ between two equal studies.
+
+    Attributes:
+        seconds: wall clock of the run, set-up and metrics included.
+        attempts: how often it was tried.
+        worker: who did it: host and process id.
+        memory: resident set of the worker after the run [MB].
+    """
+
+    seconds: float = math.nan
+    attempts: int = 1
+    worker: str = ""
+    memory: float = math.nan
+
+
+@dataclass(frozen=True)
+class RunRecord:
+    """One finished run.
+
+    Attributes:
+        run: id in its study.
+        key: content hash of everything that can change a number of it.
+        ending: as in the summary: completed, time limit, ..., failed, crashed.
+        rows: one per ego: the columns of ``summary.csv``; one row of the run's head without egos.
+        remarks: what is not as one may expect.
+        failure: one line: why it failed or crashed, and where; empty if it did not.
+        computing: how it was computed.
+    """
+
+    run: str
+    key: str
+    ending: str
+    rows: tuple[dict[str, Scalar], ...] = ()
+    remarks: tuple[str, ...] = ()
+    failure: str = ""
+    computing: Computing = field(default_factory=Computing)
+
+    @property
+    def failed(self) -> bool:
+        """Whether it has no result."""
+        return bool(self.failure)
+
+    def to_json(self) -> str:
+        """The record as one line of JSON; nan, which JSON does not know, becomes null."""
+        return json.dumps(_plain(asdict(self)), ensure_ascii=False, allow_nan=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> RunRecord:
+        """The record that :meth:`to_json` has written.
+
+        Raises:
+            ValueError: the text is not one.
+        """
+        try:
+            values: dict[str, Any] = json.loads(text)
+            computing = Computing(**{k: _number(v) for k, v in values.pop("computing").items()})
+            rows = tuple({k: _number(v) for k, v in row.items()} for row in values.pop("rows"))
+            remarks = tuple(values.pop("remarks"))
+            return cls(rows=rows, remarks=remarks, computing=computing, **values)
+        except (TypeError, KeyError, AttributeError) as error:
+            msg = f"not a run's record: {error}"
+            raise ValueError(msg) from error
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _number(value: Any) -> Any:
+    return math.nan if value is None else value
