@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import platform
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from giveway import __version__
@@ -35,13 +37,27 @@ def software_versions() -> dict[str, str]:
     return versions | {"platform": platform.platform(), "machine": platform.machine()}
 
 
-def scenario_hashes(scenario: Scenario) -> dict[str, str]:
-    """SHA-256 of the scenario's configuration, settings and every input file that it names."""
+def scenario_inputs(scenario: Scenario) -> dict[str, Path]:
+    """The scenario's configuration, settings and every input file, by path from its folder."""
     files = [scenario.config_file]
     files += [path for _, path in read_scenario(scenario.config_file).inputs]
     if scenario.settings_file is not None:
         files.append(scenario.settings_file)
-    return {file.name: sha256(file.read_bytes()) for file in files if file.is_file()}
+    folder = scenario.config_file.parent
+    return {_seen_from(folder, file): file for file in files if file.is_file()}
+
+
+def scenario_hashes(scenario: Scenario) -> dict[str, str]:
+    """SHA-256 of each of the :func:`scenario_inputs`."""
+    inputs = scenario_inputs(scenario)
+    return {name: sha256(file.read_bytes()) for name, file in inputs.items()}
+
+
+def _seen_from(folder: Path, file: Path) -> str:
+    try:
+        return Path(os.path.relpath(file, folder)).as_posix()
+    except ValueError:  # on another drive
+        return file.name
 
 
 def manifest(

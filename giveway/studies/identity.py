@@ -1,0 +1,128 @@
+"""What a run's numbers depend on, as hashes: its settings, its input files, the code that runs it.
+
+Two runs with one key have the same rows, byte for byte; that is what lets a study be resumed.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+import platform
+import socket
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from giveway._environment import ROOMS
+from giveway.config import RunConfig
+from giveway.errors import ConfigError
+from giveway.manifest import scenario_hashes, scenario_inputs, sha256, software_versions
+from giveway.vehicles import fmu_path
+from sumo_scenarios import find
+
+if TYPE_CHECKING:
+    from giveway.studies.record import Task
+    from sumo_scenarios import Scenario
+
+_NOT_NUMBERS = ("cli", "doctor", "figures", "replays", "reports", "studies")
+"""Parts of giveway that look at results only: a change there leaves every record valid."""
+_NO_MATTER = frozenset({"platform", "machine", "pandas", "python"})
+
+
+@functools.cache
+def software_identity() -> str:
+    """Changes with whatever code can change a number: giveway's, and the libraries' versions."""
+    house = Path(__file__).resolve().parent.parent.parent
+    digest = hashlib.sha256()
+    for room in ("giveway", *ROOMS):
+        for path in sorted((house / room).rglob("*.py")):
+            place = path.relative_to(house / room)
+            if room != "giveway" or place.parts[0] not in _NOT_NUMBERS:
+                digest.update(str(place.as_posix()).encode() + path.read_bytes())
+    versions = {k: v for k, v in software_versions().items() if k not in _NO_MATTER}
+    versions["python"] = ".".join(platform.python_version_tuple()[:2])
+    digest.update(json.dumps(versions, sort_keys=True).encode())
+    return digest.hexdigest()[:16]
+
+
+def input_hashes(config: RunConfig, scenario: Scenario) -> dict[str, str]:
+    """SHA-256 of every file that the run reads: the scenario's, FMUs and their profiles."""
+    hashes = {f"scenario {name}": hash_ for name, hash_ in scenario_hashes(scenario).items()}
+    return hashes | {name: _hash(file) for name, file in _vehicle_files(config)}
+
+
+def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str:
+    """A hash of everything but the seed; where the files lie does not matter, what they hold does.
+
+    Args:
+        config: the effective configuration; its seed is left out.
+        inputs: as :func:`input_hashes` gives them.
+        software: as :func:`software_identity` gives it.
+    """
+    values = config.model_dump(mode="json", exclude={"seed"})
+    for table in (values, *values["egos"]):
+        vehicle = table.get("vehicle", {})
+        for key in ("fmu", "profile"):
+            if key in vehicle:
+                vehicle[key] = Path(vehicle[key]).name
+    values["scenario"] = Path(values["scenario"]).name
+    content = {"settings": values, "inputs": inputs, "software": software}
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def run_key(digest: str, seed: int) -> str:
+    """The key of one run of a cell."""
+    return hashlib.sha256(f"{digest} {seed}".encode()).hexdigest()[:32]
+
+
+def require_same(task: Task) -> None:
+    """Make sure that this process would compute what was planned, perhaps on another machine.
+
+    Raises:
+        ConfigError: another version of giveway or a library runs here, or a file differs.
+    """
+    here = socket.gethostname()
+    if task.software != software_identity():
+        msg = (
+            f"worker on {here}: its giveway or libraries differ from those that planned run "
+            f"{task.run}; install the same versions on every machine"
+        )
+        raise ConfigError(msg)
+    config = RunConfig.model_validate_json(task.config)
+    files = {name: Path(file) for name, file in _scenario_files(config.scenario)}
+    files |= dict(_vehicle_files(config))
+    found = {name: _hash(file) for name, file in files.items() if file.is_file()}
+    for name, expected in task.inputs.items():
+        if found.get(name) != expected:
+            what = "another content" if name in found else "nothing"
+            msg = (
+                f"worker on {here}: {name}: found {what} where run {task.run} was planned with "
+                "this file; put the study's files under the same path on every machine"
+            )
+            raise ConfigError(msg)
+
+
+@functools.lru_cache(maxsize=64)
+def _scenario_files(scenario: str) -> tuple[tuple[str, str], ...]:
+    files = scenario_inputs(find(scenario))
+    return tuple((f"scenario {name}", str(path)) for name, path in files.items())
+
+
+def _vehicle_files(config: RunConfig) -> list[tuple[str, Path]]:
+    found = []
+    for ego in config.each_ego():
+        named: list[Path] = [fmu_path(ego.vehicle)]
+        named += [Path(ego.vehicle.profile)] if ego.vehicle.profile else []
+        found += [(f"vehicle of {ego.ego_id}: {f.name}", f) for f in named if f.is_file()]
+    return found
+
+
+def _hash(file: Path) -> str:
+    """Its SHA-256; it is read again only when it has changed."""
+    status = file.stat()
+    return _hash_of(str(file), status.st_mtime_ns, status.st_size)
+
+
+@functools.lru_cache(maxsize=1024)
+def _hash_of(file: str, _changed: int, _size: int) -> str:
+    return sha256(Path(file).read_bytes())

@@ -1,0 +1,124 @@
+"""Every run of a study, before any of them: its settings, its key, its order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from giveway.assembly import control_step
+from giveway.errors import GivewayError
+from giveway.loading import load
+from giveway.scenario_files import read_scenario
+from giveway.studies.design import design
+from giveway.studies.identity import cell_digest, input_hashes, run_key, software_identity
+from giveway.studies.record import Task
+from giveway.vehicles import require_vehicles
+from giveway.zone import Zone
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from giveway.config import RunConfig
+    from giveway.studies.definition import StudyDefinition
+    from giveway.studies.design import Cell, Design
+
+
+@dataclass(frozen=True)
+class PlannedCell:
+    """A cell whose scenario and settings have been found to fit.
+
+    Attributes:
+        cell: levels and number.
+        config: the effective configuration of its first run.
+        inputs: SHA-256 of each file that its runs read.
+        digest: of everything that its runs have in common.
+    """
+
+    cell: Cell
+    config: RunConfig
+    inputs: dict[str, str]
+    digest: str
+
+
+@dataclass(frozen=True)
+class PlannedRun:
+    """One run: its cell and its seed."""
+
+    planned: PlannedCell
+    seed: int
+
+    @property
+    def id(self) -> str:
+        """Its name within the study: ``c2-s17`` is seed 17 in cell 2."""
+        return f"c{self.planned.cell.number}-s{self.seed}"
+
+    @property
+    def key(self) -> str:
+        """The name of its record."""
+        return run_key(self.planned.digest, self.seed)
+
+    @property
+    def config(self) -> RunConfig:
+        """Its effective configuration."""
+        return self.planned.config.model_copy(update={"seed": self.seed})
+
+    def task(self) -> Task:
+        """What a worker needs to make it."""
+        text = self.config.model_dump_json()
+        return Task(self.id, self.key, text, self.planned.inputs, software_identity())
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The cells of a study and the seeds of each."""
+
+    definition: StudyDefinition
+    design: Design
+    cells: tuple[PlannedCell, ...]
+
+    @property
+    def seeds(self) -> range:
+        """The seeds of every cell; with [precision], the most there may be."""
+        first = self.definition.first_seed
+        return range(first, first + self.definition.replications)
+
+    def runs(self, seeds: range) -> Iterator[PlannedRun]:
+        """Every cell's run of one seed, then of the next: what is there is always paired."""
+        for seed in seeds:
+            for planned in self.cells:
+                yield PlannedRun(planned, seed)
+
+    def __len__(self) -> int:
+        return len(self.cells) * len(self.seeds)
+
+
+def plan(definition: StudyDefinition, origin: str) -> Plan:
+    """Look at every cell's scenario and vehicles, and give every run its key.
+
+    Args:
+        definition: the study.
+        origin: its file, for messages.
+
+    Raises:
+        GivewayError: a cell cannot be run; the message names it.
+    """
+    designed = design(definition, origin)
+    designed.factor(definition.comparison.factor)
+    cells = tuple(_planned(cell, definition, origin) for cell in designed.cells)
+    return Plan(definition, designed, cells)
+
+
+def _planned(cell: Cell, definition: StudyDefinition, origin: str) -> PlannedCell:
+    try:
+        config, scenario = load([cell.layer(origin, definition.run)])
+        config = config.model_copy(update={"seed": definition.first_seed})
+        files = read_scenario(scenario.config_file)
+        files.require_inputs()
+        Zone(config.crowd.zone, config.crowd.zone_margin)
+        require_vehicles(config.each_ego(), control_step(config, files))
+    except GivewayError as error:
+        where = f"{origin}: cell {cell.number} ({cell.label})"
+        error.args = (str(error) if origin in str(error) else f"{where}: {error}",)
+        raise
+    inputs = input_hashes(config, scenario)
+    return PlannedCell(cell, config, inputs, cell_digest(config, inputs, software_identity()))
