@@ -1,0 +1,35 @@
+"""What a study shows: paired differences, their intervals and tests, how much of it is luck.
+
+docs/statistics.md says in words what is computed here.
+"""
+
+from __future__ import annotations
+
+from giveway.studies.statistics.columns import (
+    COMPARISON_COLUMNS,
+    PRECISION_COLUMNS,
+    SITUATION_COLUMNS,
+    TABLE_2_COLUMNS,
+)
+from giveway.studies.statistics.comparing import compare
+from giveway.studies.statistics.metrics import METRICS, Metric, metric
+from giveway.studies.statistics.sequential import looks, precise_enough
+from giveway.studies.statistics.situations import SITUATIONS, situations
+from giveway.studies.statistics.yang2019 import PUBLISHED, table2
+
+__all__ = [
+    "COMPARISON_COLUMNS",
+    "METRICS",
+    "PRECISION_COLUMNS",
+    "PUBLISHED",
+    "SITUATIONS",
+    "SITUATION_COLUMNS",
+    "TABLE_2_COLUMNS",
+    "Metric",
+    "compare",
+    "looks",
+    "metric",
+    "precise_enough",
+    "situations",
+    "table2",
+]

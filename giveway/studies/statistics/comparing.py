@@ -1,0 +1,157 @@
+"""The table of differences: every metric, in every situation, of every context."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from giveway.studies.statistics.bootstrap import Interval, mean_interval, seed_of
+from giveway.studies.statistics.columns import COMPARISON_COLUMNS
+from giveway.studies.statistics.metrics import METRICS
+from giveway.studies.statistics.pairs import other_factors, paired
+from giveway.studies.statistics.rounding import mean, median, tabulated, to_decimals
+from giveway.studies.statistics.signed_rank import SignedRank, q_values, signed_rank
+from giveway.studies.statistics.situations import SITUATIONS, kept, within
+
+if TYPE_CHECKING:
+    from collections.abc import Hashable, Mapping
+
+    from numpy.typing import NDArray
+
+    from giveway.studies.definition import Comparison, Situation
+    from giveway.studies.design import Design
+    from giveway.studies.statistics.metrics import Metric
+    from giveway.studies.statistics.pairs import Pairs
+
+    Array = NDArray[np.float64]
+
+BETTER = "better"
+WORSE = "worse"
+NOT_SHOWN = "no difference shown"
+NOT_AVAILABLE = "N.A."
+
+
+@dataclass(frozen=True)
+class Differences:
+    """The pairs that count for one metric in one situation: a number on both sides.
+
+    Attributes:
+        treated: of the treatment's runs (n,).
+        based: of the baseline's runs (n,).
+        values: treatment minus baseline (n,), to six decimals as both are, so that equal
+            differences are equal numbers and share their rank.
+    """
+
+    treated: Array
+    based: Array
+    values: Array
+
+    def __len__(self) -> int:
+        """The number of pairs."""
+        return self.values.size
+
+
+def differences(pairs: Pairs, name: str, situation: Situation) -> Differences:
+    """The pairs of a situation that have a finite difference in the metric ``name``."""
+    treated, based = pairs.of(name)
+    with np.errstate(over="ignore"):
+        values = to_decimals(treated - based)
+    chosen = within(pairs, situation) & np.isfinite(values)
+    return Differences(treated[chosen], based[chosen], values[chosen])
+
+
+def interval(
+    found: Differences, pairs: Pairs, name: str, situation: Situation, comparison: Comparison
+) -> Interval:
+    """The interval of the mean difference; its draws depend on the names alone."""
+    return mean_interval(
+        found.values,
+        confidence=comparison.confidence,
+        resamples=comparison.resamples,
+        seed=seed_of((*pairs.names, situation, name)),
+    )
+
+
+def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
+    """The paired differences between the levels of one factor: ``comparison.csv``.
+
+    Args:
+        runs: a row per run and ego, as ``runs.csv``.
+        design: of the study.
+        comparison: which factor is compared, with which baseline, and how surely.
+
+    Returns:
+        A row per context, ego, treatment, situation and metric, in this order: the context's
+        factors, then ``COMPARISON_COLUMNS``; numbers as they are written to a file. A context
+        without any pair has no row.
+
+    Raises:
+        ConfigError: the study has no such factor, or the factor no such level.
+    """
+    rows = [
+        _row(pairs, metric, situation, comparison)
+        for pairs in paired(runs, design, comparison)
+        for situation in SITUATIONS
+        for metric in METRICS
+    ]
+    names = [*other_factors(design, comparison), *(column.name for column in COMPARISON_COLUMNS)]
+    frame = pd.DataFrame(rows, columns=[*names, "better", "direction", "excludes_zero"])
+    numbers = [column.name for column in COMPARISON_COLUMNS if column.type == "number"]
+    frame[numbers] = frame[numbers].astype(np.float64)
+    frame["q_value"] = q_values(frame["p_value"].to_numpy())
+    frame["verdict"] = [_verdict(row, comparison) for row in frame.to_dict("records")]
+    return tabulated(frame[names], numbers)
+
+
+def _row(
+    pairs: Pairs, metric: Metric, situation: Situation, comparison: Comparison
+) -> dict[str, object]:
+    found = differences(pairs, metric.name, situation)
+    seen = np.count_nonzero(kept(pairs))
+    row: dict[str, object] = {
+        **pairs.row,
+        "situation": situation,
+        "metric": metric.name,
+        "unit": metric.unit,
+        "n": len(found),
+        "share": len(found) / seen if seen else np.nan,
+        "better": metric.better,
+        "interval": "",
+    }
+    if len(found) < comparison.minimum_pairs:
+        return row
+    between = interval(found, pairs, metric.name, situation, comparison)
+    return row | _numbers(found, between, signed_rank(found.values))
+
+
+def _numbers(found: Differences, between: Interval, test: SignedRank) -> dict[str, object]:
+    return {
+        "treatment_mean": mean(found.treated),
+        "baseline_mean": mean(found.based),
+        "mean_difference": mean(found.values),
+        "ci_low": between.low,
+        "ci_high": between.high,
+        "median_difference": median(found.values),
+        "wilcoxon_statistic": test.statistic,
+        "p_value": test.p_value,
+        "interval": between.method,
+        "direction": test.direction,
+        "excludes_zero": between.excludes_zero(),
+    }
+
+
+def _verdict(row: Mapping[Hashable, Any], comparison: Comparison) -> str:
+    """Both must agree: the interval about the size of the mean, the test after correction.
+
+    A verdict thus never contradicts the interval beside it, nor the many tests that were made;
+    where a few large differences pull the mean to the other side than most pairs, there is none.
+    """
+    if np.isnan(row["q_value"]):
+        return NOT_AVAILABLE
+    shown = row["q_value"] <= 1.0 - comparison.confidence and row["excludes_zero"]
+    if not shown or row["direction"] != np.sign(row["mean_difference"]):
+        return NOT_SHOWN
+    return BETTER if (row["direction"] < 0) == (row["better"] == "lower") else WORSE

@@ -1,0 +1,75 @@
+"""The numbers of a run of which a difference makes sense, and which way is better."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+from typing import Literal
+
+from giveway.errors import ConfigError
+from giveway.metrics import SUMMARY_FIELDS
+
+
+@dataclass(frozen=True)
+class Metric:
+    """One column of a run's summary, as a study compares it.
+
+    Attributes:
+        name: the column's.
+        unit: the column's; empty for shares and counts.
+        better: which way is.
+        label: how tables and pictures call it.
+    """
+
+    name: str
+    unit: str
+    better: Literal["lower", "higher"]
+    label: str
+
+
+_UNITS = {column.name: column.unit or "" for column in SUMMARY_FIELDS}
+
+
+def _lower(name: str, label: str) -> Metric:
+    return Metric(name, _UNITS[name], "lower", label)
+
+
+def _higher(name: str, label: str) -> Metric:
+    return Metric(name, _UNITS[name], "higher", label)
+
+
+METRICS = (
+    _lower("completion_time", "completion time"),
+    _lower("longest_wait", "longest wait"),
+    _lower("total_wait", "total wait"),
+    _lower("stops", "stops"),
+    _higher("mean_speed", "mean speed"),
+    _lower("peak_deceleration", "peak deceleration"),
+    _lower("rms_jerk", "RMS jerk"),
+    _lower("peak_jerk", "peak jerk"),
+    _higher("mpc_feasibility_rate", "feasibility rate of the MPC"),
+    _higher("minimum_gap", "minimum gap"),
+    _lower("share_below_safe_distance", "share below the safe distance"),
+    _higher("minimum_clearance", "minimum clearance"),
+    _lower("overlaps", "overlaps"),
+    _lower("overlap_time", "overlap time"),
+    _higher("minimum_ttc", "minimum time to collision"),
+    _higher("minimum_pet", "minimum post-encroachment time"),
+    _lower("maximum_drac", "maximum deceleration to avoid a crash"),
+)
+
+
+def metric(name: str) -> Metric:
+    """The metric of that name.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    for known in METRICS:
+        if known.name == name:
+            return known
+    names = [known.name for known in METRICS]
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    hint = f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(names)}"
+    msg = f"metric '{name}': no such number to compare; {hint}"
+    raise ConfigError(msg)

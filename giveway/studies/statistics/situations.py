@@ -1,0 +1,84 @@
+"""Whether the vehicle had to stop: the three situations of Yang & Özgüner 2019, section 4."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, get_args
+
+import numpy as np
+import pandas as pd
+
+from giveway.studies.definition import Situation
+from giveway.studies.statistics.columns import SITUATION_COLUMNS
+from giveway.studies.statistics.pairs import other_factors, paired
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.studies.definition import Comparison
+    from giveway.studies.design import Design
+    from giveway.studies.statistics.pairs import Pairs
+
+    Mask = NDArray[np.bool_]
+
+SITUATIONS: tuple[Situation, ...] = get_args(Situation)
+
+
+def situations(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
+    """How often both sides of a pair stopped, one of them or none: ``situations.csv``.
+
+    Args:
+        runs: a row per run and ego, as ``runs.csv``.
+        design: of the study.
+        comparison: which factor is compared, with which baseline.
+
+    Returns:
+        A row per context, ego and treatment: the context's factors, then ``SITUATION_COLUMNS``.
+
+    Raises:
+        ConfigError: the study has no such factor, or the factor no such level.
+    """
+    rows = [_row(pairs) for pairs in paired(runs, design, comparison)]
+    names = [*other_factors(design, comparison), *(column.name for column in SITUATION_COLUMNS)]
+    return pd.DataFrame(rows, columns=names)
+
+
+def _row(pairs: Pairs) -> dict[str, object]:
+    treated, based = _stopped(pairs)
+    seen = kept(pairs)
+    arrived = np.isfinite(pairs.of("completion_time")).all(axis=0)
+
+    def share(which: Mask) -> float:
+        return float(np.mean(which[seen])) if seen.any() else np.nan
+
+    return {
+        **pairs.row,
+        "pairs": len(pairs),
+        "share_both_stop": share(treated & based),
+        "share_neither_stops": share(~treated & ~based),
+        "share_only_treatment_stops": share(treated & ~based),
+        "share_only_baseline_stops": share(~treated & based),
+        "lost": int(np.count_nonzero(~seen)),
+        "incomplete": int(np.count_nonzero(seen & ~arrived)),
+    }
+
+
+def kept(pairs: Pairs) -> Mask:
+    """Which pairs (n,) are not lost: both runs have a result, with this ego."""
+    return np.asarray(np.isfinite(pairs.of("stops")).all(axis=0), dtype=np.bool_)
+
+
+def within(pairs: Pairs, situation: Situation) -> Mask:
+    """Which pairs (n,) are in the situation; those that are lost are in none."""
+    treated, based = _stopped(pairs)
+    seen = kept(pairs)
+    if situation == "stop-and-wait":
+        return seen & treated & based
+    if situation == "non-stop":
+        return seen & ~treated & ~based
+    return seen
+
+
+def _stopped(pairs: Pairs) -> tuple[Mask, Mask]:
+    """Whether the vehicle stopped at least once, on each side; nan did not."""
+    treated, based = pairs.of("stops")
+    return treated >= 1.0, based >= 1.0

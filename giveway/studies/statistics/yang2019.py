@@ -1,0 +1,106 @@
+"""The paper's Table 2 beside ours: Yang & Özgüner 2019 (arXiv 1907.05178), section 5.2."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from giveway.studies.statistics.columns import COMPARISON_COLUMNS, TABLE_2_COLUMNS
+
+if TYPE_CHECKING:
+    from giveway.studies.definition import Situation
+
+PEDESTRIANS = (30, 20, 10)
+METRIC_OF: dict[Situation, str] = {
+    "general": "completion_time",
+    "stop-and-wait": "longest_wait",
+    "non-stop": "completion_time",
+}
+"""Which number the paper compares in which situation."""
+
+PUBLISHED: dict[tuple[int, Situation], float] = {
+    (30, "general"): -1.2665,
+    (30, "stop-and-wait"): -1.9457,
+    (30, "non-stop"): -0.9843,
+    (20, "general"): -0.5243,
+    (20, "stop-and-wait"): -1.8338,
+    (20, "non-stop"): -0.7630,
+    (10, "general"): -0.4153,
+    (10, "stop-and-wait"): math.nan,  # printed as N.A.: too few instances
+    (10, "non-stop"): -0.5394,
+}
+"""[s] Mean difference MPC minus PID over 2,000 simulations, by pedestrians and situation."""
+
+
+def table2(
+    comparison: pd.DataFrame,
+    factor_column: str = "crowd.pedestrians",
+    *,
+    treatment: str = "mpc",
+    baseline: str = "pid",
+) -> pd.DataFrame:
+    """The nine numbers of Table 2, each beside ours.
+
+    Args:
+        comparison: the table of ``compare``.
+        factor_column: where it has the number of pedestrians.
+        treatment: the level that stands for the paper's MPC.
+        baseline: the level that stands for the paper's PID.
+
+    Returns:
+        Nine rows, by pedestrians (30, 20, 10) and situation, for every ego and combination of
+        the other factors: these factors, then ``TABLE_2_COLUMNS``. Ours is nan where it was not
+        run. No rows at all where nothing compares the two levels at any number of pedestrians.
+    """
+    known = {column.name for column in COMPARISON_COLUMNS}
+    others = [name for name in comparison.columns if name not in known and name != factor_column]
+    columns = [*others, *(column.name for column in TABLE_2_COLUMNS)]
+    if factor_column not in comparison.columns:
+        return pd.DataFrame(columns=columns)
+    ours = comparison[(comparison["treatment"] == treatment) & (comparison["baseline"] == baseline)]
+    rows = [
+        dict(zip(others, context[:-1], strict=True)) | {"ego": context[-1]} | row
+        for context, frame in ours.groupby([*others, "ego"], sort=False)
+        for row in _nine(frame, factor_column)
+    ]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def _nine(ours: pd.DataFrame, factor_column: str) -> list[dict[str, object]]:
+    rows = {
+        (row[factor_column], row["situation"], row["metric"]): row
+        for row in ours.to_dict("records")
+    }
+    found = []
+    for (pedestrians, situation), published in PUBLISHED.items():
+        metric = METRIC_OF[situation]
+        row = rows.get((pedestrians, situation, metric), {})
+        numbers = {name: row.get(name, math.nan) for name in ("mean_difference", "share")}
+        low, high = row.get("ci_low", math.nan), row.get("ci_high", math.nan)
+        found.append(
+            {
+                "pedestrians": pedestrians,
+                "situation": situation,
+                "metric": metric,
+                "unit": "s",
+                "published": published,
+                **numbers,
+                "ci_low": low,
+                "ci_high": high,
+                "n": row.get("n", 0),
+                "verdict": row.get("verdict", "N.A."),
+                "agreement": _agreement(published, low, high),
+            }
+        )
+    return found
+
+
+def _agreement(published: float, low: float, high: float) -> str:
+    """Where the published number lies, seen from our interval."""
+    if math.isnan(published) or math.isnan(low):
+        return ""
+    if published < low:
+        return "below"
+    return "above" if published > high else "inside"
