@@ -85,6 +85,8 @@ class Seen(NamedTuple):
     leader: Leader
     stop: float  # station [m] where a red light wants the front bumper; inf: none
     ahead: Array  # (N,) stations [m] of the closest obstacle at steps 1 ... N
+    predicted: Array | None  # (N, n, 2) [m] of people at steps 1 ... N, until the next look
+    whom: NDArray[np.bool_] | None  # of the crowd has been predicted; None: everybody
 
 
 class Ego:
@@ -179,12 +181,12 @@ class Ego:
         front, speed, corridor = self.front, self.vehicle.speed, self.corridor
         person, reachable = corridor.closest_now(crowd.position, front)
         ahead = corridor.nobody
-        predictor = self.driver.predictor
+        predictor, predicted, whom = self.driver.predictor, None, None
         if reachable and predictor is not None:
-            positions = predictor.predict(
-                self._relevant(crowd, speed), poses[: predictor.horizon], surroundings
-            )
-            ahead = corridor.closest_predicted(positions, front, speed)
+            whom = self._relevant(crowd, speed)
+            people = crowd if whom is None else crowd.select(whom)
+            predicted = predictor.predict(people, poses[: predictor.horizon], surroundings)
+            ahead = corridor.closest_predicted(predicted, front, speed)
         leader, stop = NO_LEADER, math.inf
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
@@ -194,16 +196,16 @@ class Ego:
             if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
                 allowed = stop + _BEYOND + self._origin
                 ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
-        return Seen(person, leader, stop, ahead)
+        return Seen(person, leader, stop, ahead, predicted, whom)
 
-    def _relevant(self, crowd: Crowd, speed: float) -> Crowd:
-        """Those of a large crowd that the plan, or somebody whom it depends on, may meet.
+    def _relevant(self, crowd: Crowd, speed: float) -> NDArray[np.bool_] | None:
+        """(n,) whom of a large crowd the plan, or somebody whom it depends on, may meet.
 
-        Who is left out acts on the plan only through others, and moves those whom it may meet by
-        less than a micrometre within the horizon.
+        None is everybody. Who is left out acts on the plan only through others, and moves those
+        whom it may meet by less than a micrometre within the horizon.
         """
         if len(crowd) <= _PREDICT_ALL:
-            return crowd
+            return None
         config, span = self.config, self._span
         x, y, _ = self.pose
         strongest = config.mpc.force_limit / config.vehicle.mass
@@ -211,7 +213,8 @@ class Ego:
         reach += self.driver.walking_speed_limit * span + _INTERACTION
         reach += self.shape.length + self.corridor.half_width
         d_x, d_y = crowd.position[:, 0] - x, crowd.position[:, 1] - y
-        return crowd.select(d_x * d_x + d_y * d_y <= reach * reach)
+        within: NDArray[np.bool_] = d_x * d_x + d_y * d_y <= reach * reach
+        return within
 
     def decide(self, step: int, seen: Seen) -> Decision:
         """The force for the step from t_k on; kept for :meth:`advance`.

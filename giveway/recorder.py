@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 from giveway.jit import kernel
 from giveway.journal import Journal
 from giveway.population import LEDGER
-from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings, VehicleShape
+from giveway.tracks import (
+    BackgroundTrack,
+    CrowdTrack,
+    EgoTrack,
+    PredictionTrack,
+    Timings,
+    VehicleShape,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -60,6 +67,7 @@ class Recorder:
         self._timings = rows("timing", len(Timings.NAMES))
         self._drives = rows("drives", 4)  # ego, length, width, goal
         self._ledger = rows("ledger", len(LEDGER))
+        self._predictions = rows("predictions", 6)  # instant, ego, pedestrian, look-ahead, x, y
         self._words = names("words")
         self._egos = names("egos")
         self._pedestrians = names("pedestrians")
@@ -122,6 +130,24 @@ class Recorder:
         filled = fill_near(self._steps - 1, present, position, velocity, egos, within, block)
         self._crowd.give_back(len(present) - filled)
 
+    def predictions(
+        self, ego_id: str, people: Indices, look_ahead: Array, positions: Array
+    ) -> None:
+        """Record what an ego's controller expects of the crowd from the present instant on.
+
+        Args:
+            ego_id: whose controller.
+            people: (n,) the indices of the pedestrians predicted.
+            look_ahead: (m,) [s].
+            positions: (m, n, 2) [m] then.
+        """
+        block = self._predictions.block(look_ahead.size * people.size)
+        block[:, 0] = self._steps - 1
+        block[:, 1] = self._egos.index(ego_id)
+        block[:, 2] = np.tile(people, look_ahead.size)
+        block[:, 3] = np.repeat(look_ahead, people.size)
+        block[:, 4:] = positions.reshape(-1, 2)
+
     def background(
         self, time: float, vehicles: BackgroundVehicles, egos: Array, within: float
     ) -> None:
@@ -155,6 +181,7 @@ class Recorder:
                 "timing": self._timings.filled,
                 "drives": self._drives.filled,
                 "ledger": self._ledger.filled,
+                "predictions": self._predictions.filled,
             },
             {
                 "words": self._words.names,
@@ -173,6 +200,7 @@ class Drive(NamedTuple):
     goal: float  # [m]
     first: int  # the control instant at which it departed
     track: EgoTrack
+    predictions: PredictionTrack
 
 
 class Tables:
@@ -203,7 +231,14 @@ class Tables:
             if len(rows):
                 name = self._names["egos"][int(number)]
                 shape = VehicleShape(float(length), float(width))
-                yield Drive(name, shape, float(goal), int(rows[0, 0]), self._track(rows))
+                yield Drive(
+                    name,
+                    shape,
+                    float(goal),
+                    int(rows[0, 0]),
+                    self._track(rows),
+                    self._predictions_of(number),
+                )
 
     def _track(self, rows: Array) -> EgoTrack:
         columns = [np.ascontiguousarray(column) for column in rows.T]
@@ -212,6 +247,18 @@ class Tables:
         words: Sequence[Any] = (word(acting), word(reason), word(status))
         numbers: Sequence[Any] = columns[2:-4]  # in EgoTrack's order
         return EgoTrack(*numbers, *words, iterations.astype(np.int64))  # type: ignore[call-arg]
+
+    def _predictions_of(self, number: float) -> PredictionTrack:
+        rows = self._rows["predictions"]
+        rows = rows[(rows[:, 0] < len(self.time)) & (rows[:, 1] == number)]
+        step, _, pedestrian, look_ahead, x, y = rows.T
+        return PredictionTrack(
+            time=self.time[step.astype(np.int64)],
+            pedestrian=pedestrian.astype(np.int64),
+            look_ahead=look_ahead,
+            x=x,
+            y=y,
+        )
 
     def _words(self, indices: Array) -> NDArray[np.str_]:
         return np.array(self._names["words"], dtype=np.str_)[indices.astype(np.int64)]

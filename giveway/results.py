@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.errors import ResultsError
+from giveway.replays.scene import SCENE_FILE, scene_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
 SUMO_FOLDER = "sumo"
 MARKS = ("", *(f"_{number}" for number in range(2, 100)))
 """Ends of the names of pictures: of the first ego, the second one, ..."""
-TABLES = ("ego", "trajectories", "pedestrians", "summary", "timing")
+TABLES = ("ego", "trajectories", "pedestrians", "summary", "timing", "predictions")
+"""All that there can be; which of them a run has, its ``schemas`` say."""
 FILES = frozenset(
     {
         *(f"{name}{suffix}" for name in TABLES for suffix in (".csv", ".parquet")),
@@ -32,6 +34,8 @@ FILES = frozenset(
         "summary.json",
         "manifest.json",
         "datapackage.json",
+        SCENE_FILE,
+        "replay.html",
         "sumo.log",
         *(f"{name}{mark}.png" for name in ("state", "top_view") for mark in MARKS),
         SUMO_FOLDER,
@@ -112,19 +116,22 @@ def write_results(result: RunResult, folder: Path, *, parquet: bool = False) -> 
     Raises:
         ResultsError: the disk is full or the folder has become unwritable.
     """
-    frames = {name: _rounded(getattr(result, name)) for name in TABLES if name != "summary"}
-    frames["summary"] = _rounded(result.summary_table)
+    frames = {
+        name: _rounded(result.summary_table if name == "summary" else getattr(result, name))
+        for name in result.schemas
+    }
     try:
         for name in FILES - {SUMO_FOLDER}:
             (folder / name).unlink(missing_ok=True)  # results are never mixed
         (folder / "config.toml").write_text(result.config_text, encoding="utf-8")
-        for name in TABLES:
+        for name in frames:
             frames[name].to_csv(folder / f"{name}.csv", index=False, lineterminator="\n")
             if parquet:
                 _write_parquet(frames[name], folder / f"{name}.parquet")
         _write_json(folder / "summary.json", _summary(result))
         _write_json(folder / "manifest.json", result.manifest)
         _write_json(folder / "datapackage.json", data_package(result))
+        (folder / SCENE_FILE).write_text(scene_of(result).to_json(), encoding="utf-8")
         if result.sumo_messages:
             (folder / "sumo.log").write_text(result.sumo_messages, encoding="utf-8")
     except OSError as error:
@@ -212,14 +219,14 @@ def data_package(result: RunResult) -> dict[str, Any]:
                 "format": "csv",
                 "mediatype": "text/csv",
                 "encoding": "utf-8",
-                "schema": {"fields": _fields(columns), "missingValues": [""]},
+                "schema": {"fields": fields_of(columns), "missingValues": [""]},
             }
             for name, columns in result.schemas.items()
         ],
     }
 
 
-def _fields(columns: Sequence[Column]) -> list[dict[str, str]]:
+def fields_of(columns: Sequence[Column]) -> list[dict[str, str]]:
     fields = []
     for column in columns:
         field = {"name": column.name, "type": column.type}

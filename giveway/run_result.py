@@ -10,10 +10,24 @@ import pandas as pd
 
 from giveway.configfile import dump_toml
 from giveway.metrics import PEDESTRIAN_FIELDS, SUMMARY_FIELDS, pedestrian_metrics, summarise
-from giveway.schema import EGO_COLUMNS, SUMMARY_HEAD, TIMING_COLUMNS, TRAJECTORY_COLUMNS, Column
+from giveway.schema import (
+    EGO_COLUMNS,
+    PREDICTION_COLUMNS,
+    SUMMARY_HEAD,
+    TIMING_COLUMNS,
+    TRAJECTORY_COLUMNS,
+    Column,
+)
 from giveway.simulation import Ending
-from giveway.tables import ego_table, timing_table, trajectory_table
-from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings, VehicleShape
+from giveway.tables import ego_table, prediction_table, timing_table, trajectory_table
+from giveway.tracks import (
+    BackgroundTrack,
+    CrowdTrack,
+    EgoTrack,
+    PredictionTrack,
+    Timings,
+    VehicleShape,
+)
 from pedestrian_model import PRESETS
 
 if TYPE_CHECKING:
@@ -42,6 +56,7 @@ class EgoResult:
         track: its rows, from that instant on.
         ending: why its drive ended.
         crowd: the crowd's records of these instants, counted from ``first``.
+        predictions: what its controller expected of the crowd, if that was to be recorded.
     """
 
     config: RunConfig
@@ -52,6 +67,7 @@ class EgoResult:
     track: EgoTrack
     ending: Ending
     crowd: CrowdTrack
+    predictions: PredictionTrack
 
     @property
     def body_radius(self) -> float:
@@ -72,6 +88,7 @@ class EgoResult:
             self.pedestrians,
             goal=self.goal,
             safe_distance=config.regulation.safe_distance,
+            stop_speed=config.record.stop_speed,
             controller=config.controller,
         )
         return figures.as_dict()
@@ -163,6 +180,14 @@ class RunResult:
         return _stacked(tables, [column.name for column in PEDESTRIAN_TABLE])
 
     @cached_property
+    def predictions(self) -> pd.DataFrame:
+        """One row per control instant, ego, pedestrian and look-ahead, if it was asked for."""
+        names = [column.name for column in PREDICTION_COLUMNS]
+        ids = self.crowd_track.ids
+        tables = [prediction_table(ego.predictions, ego.id, ids) for ego in self.egos]
+        return _stacked(tables, names, by="time")
+
+    @cached_property
     def timing(self) -> pd.DataFrame:
         """Computing times per control step; the only table that differs between equal runs."""
         return timing_table(self.time, self.timings)
@@ -208,12 +233,15 @@ class RunResult:
     @property
     def schemas(self) -> dict[str, tuple[Column, ...]]:
         """The columns of each CSV file."""
+        predicted = self.config.record.predictions is not None
+        optional = {"predictions": PREDICTION_COLUMNS} if predicted else {}
         return {
             "ego": EGO_COLUMNS,
             "trajectories": TRAJECTORY_COLUMNS,
             "pedestrians": PEDESTRIAN_TABLE,
             "summary": (*SUMMARY_HEAD, *SUMMARY_FIELDS),
             "timing": TIMING_COLUMNS,
+            **optional,
         }
 
 
@@ -240,6 +268,7 @@ def results_of_egos(
             track=drive.track,
             ending=endings.get(drive.id, ending),
             crowd=crowd.during(drive.first, len(drive.track.time)),
+            predictions=drive.predictions,
         )
         for drive in tables.drives()
     )

@@ -72,6 +72,15 @@ TRAJECTORY_COLUMNS = (
     Column("vy", "number", "m/s", "velocity's y component"),
 )
 
+PREDICTION_COLUMNS = (
+    Column("time", "number", "s", "control instant t_k at which the prediction was made"),
+    Column("ego", "string", None, "SUMO id of the ego whose MPC made it"),
+    Column("id", "string", None, "the pedestrian"),
+    Column("look_ahead", "number", "s", "the prediction is for this long after t_k"),
+    Column("x", "number", "m", "network x of the body's centre then"),
+    Column("y", "number", "m", "network y of the body's centre then"),
+)
+
 TIMING_COLUMNS = (
     Column("time", "number", "s", "simulation time t_k of the control instant"),
     Column("prediction", "number", "us", "computing time of the crowd's prediction"),

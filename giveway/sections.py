@@ -285,7 +285,7 @@ class SumoConfig(Section):
 
 
 class RecordConfig(Section):
-    """How densely trajectories are recorded."""
+    """How densely trajectories are recorded, and what counts as a stop."""
 
     near: float = option(
         50.0, "m", "who is this near to an ego is recorded at every control step", ge=0, le=1e6
@@ -293,3 +293,11 @@ class RecordConfig(Section):
     far_period: float = option(
         1.0, "s", "everybody else is recorded once in this time", gt=0, le=1e6
     )
+    predictions: float | None = option(
+        None,
+        "s",
+        "keep the predicted positions this far apart in look-ahead; none: keep none",
+        gt=0,
+        le=1e3,
+    )
+    stop_speed: float = option(0.2, "m/s", "a stop of the ego: it is slower than this", gt=0, le=20)

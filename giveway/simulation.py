@@ -68,6 +68,11 @@ class Progress:
 Watcher = Callable[[Progress], None]
 
 
+def looks_ahead(period: float | None, time_step: float) -> int:
+    """Every how many steps of look-ahead a prediction is kept for a ``period`` [s]; 0: never."""
+    return 0 if period is None else max(1, round(period / time_step))
+
+
 class Loop:
     """One run's state and its steps.
 
@@ -99,6 +104,7 @@ class Loop:
         self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
         self._far_background = -self._far_steps
         self._near = parts.config.record.near
+        self._looks = looks_ahead(parts.config.record.predictions, parts.time_step)
         self._named = 0
         self._fronts = np.empty((0, 2))
 
@@ -231,6 +237,8 @@ class Loop:
             decision = ego.decide(self._k, seen)
             controlled_at = perf_counter()
             recorder.ego(ego.id, ego.row(time, seen, decision))
+            if self._looks and seen.predicted is not None:
+                self._record_predictions(ego.id, seen.predicted, seen.whom)
             predicting += decide_at - look_at
             controlling += controlled_at - decide_at
             acting = acting or decision.acting
@@ -250,6 +258,16 @@ class Loop:
         self._recorder.crowd(
             population.present, crowd.position, crowd.velocity, self._places(), within
         )
+
+    def _record_predictions(
+        self, ego_id: str, predicted: Array, whom: NDArray[np.bool_] | None
+    ) -> None:
+        present = self._population.present
+        people = present if whom is None else present[whom]
+        every = min(self._looks, len(predicted))  # of a period beyond the horizon, its end is kept
+        kept = predicted[every - 1 :: every]
+        look_ahead: Array = self._time_step * every * np.arange(1, len(kept) + 1)
+        self._recorder.predictions(ego_id, people, look_ahead, kept)
 
     def _record_background(self) -> None:
         background = self._mirror.background

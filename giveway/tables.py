@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from giveway.schema import EGO_COLUMNS, TIMING_COLUMNS, TRAJECTORY_COLUMNS
+from giveway.schema import EGO_COLUMNS, PREDICTION_COLUMNS, TIMING_COLUMNS, TRAJECTORY_COLUMNS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Timings
+    from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
 
     Array = NDArray[np.float64]
 
@@ -51,6 +51,22 @@ def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
     )
     names = [column.name for column in EGO_COLUMNS]
     return pd.DataFrame(dict(zip(names, values, strict=True)), index=range(len(track.time)))
+
+
+def prediction_table(track: PredictionTrack, ego_id: str, ids: Sequence[str]) -> pd.DataFrame:
+    """``predictions.csv``: one row per control instant, pedestrian and look-ahead."""
+    names = np.array(ids, dtype=object)
+    values = (
+        track.time,
+        ego_id,
+        names[track.pedestrian],
+        track.look_ahead,
+        track.x,
+        track.y,
+    )
+    columns = [column.name for column in PREDICTION_COLUMNS]
+    table = dict(zip(columns, values, strict=True))
+    return pd.DataFrame(table, index=range(len(track.time)))
 
 
 def trajectory_table(

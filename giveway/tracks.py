@@ -74,6 +74,17 @@ class CrowdTrack:
 
 
 @dataclass(frozen=True)
+class PredictionTrack:
+    """Where an ego's controller expected people to be, as flat records in time order."""
+
+    time: NDArray[np.float64]  # (P,) [s] the control instant of the prediction
+    pedestrian: NDArray[np.int64]  # (P,) index into the crowd's ``ids``
+    look_ahead: NDArray[np.float64]  # (P,) [s] from that instant on
+    x: NDArray[np.float64]  # (P,) [m] body centre
+    y: NDArray[np.float64]  # (P,) [m]
+
+
+@dataclass(frozen=True)
 class BackgroundTrack:
     """SUMO's own vehicles as flat records, at SUMO's instants, in time order."""
 

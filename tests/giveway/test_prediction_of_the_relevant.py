@@ -49,7 +49,8 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
                 seen.append(ego.look(0, poses, people, OPEN_GROUND).ahead.copy())
-                left_out += predict_all == 150 and len(ego._relevant(people, speed)) < len(people)
+                whom = ego._relevant(people, speed)
+                left_out += whom is not None and not whom.all()
         reach = ego.front + (speed + 8.0 * 0.75 / 2) * 0.75 + CONFIG.regulation.safe_distance
         matters = (seen[0] <= reach) | (seen[1] <= reach)
         in_reach += int(matters.any())

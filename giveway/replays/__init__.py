@@ -1,0 +1,1 @@
+"""Replays: one page that plays a run, in any browser and without a network."""
