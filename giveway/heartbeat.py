@@ -111,3 +111,29 @@ class Heartbeat:
         phase, step, time, code, supervisor = self._slots[: _SUPERVISOR + 1].tolist()
         known = Phase(phase) if phase in _PLACES else Phase.LOADING  # a wild pointer was here
         return Pulse(known, step, time / _MILLISECONDS, code, supervisor)
+
+
+class Stillness:
+    """How long a heartbeat has stood still, for whoever looks at it now and then.
+
+    Looks are counted and not the clock, which goes on while both sides are suspended.
+
+    Args:
+        heartbeat: to look at.
+    """
+
+    def __init__(self, heartbeat: Heartbeat) -> None:
+        self._heartbeat = heartbeat
+        self._last = heartbeat.read()
+        self._quiet = 0.0
+
+    def look(self, passed: float) -> tuple[Pulse, float]:
+        """The pulse, and for how long [s] it has been the same.
+
+        Args:
+            passed: [s] since the last look.
+        """
+        pulse = self._heartbeat.read()
+        self._quiet = self._quiet + passed if pulse == self._last else 0.0
+        self._last = pulse
+        return pulse, self._quiet

@@ -138,13 +138,14 @@ class Journal:
 
     Args:
         folder: where the journal is kept; None keeps nothing, with the same interface.
+        heartbeat: in use already; None makes one in the folder.
 
     Attributes:
         heartbeat: where the run stands.
         failure: why nothing is journalled any more; empty while all is well.
     """
 
-    def __init__(self, folder: Path | None) -> None:
+    def __init__(self, folder: Path | None, heartbeat: Heartbeat | None = None) -> None:
         self.failure = ""
         self._folder = folder
         self._names: list[NameTable] = []
@@ -152,7 +153,7 @@ class Journal:
         self._file: FileIO | None = None
         self._records: list[bytes | memoryview] = [MAGIC]
         try:
-            self.heartbeat = Heartbeat(folder)
+            self.heartbeat = heartbeat or Heartbeat(folder)
             if folder is not None:
                 self._file = (folder / ROWS_FILE).open("xb", buffering=0)
         except OSError as error:

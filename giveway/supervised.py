@@ -53,7 +53,7 @@ class Supervised:
         if self._folder is None:
             return self
         self._heartbeat.beat(Phase.LOADING)
-        _die_with(self._heartbeat.read().supervisor)
+        die_with(self._heartbeat.read().supervisor)
         with contextlib.suppress(OSError):  # without a traceback the report is only shorter
             self._traceback = (self._folder / TRACEBACK_FILE).open("w", encoding="utf-8")
             faulthandler.enable(self._traceback)
@@ -99,11 +99,15 @@ def _exit_code(error: BaseException | None) -> int:
     return 1
 
 
-def _die_with(supervisor: int) -> None:
+def die_with(supervisor: int) -> None:
     """End this process at once when its supervisor has been killed; its rows are journalled.
 
-    Linux does it itself, even while native code hangs. Other Unixes leave it to a thread, which
-    native code that keeps Python's lock holds up; Windows has no such relation between processes.
+    Linux does it itself, even while native code hangs, when the *thread* that started this process
+    ends. Other Unixes leave it to a thread here, which native code that keeps Python's lock holds
+    up; Windows has no such relation between processes.
+
+    Args:
+        supervisor: process id; 0 does nothing.
     """
     if not supervisor or not hasattr(os, "getppid") or sys.platform == "win32":
         return

@@ -22,7 +22,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from giveway.heartbeat import LOOP, Heartbeat, Phase, Pulse
+from giveway.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
+from giveway.process_ends import WINDOWS_CAUSES, cause_of_end, stood_still, text_in
 from giveway.supervised import JOURNAL_VARIABLE, STDERR_FILE, TRACEBACK_FILE
 
 if TYPE_CHECKING:
@@ -37,14 +38,6 @@ _TEARDOWN_LIMIT = 10.0  # [s] from "done" to the process's end; native destructo
 _DYING_WORDS = 2.0  # [s] for a hanging child to write its traceback
 _POLL = 1.0  # [s] between two looks at the heartbeat
 _SIGNALLED = 128  # a shell's exit code of a process that died of signal n is 128 + n
-_WINDOWS_CAUSES = {
-    0xC0000005: "access violation",
-    0xC000001D: "illegal instruction",
-    0xC0000094: "integer division by zero",
-    0xC00000FD: "stack overflow",
-    0xC0000374: "heap corruption",
-    0xC0000409: "abort",
-}
 _SHOW_CURSOR = "\r\x1b[2K\x1b[?25h"  # a progress bar that died has hidden it
 
 
@@ -255,11 +248,9 @@ class _Watchdog:
         return _TEARDOWN_LIMIT if phase is Phase.DONE else math.inf
 
     def _watch(self) -> None:
-        quiet, last = 0.0, self._heartbeat.read()
+        stillness = Stillness(self._heartbeat)
         while not self._over.wait(self._poll):
-            pulse = self._heartbeat.read()
-            # Looks are counted and not the clock, which goes on while we both are suspended.
-            quiet, last = quiet + self._poll if pulse == last else 0.0, pulse
+            pulse, quiet = stillness.look(self._poll)
             if quiet >= self._limit(pulse.phase):
                 self.waited = quiet
                 self._end()
@@ -280,7 +271,7 @@ def _judge(
     interrupted = relay.first is not None
     if pulse.phase is Phase.DONE:
         return Verdict(pulse.code or max(returncode, 0), False, interrupted, "", pulse, "", "")
-    if pulse.phase is Phase.STARTING and 0 < returncode < min(_WINDOWS_CAUSES):
+    if pulse.phase is Phase.STARTING and 0 < returncode < min(WINDOWS_CAUSES):
         # Python did not come as far as us, and has said why.
         return Verdict(returncode, False, interrupted, "", pulse, "", "")
     return Verdict(
@@ -289,8 +280,8 @@ def _judge(
         interrupted=interrupted and not watchdog.waited,
         cause=_cause(returncode, watchdog, relay),
         pulse=pulse,
-        traceback=_text(journal / TRACEBACK_FILE),
-        last_words=_text(journal / STDERR_FILE),
+        traceback=text_in(journal / TRACEBACK_FILE),
+        last_words=text_in(journal / STDERR_FILE),
     )
 
 
@@ -306,26 +297,5 @@ def _cause(returncode: int, watchdog: _Watchdog, relay: _Relay) -> str:
     if relay.killed:
         return "killed by a second interrupt"
     if watchdog.waited:
-        return f"no progress for {watchdog.waited:g} s"
-    if returncode < 0:
-        return _signal_name(-returncode)
-    if returncode in _WINDOWS_CAUSES:
-        return _WINDOWS_CAUSES[returncode]
-    return f"exit({returncode}) called by native code"
-
-
-def _signal_name(number: int) -> str:
-    try:
-        name = signal.Signals(number).name
-    except ValueError:  # a real-time signal
-        return f"signal {number}"
-    if name == "SIGKILL":
-        return "SIGKILL (as a rule the system, out of memory)"
-    return name
-
-
-def _text(file: Path) -> str:
-    try:
-        return file.read_text(encoding="utf-8", errors="replace").strip()
-    except OSError:
-        return ""
+        return stood_still(watchdog.waited)
+    return cause_of_end(returncode)

@@ -1,0 +1,54 @@
+"""How a process ended, in words: from its exit code, and from what it left in its folder."""
+
+from __future__ import annotations
+
+import signal
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+WINDOWS_CAUSES = {
+    0xC0000005: "access violation",
+    0xC000001D: "illegal instruction",
+    0xC0000094: "integer division by zero",
+    0xC00000FD: "stack overflow",
+    0xC0000374: "heap corruption",
+    0xC0000409: "abort",
+}
+
+
+def cause_of_end(returncode: int) -> str:
+    """Why a process ended that did not end by itself: "SIGSEGV", "exit(3) called ...".
+
+    Args:
+        returncode: as :mod:`subprocess` has it: minus the signal, or the exit code.
+    """
+    if returncode < 0:
+        return _signal_name(-returncode)
+    if returncode in WINDOWS_CAUSES:
+        return WINDOWS_CAUSES[returncode]
+    return f"exit({returncode}) called by native code"
+
+
+def stood_still(seconds: float) -> str:
+    """Why a process was killed that showed no sign of life for so long."""
+    return f"no progress for {seconds:g} s"
+
+
+def text_in(file: Path) -> str:
+    """What a dead process has written there; empty without the file."""
+    try:
+        return file.read_text(encoding="utf-8", errors="replace").strip()
+    except OSError:
+        return ""
+
+
+def _signal_name(number: int) -> str:
+    try:
+        name = signal.Signals(number).name
+    except ValueError:  # a real-time signal
+        return f"signal {number}"
+    if name == "SIGKILL":
+        return "SIGKILL (as a rule the system, out of memory)"
+    return name

@@ -1,0 +1,44 @@
+"""What makes the runs of a study, wherever that is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol, Self
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from types import TracebackType
+
+    from giveway.studies.record import RunRecord, Task
+
+
+class Executor(Protocol):
+    """Makes runs; a context manager, at whose end no process is left."""
+
+    @property
+    def workers(self) -> int:
+        """How many runs are made at a time."""
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
+        """Make every run once, and hand over its record when it is finished.
+
+        A run that crashes, hangs, takes too long or raises is tried once more; then its record
+        says why.
+
+        Args:
+            tasks: taken one by one, a few more than are being computed.
+
+        Raises:
+            GivewayError: no run can be made at all, for a reason that a user can mend.
+            KeyboardInterrupt: the user wants it to end; all processes have been ended.
+        """
+
+    def __enter__(self) -> Self:
+        """Begin; processes are started when there is something to do."""
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """End every process at once."""

@@ -1,0 +1,44 @@
+"""How long a run may take, and how often it is tried."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+from giveway.heartbeat import LOOP, Phase
+from giveway.studies.execution.errors import WorkerError
+
+HANG_LIMIT: Final = 120.0  # [s] of wall clock without a sign of life from the loop
+_SETTING_UP: Final = 5.0  # times that: a large network takes minutes to load, without a sign
+ATTEMPTS: Final = 2  # what fails again is no accident
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How long a run may take.
+
+    Attributes:
+        hang: [s] without progress of the loop.
+        run: [s] of the whole run; infinity: any.
+    """
+
+    hang: float = HANG_LIMIT
+    run: float = math.inf
+
+    @classmethod
+    def checked(cls, hang_limit: float, run_limit: float | None) -> Limits:
+        """The limits as users give them.
+
+        Raises:
+            WorkerError: one is not above 0.
+        """
+        for name, value in (("hang_limit", hang_limit), ("run_limit", run_limit)):
+            if value is not None and not value > 0.0:
+                msg = f"{name} = {value!r}: expected seconds above 0; leave it out for the default"
+                raise WorkerError(msg)
+        return cls(hang_limit, math.inf if run_limit is None else run_limit)
+
+    def quiet(self, phase: Phase) -> float:
+        """For how long [s] nothing may change in that phase of a run."""
+        return self.hang if phase in LOOP else _SETTING_UP * self.hang

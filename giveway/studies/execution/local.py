@@ -1,0 +1,102 @@
+"""Runs in processes of this machine."""
+
+from __future__ import annotations
+
+import queue
+from typing import TYPE_CHECKING, Final, Self
+
+from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.pool import Pool
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from types import TracebackType
+
+    from giveway.studies.execution.limits import Limits
+    from giveway.studies.record import RunRecord, Task
+
+_AHEAD: Final = 2  # runs per worker that have been taken from the plan: none ever waits for us
+_LOOK: Final = 1.0  # [s] after which a wait is begun anew, for systems on which Ctrl-C waits for it
+
+
+class LocalExecutor:
+    """The :class:`giveway.studies.execution.executor.Executor` of this machine.
+
+    Args:
+        jobs: runs at a time.
+        limits: of each.
+
+    Raises:
+        WorkerError: ``jobs`` is not above 0.
+    """
+
+    def __init__(self, jobs: int, limits: Limits) -> None:
+        if jobs < 1:
+            msg = f"jobs = {jobs}: expected at least 1 process; the number of cores is a good one"
+            raise WorkerError(msg)
+        self._jobs = jobs
+        self._limits = limits
+        self._pool: Pool | None = None
+
+    @property
+    def workers(self) -> int:
+        """How many runs are made at a time."""
+        return self._jobs
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
+        """As the protocol says."""
+        pool = self._open()
+        source = iter(tasks)
+        finished: queue.SimpleQueue[RunRecord | Exception] = queue.SimpleQueue()
+        under_way = 0
+        try:
+            while True:
+                while under_way < _AHEAD * self._jobs:
+                    task = next(source, None)
+                    if task is None:
+                        break
+                    pool.submit(task, finished.put)
+                    under_way += 1
+                if not under_way:
+                    return
+                outcome = _wait(finished)
+                under_way -= 1
+                if isinstance(outcome, Exception):
+                    raise outcome
+                yield outcome
+        finally:
+            if under_way:  # given up in the middle: nobody wants those runs any more
+                self._close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._close()
+
+    def _open(self) -> Pool:
+        if self._pool is None:
+            try:
+                self._pool = Pool(self._jobs, self._limits)
+            except OSError as error:
+                msg = f"{error}: the workers' temporary folder; free the disk or set TMPDIR"
+                raise WorkerError(msg) from error
+        return self._pool
+
+    def _close(self) -> None:
+        pool, self._pool = self._pool, None
+        if pool is not None:
+            pool.close()
+
+
+def _wait(finished: queue.SimpleQueue[RunRecord | Exception]) -> RunRecord | Exception:
+    while True:
+        try:
+            return finished.get(timeout=_LOOK)
+        except queue.Empty:
+            continue

@@ -1,0 +1,63 @@
+"""Where workers keep what nobody wants to keep: heartbeats, last words, temporary files."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import os
+import shutil
+import tempfile
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+_PREFIX: Final = "giveway-workers-"
+_KEPT: Final = 86400.0  # [s] for which a folder is left alone, should its owner be elsewhere
+
+
+class Scratch:
+    """A local temporary folder; those of processes that were killed are removed by the next.
+
+    Raises:
+        OSError: it cannot be made.
+    """
+
+    def __init__(self) -> None:
+        place = Path(tempfile.gettempdir())
+        _sweep(place)
+        self._path = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=place))
+        self._numbers = itertools.count(1)
+
+    def folder(self) -> Path:
+        """A name in it that has not been given away before."""
+        return self._path / str(next(self._numbers))
+
+    def remove(self) -> None:
+        """All of it."""
+        shutil.rmtree(self._path, ignore_errors=True)
+
+
+def _sweep(place: Path) -> None:
+    with suppress(OSError):
+        for folder in place.glob(f"{_PREFIX}*"):
+            owner = folder.name.removeprefix(_PREFIX).partition("-")[0]
+            if _is_gone(owner) and time.time() - _last_change(folder) > _KEPT:
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def _is_gone(process: str) -> bool:
+    """Whether there is no such process here; one in another container shares the folder only."""
+    if os.name == "nt" or not process.isdigit():
+        return True
+    try:
+        os.kill(int(process), 0)
+    except ProcessLookupError:
+        return True
+    except OSError:
+        return False
+    return False
+
+
+def _last_change(folder: Path) -> float:
+    return max((entry.stat().st_mtime for entry in (folder, *folder.iterdir())), default=math.inf)

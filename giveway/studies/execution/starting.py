@@ -1,0 +1,106 @@
+"""How a worker's process is started: an interpreter like this one, tied to us by a socket."""
+
+from __future__ import annotations
+
+import json
+import os
+import secrets
+import socket
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+from time import monotonic
+from typing import IO, TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+START_LIMIT: Final = 300.0  # [s] from its start until it has imported everything, on a busy disk
+_BOOT: Final = (
+    "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
+    "from giveway.studies.execution.worker import main; main(*arguments)"
+)
+_ONE_THREAD: Final = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"
+)  # the runs are what is parallel; pools of threads would only cost memory
+
+
+def start(
+    folder: Path, temporary: Path, printed: IO[bytes]
+) -> tuple[subprocess.Popen[bytes], socket.socket]:
+    """A worker, and our end of the connection to it.
+
+    Args:
+        folder: of the worker.
+        temporary: where it puts temporary files.
+        printed: where its standard error goes; what it prints otherwise is dropped.
+
+    Raises:
+        OSError: it cannot be started.
+    """
+    if sys.platform == "win32":
+        return _start_and_be_called(folder, temporary, printed)
+    here, there = socket.socketpair()
+    try:
+        with there:
+            arguments: list[int | str] = [there.fileno(), str(folder), os.getpid()]
+            process = _popen(arguments, temporary, printed, pass_fds=(there.fileno(),))
+    except BaseException:
+        here.close()
+        raise
+    return process, here
+
+
+def _start_and_be_called(
+    folder: Path, temporary: Path, printed: IO[bytes]
+) -> tuple[subprocess.Popen[bytes], socket.socket]:
+    """Where sockets cannot be inherited: the worker calls us back, and proves who it is."""
+    token = secrets.token_hex(16)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        arguments: list[int | str] = [server.getsockname()[1], str(folder), os.getpid(), token]
+        process = _popen(arguments, temporary, printed)
+        server.settimeout(0.1)
+        end = monotonic() + START_LIMIT
+        while process.poll() is None and monotonic() < end:
+            with suppress(TimeoutError):
+                connection, _address = server.accept()
+                connection.settimeout(5.0)
+                if connection.recv(len(token), socket.MSG_WAITALL) == token.encode():
+                    return process, connection
+                connection.close()
+    process.kill()
+    process.wait()
+    msg = f"a worker ended while it started (exit code {process.returncode})"
+    raise OSError(msg)
+
+
+def _popen(
+    arguments: Sequence[int | str],
+    temporary: Path,
+    printed: IO[bytes],
+    pass_fds: Sequence[int] = (),
+) -> subprocess.Popen[bytes]:
+    flags = {
+        "-E": sys.flags.ignore_environment,
+        "-s": sys.flags.no_user_site,
+        "-B": sys.flags.dont_write_bytecode,
+    }
+    given = json.dumps([[_absolute(entry) for entry in sys.path], arguments])
+    places = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(temporary))
+    # -P: nothing is imported from the working directory before our paths are set
+    return subprocess.Popen(
+        [sys.executable, "-P", *(flag for flag, on in flags.items() if on), "-c", _BOOT, given],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=printed,
+        env=_ONE_THREAD | os.environ | places,
+        pass_fds=pass_fds,
+        start_new_session=True,  # Ctrl-C in the terminal is not for it
+        creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # likewise on Windows
+    )
+
+
+def _absolute(entry: str) -> str:
+    """An entry of sys.path as it is wherever a process works; those of import hooks stay."""
+    return str(Path(entry).absolute()) if Path(entry).exists() else entry

@@ -1,0 +1,85 @@
+"""A worker: a process that makes one run after the other, for as long as its study lives."""
+
+from __future__ import annotations
+
+import contextlib
+import faulthandler
+import json
+import os
+import signal
+import socket
+import sys
+import traceback
+from pathlib import Path
+from typing import Final
+
+from giveway.heartbeat import Heartbeat, Phase
+from giveway.journal import Journal
+from giveway.studies.execution.wire import ERROR, READY, RECORD, Line
+from giveway.studies.record import Task
+from giveway.supervised import TRACEBACK_FILE, die_with
+
+_HIGH: Final = 200  # FMUs that close or write to files that are not theirs try low numbers
+_OOM_SCORE: Final = "500"  # short of memory, the system is to take a worker and not the study
+
+
+def main(connection: int, folder: str, parent: int, token: str = "") -> None:
+    """Serve the study in process ``parent``.
+
+    Args:
+        connection: file descriptor of the socket to it; the port to call, where there are none.
+        folder: of this worker: heartbeat and traceback.
+        parent: process id.
+        token: who calls proves with it who it is.
+    """
+    die_with(parent)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the study to decide on
+    line = Line(_connected(connection, token))
+    _prefer_to_die()
+    # faulthandler keeps only the number of the file
+    with (Path(folder) / TRACEBACK_FILE).open("w", encoding="utf-8") as file:
+        faulthandler.enable(file)
+        heartbeat = Heartbeat(Path(folder))
+        from giveway.studies import performing
+
+        line.send(READY)
+        with contextlib.suppress(EOFError):
+            while message := line.receive():
+                task = Task(**json.loads(message[1]))
+                heartbeat.step(0, 0.0)
+                heartbeat.beat(Phase.LOADING)
+                try:
+                    record = performing.perform(task, Journal(None, heartbeat))
+                except Exception as error:  # whatever it is, the study goes on
+                    line.send(ERROR, _one_line(error).encode())
+                else:
+                    line.send(RECORD, record.to_json().encode())
+    os._exit(0)  # destructors of native code have nothing left to save
+
+
+def _one_line(error: Exception) -> str:
+    """As in "ValueError: what (in file.py, line 12)"."""
+    words = "".join(traceback.format_exception_only(error)).split()
+    frames = traceback.extract_tb(error.__traceback__)
+    place = f" (in {Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
+    return " ".join(words) + place
+
+
+def _connected(connection: int, token: str) -> socket.socket:
+    """The socket, on a number at which careless native code does not strike."""
+    if sys.platform == "win32":
+        called = socket.create_connection(("127.0.0.1", connection))
+        called.sendall(token.encode())
+        return called
+    import resource
+
+    soft, _hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    high = _HIGH if soft == resource.RLIM_INFINITY else min(_HIGH, soft - 1)
+    os.dup2(connection, high, inheritable=False)
+    os.close(connection)
+    return socket.socket(fileno=high)
+
+
+def _prefer_to_die() -> None:
+    with contextlib.suppress(OSError):  # there is such a thing on Linux only
+        Path("/proc/self/oom_score_adj").write_text(_OOM_SCORE, encoding="ascii")
