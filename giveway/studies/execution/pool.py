@@ -16,7 +16,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from giveway.studies.execution.errors import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS, Limits
@@ -30,11 +30,15 @@ from giveway.studies.execution.worker_process import (
 )
 from giveway.studies.record import CRASHED, FAILED, Computing, RunRecord, Task
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 Delivery = Callable[[RunRecord | Exception], None]
 
 _IDLE_LIMIT: Final = 300.0  # [s] after which a worker without work gives its memory back
 _VAIN_STARTS: Final = 5  # deaths without a finished run in between: it is not by accident
 _PAUSE: Final = 0.2  # [s] after the first of them; it doubles: memory may become free
+_LOOK: Final = 1.0  # [s] after which a waiting caller looks whether the pool has been closed
 _JOIN: Final = 10.0  # [s] for a slot to notice that its worker has been killed
 
 
@@ -54,12 +58,13 @@ class Pool:
     Args:
         slots: how many at a time.
         limits: of each run.
+        place: for temporary files; None: where they usually are.
     """
 
-    def __init__(self, slots: int, limits: Limits) -> None:
+    def __init__(self, slots: int, limits: Limits, place: Path | None = None) -> None:
         self.slots = slots
         self._limits = limits
-        self._scratch = Scratch()
+        self._scratch = Scratch(place)
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._lock = threading.Lock()
         self._closed = threading.Event()
@@ -81,6 +86,25 @@ class Pool:
                 which no run can be made; not called any more once the pool is closed.
         """
         self._jobs.put(_Job(task, deliver))
+
+    def perform(self, task: Task) -> RunRecord:
+        """Have a run made, and wait for it.
+
+        Raises:
+            WorkerError: no run can be made.
+            ClosedError: the pool was closed meanwhile.
+        """
+        answers: queue.SimpleQueue[RunRecord | Exception] = queue.SimpleQueue()
+        self.submit(task, answers.put)
+        while True:
+            try:
+                answer = answers.get(timeout=_LOOK)
+            except queue.Empty:
+                self._raise_if_closed()
+                continue
+            if isinstance(answer, Exception):
+                raise answer
+            return answer
 
     def close(self) -> None:
         """End every process at once, whatever it is doing, and remove what they leave."""

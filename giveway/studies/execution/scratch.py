@@ -19,12 +19,15 @@ _KEPT: Final = 86400.0  # [s] for which a folder is left alone, should its owner
 class Scratch:
     """A local temporary folder; those of processes that were killed are removed by the next.
 
+    Args:
+        place: to make it in; None: where temporary folders are.
+
     Raises:
         OSError: it cannot be made.
     """
 
-    def __init__(self) -> None:
-        place = Path(tempfile.gettempdir())
+    def __init__(self, place: Path | None = None) -> None:
+        place = place or Path(tempfile.gettempdir())
         _sweep(place)
         self._path = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=place))
         self._numbers = itertools.count(1)

@@ -1,0 +1,318 @@
+"""Runs on a Dask cluster: one giveway process per thread of its workers.
+
+Dask hands the runs out and hands those of a worker that dies to the others; the isolation is ours
+(:mod:`giveway.studies.execution.cluster_task`). What can go wrong on the way is the connection:
+then everything that was under way is simply handed out again.
+"""
+
+from __future__ import annotations
+
+import logging
+import queue
+import re
+import sys
+import threading
+import time
+import uuid
+from collections import deque
+from contextlib import suppress
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, Final, Self
+
+from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.limits import ATTEMPTS
+from giveway.studies.record import CRASHED, Computing, RunRecord
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+    from types import TracebackType
+
+    from giveway.studies.execution.limits import Limits
+    from giveway.studies.record import Task
+
+Client = Any  # Dask's classes, most of whose methods have no types
+Cluster = Any
+Future = Any
+
+PATIENCE: Final = 300.0  # [s] to wait for a scheduler or worker to come back
+_LOCAL: Final = re.compile(r"local(?::([1-9]\d*))?")
+_LOCAL_WORKERS: Final = 2
+_AHEAD: Final = 3  # runs per worker that are handed out: the network must not be waited for
+_LOOK: Final = 1.0  # [s] between two looks at the cluster, and at Ctrl-C
+_CONNECT: Final = 10.0  # [s] for one attempt
+_FETCH: Final = 30.0  # [s] for a result to arrive, or its worker has died meanwhile
+_FAREWELL: Final = 5.0  # [s] for the workers to end the study's processes
+
+
+class ClusterExecutor:
+    """The :class:`giveway.studies.execution.executor.Executor` of a Dask cluster.
+
+    Args:
+        address: of the scheduler; ``local`` or ``local:N``.
+        limits: of each run.
+        tell: takes one line when the cluster has to be waited for; None: to standard error.
+        patience: [s] to wait for it.
+
+    Raises:
+        WorkerError: Dask is not installed, or the address is none.
+    """
+
+    def __init__(
+        self,
+        address: str,
+        limits: Limits,
+        tell: Callable[[str], None] | None = None,
+        *,
+        patience: float = PATIENCE,
+    ) -> None:
+        _require_dask()
+        local = _LOCAL.fullmatch(address)
+        if local is None and not re.fullmatch(r"(\w+://)?[^\s/:]+:\d+|(\w+://)\S+", address):
+            msg = f"cluster '{address}': expected tcp://host:port of a Dask scheduler, or local:N"
+            raise WorkerError(msg)
+        self._address = address
+        self._local = 0 if local is None else int(local.group(1) or _LOCAL_WORKERS)
+        self._limits = limits
+        self._tell = tell or _to_stderr
+        self._patience = patience
+        self._study = uuid.uuid4().hex  # names our pools to the workers
+        self._cluster: Cluster | None = None
+        self._client: Client | None = None
+        self._threads = 0
+        self._missed = 0.0  # since when [s] there is nobody to work; 0: all is well
+        self._looked = 0.0
+
+    @property
+    def workers(self) -> int:
+        """How many runs are made at a time."""
+        return max(self._threads, self._local, 1)
+
+    def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
+        """As the protocol says."""
+        return _Errand(self, tasks).run()
+
+    def __enter__(self) -> Self:
+        self._connect()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        from giveway.studies.execution.cluster_task import leave
+
+        client, self._client = self._client, None
+        cluster, self._cluster = self._cluster, None
+        if client is not None:
+            if cluster is None:  # a local one takes everything along
+                _in_time(lambda: client.run(leave, self._study, on_error="ignore"))
+            _in_time(lambda: client.close(timeout=_FAREWELL))
+        if cluster is not None:
+            _in_time(lambda: cluster.close(timeout=_FAREWELL))
+
+    # --- for _Errand --------------------------------------------------------------------------
+
+    def submit(self, task: Task, name: str) -> Future:
+        """Hand a run out.
+
+        Raises:
+            Exception: of whatever kind; the cluster is not there.
+        """
+        from giveway.studies.execution.cluster_task import perform_there
+
+        limits = {"hang": self._limits.hang, "run": self._limits.run}
+        return self._open().submit(
+            perform_there,
+            self._study,
+            limits,
+            asdict(task),
+            key=f"giveway-{self._study[:8]}-{name}",
+            pure=False,
+        )
+
+    def is_there(self) -> bool:
+        """Whether somebody works; else, wait a little for them.
+
+        Raises:
+            WorkerError: nobody has come for too long.
+        """
+        now = time.monotonic()
+        if now - self._looked < _LOOK and not self._missed:
+            return True
+        self._looked = now
+        missing = self._missing()
+        if not missing:
+            self._missed = 0.0
+            return True
+        if not self._missed:
+            self._missed = now
+            self._tell(f"{missing}; waiting {self._patience:g} s for it, nothing is lost")
+        if now - self._missed > self._patience:
+            msg = f"{missing}, for {self._patience:g} s; start it again and go on with --resume"
+            raise WorkerError(msg)
+        return False
+
+    def abandon(self, futures: Iterable[Future]) -> None:
+        """Take back runs, and end those that are being made."""
+        from giveway.studies.execution.cluster_task import leave
+
+        client, wanted = self._client, list(futures)
+        if client is not None:
+            _in_time(lambda: client.cancel(wanted, force=True))
+            _in_time(lambda: client.run(leave, self._study, on_error="ignore"))
+            self._study = uuid.uuid4().hex
+
+    def _missing(self) -> str:
+        """What there is not; empty: all is well."""
+        client = self._client
+        try:
+            if client is None or client.status == "closed":
+                self._client = None
+                client = self._open()
+            if client.status == "running":
+                self._threads = sum(client.nthreads().values())
+                return "" if self._threads else f"cluster {self._address}: it has no worker"
+        except (OSError, ValueError, WorkerError):
+            pass
+        return f"cluster {self._address}: its scheduler does not answer"
+
+    def _open(self) -> Client:
+        return self._client or self._connect()
+
+    def _connect(self) -> Client:
+        import distributed
+
+        dask: Any = distributed
+        try:
+            if self._local and self._cluster is None:
+                self._cluster = dask.LocalCluster(
+                    n_workers=self._local,
+                    threads_per_worker=1,
+                    dashboard_address=None,
+                    silence_logs=logging.CRITICAL,
+                )
+            where = self._cluster or self._address
+            self._client = dask.Client(where, timeout=_CONNECT, set_as_default=False)
+            self._threads = sum(self._client.nthreads().values())
+        except (OSError, ValueError, RuntimeError) as error:
+            reason = " ".join(str(error).split()) or type(error).__name__
+            msg = (
+                f"cluster '{self._address}': cannot be reached ({reason}); is 'dask scheduler' up?"
+            )
+            raise WorkerError(msg) from error
+        return self._client
+
+
+class _Errand:
+    """One call of :meth:`ClusterExecutor.run`."""
+
+    def __init__(self, executor: ClusterExecutor, tasks: Iterable[Task]) -> None:
+        self._executor = executor
+        self._source = iter(tasks)
+        self._again: deque[Task] = deque()
+        self._killed: dict[str, int] = {}  # run: Dask workers that died of it, or so it seems
+        self._under_way: dict[str, tuple[Task, Future]] = {}
+        self._finished: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._number = 0
+
+    def run(self) -> Iterator[RunRecord]:
+        try:
+            while True:
+                there = self._executor.is_there()
+                if there and not self._hand_out():
+                    return
+                try:
+                    name = self._finished.get(timeout=_LOOK)
+                except queue.Empty:
+                    continue
+                task, future = self._under_way.pop(name)
+                record = self._record(task, future)
+                if record is None:
+                    self._again.append(task)
+                else:
+                    yield record
+        finally:
+            if self._under_way:
+                self._executor.abandon(future for _, future in self._under_way.values())
+
+    def _hand_out(self) -> bool:
+        """Fill the window; False: there is nothing more to do."""
+        while len(self._under_way) < _AHEAD * self._executor.workers:
+            task = self._again.popleft() if self._again else next(self._source, None)
+            if task is None:
+                break
+            self._number += 1
+            name = f"{task.run}-{self._number}"
+            try:
+                future = self._executor.submit(task, name)
+            except Exception:  # Dask has many; the next look at the cluster tells what is wrong
+                self._again.append(task)
+                return True
+            self._under_way[name] = (task, future)
+            future.add_done_callback(lambda _, name=name: self._finished.put(name))
+        return bool(self._under_way)
+
+    def _record(self, task: Task, future: Future) -> RunRecord | None:
+        """What became of it; None: to be handed out again.
+
+        Raises:
+            WorkerError: a worker refuses this study.
+        """
+        from distributed.scheduler import KilledWorker
+
+        from giveway.studies.execution.cluster_task import RECORD, REFUSED
+
+        if future.status not in {"finished", "error"}:
+            return None  # the connection was lost
+        try:
+            answer: dict[str, str] = future.result(timeout=_FETCH)
+        except KilledWorker as error:
+            return self._died(task, error)
+        except Exception as error:
+            if future.status != "error":  # its worker died before it could be fetched
+                return None
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
+            msg = f"a worker cannot make runs ({reason}); install this giveway on every machine"
+            raise WorkerError(msg) from error
+        finally:
+            future.release()
+        if REFUSED in answer:
+            raise WorkerError(answer[REFUSED])
+        return RunRecord.from_json(answer[RECORD])
+
+    def _died(self, task: Task, error: Any) -> RunRecord | None:
+        count = self._killed[task.run] = self._killed.get(task.run, 0) + 1
+        if count < ATTEMPTS:
+            return None
+        deaths = (error.allowed_failures + 1) * count
+        failure = f"{deaths} Dask workers ended while they had this run, the last on "
+        failure += f"{error.last_worker.address}; look at their logs"
+        return RunRecord(
+            task.run, task.key, CRASHED, failure=failure, computing=Computing(attempts=count)
+        )
+
+
+def _require_dask() -> None:
+    try:
+        import distributed  # noqa: F401
+    except ImportError as error:
+        msg = f"a cluster needs Dask ({error}); pip install 'giveway[cluster]'"
+        raise WorkerError(msg) from error
+
+
+def _in_time(call: Callable[[], Any]) -> None:
+    """A farewell that must not keep us, whatever state the other side is in."""
+
+    def attempt() -> None:
+        with suppress(Exception):
+            call()
+
+    thread = threading.Thread(target=attempt, daemon=True)
+    thread.start()
+    thread.join(_FAREWELL)
+
+
+def _to_stderr(line: str) -> None:
+    sys.stderr.write(f"{line}\n")

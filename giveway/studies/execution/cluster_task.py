@@ -1,0 +1,66 @@
+"""What a study has done in a Dask worker: a run, in a process beside it.
+
+The process is one of a pool like that of a single machine, so that a crash never takes the Dask
+worker along. Arguments and results are plain values: the other side may be another giveway.
+"""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+from typing import Any, Final
+
+from distributed import get_worker
+
+from giveway.errors import GivewayError
+from giveway.studies.execution.limits import Limits
+from giveway.studies.execution.pool import ClosedError, Pool
+from giveway.studies.record import Task
+
+RECORD: Final = "record"
+REFUSED: Final = "refused"
+
+_POOLS: Final[dict[str, Pool]] = {}  # of this Dask worker, by study
+_LOCK: Final = threading.Lock()
+
+
+def perform_there(study: str, limits: dict[str, float], task: dict[str, Any]) -> dict[str, str]:
+    """Make a run.
+
+    Args:
+        study: names the study's pool.
+        limits: the fields of :class:`Limits`.
+        task: the fields of :class:`Task`.
+
+    Returns:
+        ``record``: its JSON; or ``refused``: why this worker makes no run of this study.
+    """
+    from giveway.studies.identity import require_same
+
+    where = get_worker().address
+    try:
+        wanted = Task(**task)
+        require_same(wanted)
+        record = _pool(study, Limits(**limits)).perform(wanted)
+    except (GivewayError, OSError) as error:
+        return {REFUSED: f"{where}: {error}"}
+    except ClosedError:
+        return {REFUSED: f"{where}: the study has been ended"}
+    return {RECORD: record.to_json()}
+
+
+def leave(study: str) -> None:
+    """End the study's processes here."""
+    with _LOCK:
+        pool = _POOLS.pop(study, None)
+    if pool is not None:
+        pool.close()
+
+
+def _pool(study: str, limits: Limits) -> Pool:
+    with _LOCK:
+        if study not in _POOLS:
+            # Dask removes its worker's folder, also when it has been killed.
+            worker = get_worker()
+            _POOLS[study] = Pool(worker.state.nthreads, limits, Path(worker.local_directory))
+        return _POOLS[study]
