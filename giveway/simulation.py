@@ -266,8 +266,8 @@ class Loop:
         people = present if whom is None else present[whom]
         every = min(self._looks, len(predicted))  # of a period beyond the horizon, its end is kept
         kept = predicted[every - 1 :: every]
-        look_ahead: Array = self._time_step * every * np.arange(1, len(kept) + 1)
-        self._recorder.predictions(ego_id, people, look_ahead, kept)
+        looks = np.arange(every, len(predicted) + 1, every, dtype=np.float64)
+        self._recorder.predictions(ego_id, people, self._time_step * looks, kept)
 
     def _record_background(self) -> None:
         background = self._mirror.background

@@ -1,0 +1,59 @@
+"""``giveway replay``: from a results folder to a page that plays the run."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import webbrowser
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from giveway.replays.page import write_replay
+from giveway.replays.predicting import Predicted, predicted_again
+from giveway.replays.run_folder import PREDICTIONS, RunFolder
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+_AGAIN = "Making the run once more for its predictions (--no-rerun skips this) ..."
+
+
+def replay_command(
+    run: Path, *, out: Path | None = None, rerun: bool = True, show: bool = False
+) -> int:
+    """Write the replay of a run; the exit code is 0.
+
+    Args:
+        run: a results folder.
+        out: the page; None: ``replay.html`` in the folder.
+        rerun: make the run again if its predictions are not on record.
+        show: open the page in the browser.
+
+    Raises:
+        ResultsError: the folder holds no run, or the page cannot be written.
+    """
+    console = Console()
+    target = out or run / "replay.html"
+    with contextlib.ExitStack() as stack:
+        predicted = Predicted(None)
+        if rerun and _worth_it(run):
+            with console.status(_AGAIN):
+                if not console.is_terminal:
+                    console.print(_AGAIN)
+                predicted = stack.enter_context(predicted_again(run))
+            if predicted.remark:
+                sys.stderr.write(f"note: {predicted.remark}\n")
+        write_replay(run, target, predictions=predicted.file, remark=predicted.remark)
+    console.print(f"Replay in [bold]{target}[/bold]", highlight=False)
+    if show:
+        webbrowser.open(target.absolute().as_uri())
+    return 0
+
+
+def _worth_it(run: Path) -> bool:
+    """Whether there may be predictions that are not on record; a crash is not asked for twice."""
+    folder = RunFolder.read(run)
+    if (run / PREDICTIONS).is_file() or folder.manifest.get("ending") == "crashed":
+        return False
+    return any(config.controller == "mpc" for config in folder.egos.values())

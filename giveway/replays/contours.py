@@ -1,0 +1,85 @@
+"""The vehicle's influence as lines of equal force, for a range of its speeds."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from giveway.figures.influence import AHEAD, AHEAD_PER_SPEED, BEHIND, BESIDE, DRAWN
+from giveway.replays.packing import MILLIMETRES, packed
+from pedestrian_model import Vehicles, vehicle_influence
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from pedestrian_model import VciParameters
+
+    Array = NDArray[np.float64]
+
+_RESOLUTION = 0.15  # [m]
+_SLOW = (0.0, 0.1, 0.3, 0.5)  # [m/s] below 0.2 a vehicle is an obstacle like a wall
+_STEP = 0.25  # [m/s]
+_MOST_SPEEDS = 40
+
+
+def influence_contours(
+    shape: tuple[float, float], fastest: float, parameters: VciParameters
+) -> dict[str, Any]:
+    """Lines of 10, 100 and 1000 N about a vehicle, in its own frame.
+
+    The force is that on a standing pedestrian, as ``giveway plot influence`` draws it.
+
+    Args:
+        shape: length and width [m].
+        fastest: the highest speed [m/s] that is needed.
+        parameters: of the pedestrian model.
+
+    Returns:
+        ``speeds`` [m/s], ``levels`` [N]; the points ``x``, ``y`` [mm] from the body's centre,
+        heading along +x; ``lines``: for each speed and level the points at which its pieces
+        begin and the last one ends.
+    """
+    step = max(_STEP, fastest / _MOST_SPEEDS)
+    speeds = np.append(_SLOW, np.arange(0.75, fastest + step, step))
+    points: list[Array] = []
+    lines: list[list[list[int]]] = []
+    begun = 0
+    for speed in speeds:
+        of_speed = []
+        for pieces in _contours(shape, float(speed), parameters):
+            starts = [begun]
+            for piece in pieces:
+                points.append(piece)
+                begun += len(piece)
+                starts.append(begun)
+            of_speed.append(starts)
+        lines.append(of_speed)
+    x, y = np.concatenate([np.empty((0, 2)), *points]).T * MILLIMETRES
+    return {
+        "speeds": [round(float(speed), 3) for speed in speeds],
+        "levels": list(DRAWN),
+        "lines": lines,
+        "x": packed(np.round(x), np.int32),
+        "y": packed(np.round(y), np.int32),
+    }
+
+
+def _contours(
+    shape: tuple[float, float], speed: float, parameters: VciParameters
+) -> list[list[Array]]:
+    """For each level its pieces, (k, 2) [m] each."""
+    length, width = shape
+    ahead = length / 2 + AHEAD + AHEAD_PER_SPEED * speed
+    beside = width / 2 + BESIDE
+    x = np.arange(-length / 2 - BEHIND, ahead + _RESOLUTION, _RESOLUTION)
+    y = np.linspace(-beside, beside, 2 * round(beside / _RESOLUTION) + 1)
+    across, up = np.meshgrid(x, y)
+    places = np.column_stack((across.ravel(), up.ravel()))
+    vehicle = Vehicles.create(0.0, 0.0, 0.0, speed, length / 2, length / 2, width)
+    force, *_ = vehicle_influence(places, np.zeros_like(places), vehicle, parameters)
+    # Forces fall off exponentially: between the points of the grid their logarithm is straight.
+    magnitude = np.log(np.maximum(np.hypot(*force.T), 1e-6)).reshape(across.shape)
+    drawn = Figure().subplots().contour(x, y, magnitude, levels=np.log(DRAWN))
+    return [[np.asarray(piece) for piece in pieces if len(piece) > 2] for pieces in drawn.allsegs]

@@ -1,0 +1,266 @@
+"""From a results folder to one self-contained page that plays the run."""
+
+from __future__ import annotations
+
+import json
+import math
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup
+from shapely import LineString
+
+from giveway.errors import ResultsError
+from giveway.metrics import SUMMARY_FIELDS
+from giveway.replays.contours import influence_contours
+from giveway.replays.packing import (
+    Frame,
+    longest_gap,
+    pack_predictions,
+    pack_tracks,
+    packed,
+    thinning,
+)
+from giveway.replays.run_folder import PREDICTIONS, RunFolder, read_predictions
+from giveway.replays.story import events, why
+from pedestrian_model import PRESETS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import pandas as pd
+
+_SCRIPTS = ("data.js", "motion.js", "view.js", "scene.js", "charts.js", "panels.js", "player.js")
+_NUMBERS = ("speed", "reference_speed", "force", "gap", "vehicle_gap", "stop_gap")
+_SHOWN = (
+    "completion_time", "mean_speed", "stops", "longest_wait", "mpc_feasibility_rate",
+    "minimum_gap", "minimum_clearance", "overlaps", "minimum_ttc", "minimum_pet",
+    "peak_deceleration", "rms_jerk",
+)  # fmt: skip
+_BODY = (5.0, 2.0)  # [m] of an ego, where the folder does not tell
+_BEYOND = 150.0  # [m] of corridor beyond the end of the drive
+_CAR = (4.3, 1.8)  # [m] SUMO's passenger car, likewise
+_MADE_WITHOUT = (
+    "No predictions: the run did not record them; 'giveway run --record-predictions 0.25' does."
+)
+
+
+def write_replay(
+    folder: Path, target: Path, *, predictions: Path | None = None, remark: str = ""
+) -> Path:
+    """Make the page that plays the run in ``folder``.
+
+    Args:
+        folder: the results of ``giveway run``, completed or not.
+        target: the HTML file to write; replaced if it exists.
+        predictions: a ``predictions.csv`` of the same run; None: the folder's own, if it has one.
+        remark: why there are no predictions, for the page.
+
+    Returns:
+        ``target``.
+
+    Raises:
+        ResultsError: the folder holds no run, or the page cannot be written.
+    """
+    run = RunFolder.read(folder)
+    if predictions is None and (folder / PREDICTIONS).is_file():
+        predictions = folder / PREDICTIONS
+    table = None if predictions is None else read_predictions(predictions)
+    page = _page(_content(run, table, remark))
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(page, encoding="utf-8")
+    except OSError as error:
+        msg = f"{target}: cannot be written ({error.strerror}); name another file with --out"
+        raise ResultsError(msg) from error
+    return target
+
+
+def _page(content: dict[str, Any]) -> str:
+    """The template with style, scripts and data in place."""
+    folder = files("giveway.replays") / "page"
+
+    def text(name: str) -> Markup:
+        return Markup((folder / name).read_text(encoding="utf-8"))
+
+    environment = Environment(autoescape=True, undefined=StrictUndefined)
+    template = environment.from_string((folder / "replay.html.j2").read_text(encoding="utf-8"))
+    # No id in it, whatever it is called, can end the script element that holds the data.
+    data = json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    data = data.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    return template.render(
+        title=content["title"],
+        style=text("replay.css"),
+        scripts=[text(name) for name in _SCRIPTS],
+        data=Markup(data),
+    )
+
+
+def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> dict[str, Any]:
+    """Everything that the page knows."""
+    frame = Frame.of(run)
+    rows = run.trajectories
+    walking = (rows["type"] == "pedestrian").to_numpy()
+    driven = rows["id"].isin(list(run.egos)).to_numpy() & ~walking
+    people, vehicles = rows[walking], rows[~walking & ~driven]
+    thin, gap = thinning(people, run.step), longest_gap(run)
+    tracks = {
+        "people": pack_tracks(people, frame, hold=run.step, gap=max(gap, 2 * thin), thin=thin),
+        "vehicles": pack_tracks(vehicles, frame, hold=run.sumo_step, gap=gap, thin=0.0),
+    }
+    cars = tracks["vehicles"]["names"]
+    tracks["vehicles"]["bodies"] = [run.scene.body(name, _CAR) for name in cars]
+    names = {name: index for index, name in enumerate(tracks["people"]["names"])}
+    contours, egos = _egos(run, frame, predictions, names)
+    return {
+        "title": _title(run),
+        "ending": str(run.summary.get("ending", run.manifest.get("ending", ""))),
+        "notes": _notes(run, predictions, remark, thin),
+        "origin": [frame.x, frame.y],
+        "time": packed(frame.time, np.float64),
+        "step": run.step,
+        "radius": float(PRESETS[run.config.crowd.preset].body_radius),
+        "road": _road(run, frame),
+        "tracks": tracks,
+        "egos": egos,
+        "contours": contours,
+    }
+
+
+def _title(run: RunFolder) -> str:
+    scenario = run.summary.get("scenario", run.config.scenario)
+    who = {one.controller.upper() for one in run.egos.values()}
+    people = run.trajectories.loc[run.trajectories["type"] == "pedestrian", "id"].nunique()
+    parts = [str(scenario), " + ".join(sorted(who)), f"{people} pedestrians"]
+    return " · ".join([part for part in parts if part] + [f"seed {run.config.seed}"])
+
+
+def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: float) -> list[str]:
+    """What the spectator has to know of what is shown, and of the run."""
+    notes = []
+    error = run.manifest.get("error")
+    if error:
+        notes.append(f"The run did not end well: {error}")
+    if thin:
+        notes.append(
+            f"A crowd of this size is thinned: one position in {thin:g} s, a straight line between."
+        )
+    with_mpc = any(one.controller == "mpc" for one in run.egos.values())
+    if predictions is None and with_mpc:
+        notes.append(remark or _MADE_WITHOUT)
+    if not run.scene.road:
+        notes.append("No road outlines: this results folder keeps none.")
+    return notes + [str(text) for text in run.manifest.get("remarks") or ()]
+
+
+def _road(run: RunFolder, frame: Frame) -> dict[str, Any]:
+    outlines = run.scene.road
+    points = np.array([point for line in outlines for point in line]).reshape(-1, 2)
+    return {
+        "start": packed(np.cumsum([0, *map(len, outlines)]), np.uint32),
+        "x": frame.across(points[:, 0]),
+        "y": frame.up(points[:, 1]),
+    }
+
+
+def _egos(
+    run: RunFolder, frame: Frame, predictions: pd.DataFrame | None, names: dict[str, int]
+) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """The influence of each shape of vehicle, and the egos."""
+    kinds: dict[tuple[Any, ...], float] = {}
+    for name, config in run.egos.items():
+        kind = (_body(run, name), config.crowd.preset)
+        fastest = float(run.ego.loc[run.ego["id"] == name, "speed"].max())
+        kinds[kind] = max(kinds.get(kind, 0.0), fastest)
+    contours = [
+        influence_contours(body, fastest, PRESETS[preset])
+        for (body, preset), fastest in kinds.items()
+    ]
+    egos = []
+    for name, config in run.egos.items():
+        ego = _ego(run, frame, name, names)
+        ego["contours"] = list(kinds).index((_body(run, name), config.crowd.preset))
+        mine = None if predictions is None else predictions[predictions["ego"] == name]
+        ego["predicted"] = None if mine is None or mine.empty else pack_predictions(mine, frame)
+        egos.append(ego)
+    return contours, egos
+
+
+def _body(run: RunFolder, name: str) -> tuple[float, float]:
+    vehicle = run.egos[name].vehicle
+    return run.scene.body(name, (vehicle.length or _BODY[0], vehicle.width or _BODY[1]))
+
+
+def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict[str, Any]:
+    config = run.egos[name]
+    rows = run.ego[run.ego["id"] == name]
+    met = run.pedestrians
+    met = met[met["ego"] == name] if "ego" in met else met
+    length, width = _body(run, name)
+    half_width = config.regulation.corridor_half_width
+    acted = list(zip(rows["controller"], rows["reason"], rows["solver_status"], strict=True))
+    kinds = list(dict.fromkeys(acted))
+    return {
+        "id": name,
+        "controller": config.controller,
+        "body": [length, width],
+        "corridor": width / 2 + config.corridor_margin if half_width is None else half_width,
+        "safe": config.regulation.safe_distance,
+        "fromCentre": config.regulation.gap_from == "centre",
+        "summary": _summary(run.rows_of(name)),
+        "events": events(rows, met, config),
+        "met": _met(met, names),
+        "kinds": [{"acting": acting, **why(*told)} for acting, *told in kinds],
+        "kind": packed([kinds.index(one) for one in acted], np.uint16),
+        "frame": packed(frame.index(rows["time"]), np.uint32),
+        "x": frame.across(rows["x"]),
+        "y": frame.up(rows["y"]),
+        "heading": packed(np.radians(90.0 - rows["angle"].to_numpy(np.float64)), np.float32),
+        "path": _path(rows, frame),
+        "station": packed(rows["position"] - rows["position"].iloc[0], np.float32),
+        **{key: packed(rows[key].to_numpy(np.float64), np.float32) for key in _NUMBERS},
+    }
+
+
+def _path(rows: pd.DataFrame, frame: Frame) -> dict[str, str]:
+    """Where the front bumper went, to a centimetre, and straight on from there.
+
+    The way that it would have taken is not on record.
+    """
+    points = rows[["x", "y"]].to_numpy(np.float64)
+    heading = np.radians(90.0 - float(rows["angle"].iloc[-1]))
+    beyond = points[-1] + _BEYOND * np.array((np.cos(heading), np.sin(heading)))
+    line = np.array(LineString([*points, beyond]).simplify(0.01).coords)
+    return {"x": frame.across(line[:, 0]), "y": frame.up(line[:, 1])}
+
+
+def _summary(row: dict[str, Any]) -> list[dict[str, Any]]:
+    """The lines of the panel: label, value, unit, meaning."""
+    columns = {column.name: column for column in SUMMARY_FIELDS}
+    return [
+        {
+            "label": name.replace("_", " "),
+            "value": row[name] if _is_number(row[name]) else None,
+            "unit": columns[name].unit or "",
+            "meaning": columns[name].description,
+        }
+        for name in _SHOWN
+        if name in row
+    ]
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and math.isfinite(value)
+
+
+def _met(people: pd.DataFrame, names: dict[str, int]) -> dict[str, Any]:
+    """Each pedestrian's closest approach to this ego, by the index of its name."""
+    if not {"id", "minimum_clearance"} <= set(people):
+        return {}
+    known = people[people["id"].isin(list(names))].dropna(subset=["minimum_clearance"])
+    return {
+        str(names[who]): round(float(clearance), 3)
+        for who, clearance in zip(known["id"], known["minimum_clearance"], strict=True)
+    }

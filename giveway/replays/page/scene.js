@@ -1,0 +1,255 @@
+// What is drawn on the stage, from the ground up.
+
+const ROAD = (() => {
+  const start = unpack(RUN.road.start, Uint32Array);
+  const x = metres(RUN.road.x);
+  const y = metres(RUN.road.y);
+  const road = new Path2D();
+  for (let line = 0; line + 1 < start.length; line++) {
+    const outline = new Path2D(); // of its own: overlapping outlines are no holes
+    for (let i = start[line]; i < start[line + 1]; i++) outline.lineTo(x[i], y[i]);
+    road.addPath(outline);
+  }
+  return road;
+})();
+
+/** Lines of equal force: one path per speed and level, in the vehicle's frame. */
+const CONTOURS = RUN.contours.map((kind) => {
+  const x = metres(kind.x);
+  const y = metres(kind.y);
+  const paths = kind.lines.map((levels) =>
+    levels.map((starts) => {
+      const path = new Path2D();
+      let label = null; // the foremost point
+      for (let piece = 0; piece + 1 < starts.length; piece++) {
+        for (let i = starts[piece]; i < starts[piece + 1]; i++) {
+          if (i === starts[piece]) path.moveTo(x[i], y[i]);
+          else path.lineTo(x[i], y[i]);
+          if (!label || x[i] > label[0]) label = [x[i], y[i]];
+        }
+      }
+      return { path, label };
+    }),
+  );
+  return { speeds: kind.speeds, levels: kind.levels, paths };
+});
+
+const layers = { corridor: true, influence: true, predictions: true, people: true, road: true };
+const selected = { person: -1, ego: 0 };
+const FADED = [0.95, 0.25]; // opacity of the nearest and the farthest prediction
+const CORRIDOR_BEYOND = 12; // [m] of corridor drawn beyond the safe distance
+const SIGHT = 100; // [m] along its path an ego looks out for people
+
+function toScene() {
+  const k = view.scale * view.ratio;
+  pen.setTransform(k, 0, 0, -k, (view.width * view.ratio) / 2 - view.x * k,
+    (view.height * view.ratio) / 2 + view.y * k);
+}
+
+function toPixels() {
+  pen.setTransform(view.ratio, 0, 0, view.ratio, 0, 0);
+}
+
+function drawScene(t) {
+  const states = EGOS.map((ego) => ego.at(t));
+  if (view.follow) {
+    const state = states[selected.ego];
+    if (state) [view.x, view.y] = [state.centreX, state.centreY];
+  }
+  pen.setTransform(1, 0, 0, 1, 0, 0);
+  pen.fillStyle = colours.ground;
+  pen.fillRect(0, 0, stage.width, stage.height);
+  if (layers.road) drawRoad();
+  const present = EGOS.map((ego, e) => [ego, states[e]]).filter(([, state]) => state);
+  if (layers.corridor) for (const [ego, state] of present) drawCorridor(ego, state);
+  if (layers.influence) for (const [ego, state] of present) drawInfluence(ego, state);
+  if (layers.predictions) for (const [ego] of present) drawPredictions(ego, t);
+  VEHICLES.each(t, drawVehicle);
+  const person = drawPeople(t, present);
+  for (const [ego, state] of present) drawEgo(ego, state);
+  toPixels();
+  if (person) drawSelection(person);
+  drawScale();
+  return { states, person };
+}
+
+function drawRoad() {
+  toScene();
+  pen.fillStyle = colours.road;
+  pen.fill(ROAD, "nonzero");
+  pen.strokeStyle = colours.kerb;
+  pen.lineWidth = 1 / view.scale;
+  pen.stroke(ROAD);
+}
+
+/** The corridor ahead; its first part is the distance to keep. */
+function drawCorridor(ego, state) {
+  const from = state.station - (ego.fromCentre ? ego.length / 2 : 0);
+  strip(ego.path.piece(state.station, from + ego.safe + CORRIDOR_BEYOND), ego.corridor, "corridor");
+  if (from + ego.safe > state.station) {
+    strip(ego.path.piece(state.station, from + ego.safe), ego.corridor, "safe");
+  }
+}
+
+function strip(points, halfWidth, colour) {
+  toScene();
+  pen.lineWidth = 2 * halfWidth;
+  pen.lineCap = "butt";
+  pen.lineJoin = "round";
+  pen.strokeStyle = colours[colour];
+  pen.beginPath();
+  for (const [x, y] of points) pen.lineTo(x, y);
+  pen.stroke();
+}
+
+function drawInfluence(ego, state) {
+  const { speeds, levels, paths } = CONTOURS[ego.contours];
+  let nearest = 0;
+  for (let i = 1; i < speeds.length; i++) {
+    const better = Math.abs(speeds[i] - state.speed) < Math.abs(speeds[nearest] - state.speed);
+    if (better) nearest = i;
+  }
+  pen.strokeStyle = pen.fillStyle = colours.influence;
+  levels.forEach((level, l) => {
+    const { path, label } = paths[nearest][l];
+    if (!label) return;
+    toScene();
+    pen.translate(state.centreX, state.centreY);
+    pen.rotate(state.heading);
+    pen.globalAlpha = 0.55 + 0.2 * l;
+    pen.lineWidth = (0.9 + 0.45 * l) / view.scale;
+    pen.stroke(path);
+    if (view.scale < 7) return;
+    const x = state.centreX + label[0] * state.cos - label[1] * state.sin;
+    const y = state.centreY + label[0] * state.sin + label[1] * state.cos;
+    toPixels();
+    pen.font = "10px system-ui, sans-serif";
+    pen.fillText(`${level} N`, toScreenX(x) + 3 * state.cos, toScreenY(y) - 4);
+  });
+  pen.globalAlpha = 1;
+}
+
+function drawPredictions(ego, t) {
+  const entry = ego.prediction(t);
+  if (entry < 0) return;
+  const { start, look, looks, x, y } = ego.predicted;
+  toPixels();
+  pen.fillStyle = colours.prediction;
+  const radius = clamp(0.11 * view.scale, 1.2, 5);
+  for (let l = looks.length - 1; l >= 0; l--) {
+    const share = looks.length > 1 ? l / (looks.length - 1) : 0;
+    pen.globalAlpha = FADED[0] + share * (FADED[1] - FADED[0]);
+    pen.beginPath();
+    for (let i = start[entry]; i < start[entry + 1]; i++) {
+      if (look[i] === l) dot(toScreenX(x[i]), toScreenY(y[i]), radius);
+    }
+    pen.fill();
+  }
+  pen.globalAlpha = 1;
+}
+
+function dot(px, py, radius) {
+  pen.moveTo(px + radius, py);
+  pen.arc(px, py, radius, 0, 2 * Math.PI);
+}
+
+function drawVehicle(at) {
+  const [length, width] = VEHICLES.bodies[at.who];
+  toScene();
+  pen.translate(at.x, at.y);
+  pen.rotate(at.heading);
+  pen.fillStyle = colours.car;
+  pen.beginPath();
+  pen.roundRect(-length, -width / 2, length, width, 0.3);
+  pen.fill();
+}
+
+const kindOf = ["person", "close", "inside"];
+
+/** Everybody in sight, in three colours; the selected one is handed back. */
+function drawPeople(t, present) {
+  const around = present.map(([ego, state]) => ({
+    ego,
+    state,
+    ahead: ego.path.piece(state.station, state.station + SIGHT),
+  }));
+  const bodies = kindOf.map(() => new Path2D());
+  const ticks = new Path2D();
+  const radius = Math.max(RUN.radius * view.scale, 1.6);
+  let found = null;
+  PEOPLE.each(t, (at) => {
+    if (at.who === selected.person) found = { ...at };
+    const [px, py] = [toScreenX(at.x), toScreenY(at.y)];
+    if (px < -9 || py < -9 || px > view.width + 9 || py > view.height + 9) return;
+    let kind = 0;
+    for (const { ego, state, ahead } of around) {
+      if (inCorridor(ahead, ego.corridor, at.x, at.y)) kind = 2;
+      else if (kind < 1 && clearance(ego, state, at.x, at.y) < ego.safe / 2) kind = 1;
+    }
+    bodies[kind].moveTo(px + radius, py);
+    bodies[kind].arc(px, py, radius, 0, 2 * Math.PI);
+    if (radius > 2.5) {
+      ticks.moveTo(px, py);
+      ticks.lineTo(px + 1.7 * radius * Math.cos(at.heading), py - 1.7 * radius * Math.sin(at.heading));
+    }
+  });
+  toPixels();
+  if (!layers.people) return found;
+  pen.lineWidth = 1.4;
+  pen.strokeStyle = colours.ink;
+  pen.stroke(ticks);
+  kindOf.forEach((name, kind) => {
+    pen.fillStyle = colours[name];
+    pen.fill(bodies[kind]);
+    if (kind) pen.stroke(bodies[kind]);
+  });
+  return found;
+}
+
+/** The ego's rectangle in the colour of who drives it, its front marked. */
+function drawEgo(ego, state) {
+  toScene();
+  pen.translate(state.centreX, state.centreY);
+  pen.rotate(state.heading);
+  const [a, b] = [ego.length / 2, ego.width / 2];
+  pen.fillStyle = colours[state.kind.acting] ?? colours.mpc;
+  pen.strokeStyle = state.kind.infeasible ? colours.overlap : colours.ink;
+  pen.lineWidth = (state.kind.infeasible ? 2.5 : 1.2) / view.scale;
+  pen.beginPath();
+  pen.roundRect(-a, -b, 2 * a, 2 * b, 0.35);
+  pen.fill();
+  pen.stroke();
+  pen.fillStyle = colours.panel;
+  pen.beginPath();
+  pen.moveTo(a - 0.35, 0);
+  pen.lineTo(a - 1.2, 0.55 * b);
+  pen.lineTo(a - 1.2, -0.55 * b);
+  pen.fill();
+}
+
+function drawSelection(person) {
+  const [px, py] = [toScreenX(person.x), toScreenY(person.y)];
+  pen.strokeStyle = colours.ink;
+  pen.lineWidth = 2;
+  pen.beginPath();
+  pen.arc(px, py, Math.max(RUN.radius * view.scale, 2) + 5, 0, 2 * Math.PI);
+  pen.stroke();
+}
+
+/** A round number of metres, as long as it is. */
+function drawScale() {
+  const wanted = 90 / view.scale;
+  const power = 10 ** Math.floor(Math.log10(wanted));
+  const length = [5, 2, 1].find((times) => times * power <= wanted) * power;
+  const [x, y] = [16, view.height - 16];
+  pen.strokeStyle = pen.fillStyle = colours.quiet;
+  pen.lineWidth = 1.5;
+  pen.beginPath();
+  pen.moveTo(x, y - 5);
+  pen.lineTo(x, y);
+  pen.lineTo(x + length * view.scale, y);
+  pen.lineTo(x + length * view.scale, y - 5);
+  pen.stroke();
+  pen.font = "11px system-ui, sans-serif";
+  pen.fillText(`${length} m`, x + 5, y - 5);
+}

@@ -1,0 +1,165 @@
+"""A results folder read back for its replay: whatever became of the run, its rows play."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from giveway.configfile import build_config, read_toml
+from giveway.errors import ConfigError, ResultsError
+from giveway.scene import Scene
+from giveway.schema import EGO_COLUMNS, PREDICTION_COLUMNS, TRAJECTORY_COLUMNS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from giveway.config import RunConfig
+    from giveway.schema import Column
+
+    Array = NDArray[np.float64]
+
+PREDICTIONS = "predictions.csv"
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """What a results folder holds, as far as a replay needs it.
+
+    Attributes:
+        config: of the run.
+        egos: the configuration of each ego that has rows, by its id, in the order of departure.
+        ego, trajectories, pedestrians: the tables.
+        summary: of ``summary.json``: the first ego's row, all rows under ``egos`` if several.
+        manifest: of ``manifest.json``.
+        scene: the road and the bodies.
+        time: (T,) [s] every instant at which somebody was recorded.
+    """
+
+    path: Path
+    config: RunConfig
+    egos: dict[str, RunConfig]
+    ego: pd.DataFrame
+    trajectories: pd.DataFrame
+    pedestrians: pd.DataFrame
+    summary: dict[str, Any]
+    manifest: dict[str, Any]
+    scene: Scene
+    time: Array
+
+    @property
+    def step(self) -> float:
+        """The control step [s], as far as the rows tell."""
+        known = self.manifest.get("time_step")
+        if isinstance(known, int | float):
+            return float(known)
+        return float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.05
+
+    @property
+    def sumo_step(self) -> float:
+        """SUMO's step [s]; the control step where it is not known."""
+        sumo = self.manifest.get("sumo")
+        known = sumo.get("step_length") if isinstance(sumo, dict) else None
+        return float(known) if isinstance(known, int | float) else self.step
+
+    def rows_of(self, ego: str) -> dict[str, Any]:
+        """The summary's row of one ego."""
+        rows = self.summary.get("egos", [self.summary])
+        return next((row for row in rows if row.get("ego") == ego), {})
+
+    @classmethod
+    def read(cls, folder: Path) -> RunFolder:
+        """Read a folder that ``giveway run`` wrote.
+
+        Raises:
+            ResultsError: it holds no run, or one of its files cannot be read.
+        """
+        _require_run(folder)
+        try:
+            config = build_config([read_toml(folder / "config.toml")])
+        except ConfigError as error:
+            msg = f"{error}; expected a folder that 'giveway run' wrote"
+            raise ResultsError(msg) from error
+        ego = _table(folder / "ego.csv", EGO_COLUMNS)
+        trajectories = _table(folder / "trajectories.csv", TRAJECTORY_COLUMNS)
+        time = np.union1d(ego["time"].to_numpy(), trajectories["time"].to_numpy())
+        if not len(time):
+            msg = f"{folder}: the run left no rows; there is nothing to play"
+            raise ResultsError(msg)
+        configs = {one.ego_id: one for one in config.each_ego()}
+        return cls(
+            path=folder,
+            config=config,
+            egos={name: configs.get(name, config) for name in ego["id"].unique()},
+            ego=ego,
+            trajectories=trajectories,
+            pedestrians=_table(folder / "pedestrians.csv", ()),
+            summary=_json(folder / "summary.json"),
+            manifest=_json(folder / "manifest.json"),
+            scene=Scene.read(folder),
+            time=time,
+        )
+
+
+def read_predictions(file: Path) -> pd.DataFrame:
+    """The table of ``predictions.csv``.
+
+    Raises:
+        ResultsError: it cannot be read.
+    """
+    return _table(file, PREDICTION_COLUMNS)
+
+
+def _require_run(folder: Path) -> None:
+    needed = ("config.toml", "manifest.json", "ego.csv", "trajectories.csv")
+    missing = [name for name in needed if not (folder / name).is_file()]
+    if not missing:
+        return
+    if not folder.is_dir():
+        what = "a file" if folder.exists() else "no such folder"
+    elif len(missing) == len(needed) - 1 and (folder / "manifest.json").exists():
+        what = "a run is still writing there, or was killed"
+    else:
+        what = f"no run in it ('{missing[0]}' is missing)"
+    msg = f"{folder}: {what}; expected a results folder that 'giveway run' wrote"
+    raise ResultsError(msg)
+
+
+def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
+    """A table with ids as the text they are; absent words are empty."""
+    words = {column.name: str for column in columns if column.type == "string"}
+    try:
+        frame = pd.read_csv(file, dtype=words or {"id": str, "ego": str}, na_values=[""],
+                            keep_default_na=False)  # fmt: skip
+    except FileNotFoundError:
+        return pd.DataFrame()
+    except OSError as error:
+        msg = f"{file}: cannot be read ({error.strerror})"
+        raise ResultsError(msg) from error
+    except (ValueError, pd.errors.ParserError) as error:
+        reason = " ".join(str(error).split())
+        msg = f"{file}: not a table of giveway ({reason}); make the run again"
+        raise ResultsError(msg) from error
+    missing = [column.name for column in columns if column.name not in frame]
+    if missing:
+        msg = f"{file}: column '{missing[0]}' is missing; make the run again with this giveway"
+        raise ResultsError(msg)
+    text = list(words)
+    frame[text] = frame[text].fillna("")
+    return frame
+
+
+def _json(file: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError) as error:
+        msg = f"{file}: cannot be read ({error}); make the run again"
+        raise ResultsError(msg) from error
+    return content if isinstance(content, dict) else {}
