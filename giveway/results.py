@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.errors import ResultsError
-from giveway.replays.scene import SCENE_FILE, scene_of
+from giveway.scene import SCENE_FILE, scene_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

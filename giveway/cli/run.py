@@ -100,7 +100,7 @@ def run_command(
             raise
     if result.ending is Ending.INTERRUPTED:
         return fail(f"interrupted; rows up to then are in {folder}", INTERRUPTED)
-    _show(console, result, folder)
+    show(console, result, folder)
     return 0
 
 
@@ -114,7 +114,8 @@ def default_folder(config: RunConfig, scenario: str) -> Path:
     return Path("results") / f"{scenario}_{drivers}{safe[:60]}_{people}_seed{config.seed}"
 
 
-def _show(console: Console, result: RunResult, folder: Path) -> None:
+def show(console: Console, result: RunResult, folder: Path) -> None:
+    """Print the run's summary and what was written."""
     from giveway.cli.summary import summary_table
 
     console.print(summary_table(result))

@@ -30,7 +30,10 @@ def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
 class Comparison(Section):
     """Which factor's levels are compared, run by run on the same crowds."""
 
-    factor: str = Field("controller", description="the factor whose levels are compared")
+    factor: str = Field(
+        "controller",
+        description="the factor whose levels are compared; none, and no such factor: the last one",
+    )
     baseline: str | None = Field(
         None, description="the level that is subtracted; none: the factor's last"
     )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from giveway.assembly import control_step
-from giveway.errors import GivewayError
+from giveway.errors import ConfigError, GivewayError
 from giveway.loading import load
 from giveway.scenario_files import read_scenario
 from giveway.studies.design import design
@@ -103,9 +103,27 @@ def plan(definition: StudyDefinition, origin: str) -> Plan:
         GivewayError: a cell cannot be run; the message names it.
     """
     designed = design(definition, origin)
-    designed.factor(definition.comparison.factor)
+    definition = _with_comparison(definition, designed, origin)
     cells = tuple(_planned(cell, definition, origin) for cell in designed.cells)
     return Plan(definition, designed, cells)
+
+
+def _with_comparison(definition: StudyDefinition, designed: Design, origin: str) -> StudyDefinition:
+    """``definition`` with the factor and the baseline that its comparison leaves open."""
+    names = [factor.name for factor in designed.factors]
+    wanted = definition.comparison
+    chosen = "factor" in wanted.model_fields_set or wanted.factor in names
+    try:
+        factor = designed.factor(wanted.factor if chosen else names[-1])
+    except ConfigError as error:
+        raise ConfigError(f"{origin}: [comparison] {error}") from None
+    baseline = factor.levels[-1] if wanted.baseline is None else factor.level(wanted.baseline)
+    if baseline is None:
+        known = ", ".join(level.label for level in factor.levels)
+        msg = f"{origin}: [comparison] baseline = {wanted.baseline!r}: expected one of {known}"
+        raise ConfigError(msg)
+    complete = wanted.model_copy(update={"factor": factor.name, "baseline": baseline.label})
+    return definition.model_copy(update={"comparison": complete})
 
 
 def _planned(cell: Cell, definition: StudyDefinition, origin: str) -> PlannedCell:

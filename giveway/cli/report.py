@@ -1,0 +1,37 @@
+"""``giveway report``: figures, replays and the HTML report of a study."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.markup import escape
+
+from giveway.studies.folder import StudyFolder
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def report_command(study: Path, *, quiet: bool) -> int:
+    """Write them anew; nothing is computed but the few runs that are shown.
+
+    Raises:
+        GivewayError: there is no study, or nothing to show, or the disk is full.
+    """
+    write_all(StudyFolder.open(study), Console(quiet=quiet))
+    return 0
+
+
+def write_all(study: StudyFolder, console: Console) -> None:
+    """Write tables if there are none, figures, replays and the report."""
+    from giveway.kernels import compile_kernels_once
+    from giveway.studies.output import write_tables
+    from giveway.studies.reporting import write_report_of
+
+    compile_kernels_once(console)
+    if not (study.path / "comparison.csv").is_file():
+        write_tables(study, whole=True)
+    with console.status("Drawing, and replaying the most telling runs ..."):
+        page = write_report_of(study)
+    console.print(f"Report in [bold]{escape(str(page))}[/bold]", highlight=False)

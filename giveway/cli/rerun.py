@@ -1,0 +1,59 @@
+"""``giveway rerun``: one run of a study once more, as ``giveway run`` would make it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from giveway.cli import INTERRUPTED, fail
+from giveway.cli.progress import run_progress
+from giveway.cli.run import Outputs, show
+from giveway.kernels import compile_kernels_once
+from giveway.results import check_folder
+from giveway.simulation import Ending
+from giveway.studies.folder import StudyFolder
+from giveway.studies.rerun import config_of, rerun
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def rerun_command(
+    study: Path, run: str, outputs: Outputs, *, predictions: bool, journal: Path | None
+) -> int:
+    """Make the run again, and say whether its numbers are the study's.
+
+    Args:
+        study: the study's folder.
+        run: the run's id.
+        outputs: what is wanted.
+        predictions: keep the predicted positions.
+        journal: a folder for the rows, should this process die.
+
+    Raises:
+        GivewayError: one line that says what to do.
+    """
+    console = Console(quiet=outputs.quiet)
+    folder = StudyFolder.open(study)
+    config = config_of(folder, run)
+    out = outputs.folder or study / "reruns" / run
+    check_folder(out, force=outputs.force)
+    compile_kernels_once(console)
+    with run_progress(console, config) as watcher:
+        result = rerun(
+            folder,
+            run,
+            out,
+            predictions=predictions,
+            force=outputs.force,
+            pictures=outputs.pictures,
+            watcher=watcher,
+            journal=journal,
+        )
+    if result.ending is Ending.INTERRUPTED:
+        return fail(f"interrupted; rows up to then are in {out}", INTERRUPTED)
+    show(console, result, out)
+    if folder.record(run) is not None:
+        console.print("Its numbers are those of the study's row.")
+    return 0

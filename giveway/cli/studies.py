@@ -1,0 +1,149 @@
+"""``giveway study``, ``rerun``, ``report``, ``replay``: the commands and their help."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from giveway.cli import INTERRUPTED, fail
+from giveway.errors import GivewayError
+
+_Folder = Annotated[Path, typer.Argument(help="The study's folder.")]
+
+
+def add_studies(app: typer.Typer) -> None:
+    """Add the commands about studies to ``app``."""
+    app.command("study")(_study)
+    app.command("studies")(_studies)
+    app.command("rerun")(_rerun)
+    app.command("report")(_report)
+    app.command("replay")(_replay)
+
+
+def _study(
+    study: Annotated[str, typer.Argument(help="Bundled study (see giveway studies) or .toml.")],
+    out: Annotated[Path | None, typer.Option(help="Folder (default results/study_NAME).")] = None,
+    runs: Annotated[
+        int | None, typer.Option(help="Seeds per cell, instead of the study's.", min=1)
+    ] = None,
+    first_seed: Annotated[
+        int | None, typer.Option(help="First seed, instead of the study's.", min=0)
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with what is in the folder.")
+    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace the study there.")] = False,
+    retry_failed: Annotated[
+        bool, typer.Option("--retry-failed", help="With --resume: make failed runs again.")
+    ] = False,
+    jobs: Annotated[
+        int | None, typer.Option(help="Worker processes (default: one per processor).", min=1)
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(help="Dask scheduler to compute on, tcp://HOST:PORT, or local:N."),
+    ] = None,
+    hang_limit: Annotated[
+        float, typer.Option(help="Seconds without progress after which a run is ended.", min=1.0)
+    ] = 120.0,
+    run_limit: Annotated[
+        float | None, typer.Option(help="Seconds that one run may take (default: any).", min=0.1)
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Show the plan and the time it will take.")
+    ] = False,
+    report: Annotated[bool, typer.Option(help="Write figures and report.html.")] = True,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")
+    ] = False,
+) -> None:
+    """Run a study: many paired runs, compared; can be ended at any moment and resumed."""
+    from giveway.cli.study import StudyRequest, study_command
+    from giveway.studies.study import StudyOptions
+
+    options = StudyOptions(
+        jobs=jobs,
+        cluster=cluster,
+        resume=resume,
+        force=force,
+        retry_failed=retry_failed,
+        hang_limit=hang_limit,
+        run_limit=run_limit,
+    )
+    request = StudyRequest(
+        study, out, runs, first_seed, dry_run=dry_run, report=report, quiet=quiet
+    )
+    raise typer.Exit(study_command(request, options))
+
+
+def _studies() -> None:
+    """List the bundled studies."""
+    from giveway.studies.definition import bundled_studies, find_study, read_definition
+
+    for name in bundled_studies():
+        typer.echo(f"{name:14} {read_definition(find_study(name)).description}")
+
+
+def _rerun(
+    study: _Folder,
+    run: Annotated[str, typer.Argument(help="The run's id, like c2-s17; see runs.csv.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Results folder (default STUDY/reruns/RUN).")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the results there.")] = False,
+    predictions: Annotated[
+        bool, typer.Option("--predictions", help="Keep the predicted positions too.")
+    ] = False,
+    pictures: Annotated[bool, typer.Option(help="Draw the pictures.")] = True,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Neither progress bar nor summary.")
+    ] = False,
+) -> None:
+    """Make one run of a study again, with all trajectories; its numbers must be the study's."""
+    from giveway.supervised import Supervised, take_journal_folder
+
+    journal = take_journal_folder()
+    if journal is None:
+        from giveway.cli.isolated import run_isolated
+
+        raise typer.Exit(run_isolated())
+    from giveway.cli.rerun import rerun_command
+    from giveway.cli.run import Outputs
+
+    outputs = Outputs(out, force=force, parquet=False, pictures=pictures, quiet=quiet)
+    with Supervised(journal) as supervised:
+        try:
+            supervised.listen()
+            code = rerun_command(study, run, outputs, predictions=predictions, journal=journal)
+        except KeyboardInterrupt:  # typer would end without a word
+            code = fail("interrupted before the run began", INTERRUPTED)
+        except GivewayError as error:
+            code = fail(str(error), error.exit_code)
+        raise SystemExit(code)  # in here: a failed run that dies on its way out is no success
+
+
+def _report(
+    study: _Folder,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+) -> None:
+    """Write figures, replays of the most telling runs, and report.html into a study's folder."""
+    from giveway.cli.report import report_command
+
+    raise typer.Exit(report_command(study, quiet=quiet))
+
+
+def _replay(
+    run: Annotated[Path, typer.Argument(help="Results folder of a run.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Page to write (default RUN/replay.html).")
+    ] = None,
+    rerun: Annotated[
+        bool, typer.Option(help="Make the run again for its predicted positions.")
+    ] = True,
+) -> None:
+    """Write one HTML page that plays a run, in any browser, without a network."""
+    from giveway.cli.replay import replay_command
+
+    raise typer.Exit(replay_command(run, out=out, rerun=rerun))

@@ -1,0 +1,137 @@
+"""``giveway study``: the plan, a progress bar, tables, pictures, report."""
+
+from __future__ import annotations
+
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from giveway.cli.study_summary import print_plan, print_summary
+from giveway.kernels import compile_kernels_once
+from giveway.studies.definition import find_study, read_definition
+from giveway.studies.plan import plan
+from giveway.studies.study import estimate, processors, run_study
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from giveway.studies.study import StudyOptions, StudyProgress
+
+_REFRESH = 0.2  # [s] of wall clock between two redraws
+_LINE = 30.0  # [s] between two lines where there is no terminal
+
+
+@dataclass(frozen=True)
+class StudyRequest:
+    """What the user asked for."""
+
+    study: str
+    out: Path | None
+    runs: int | None
+    first_seed: int | None
+    dry_run: bool
+    report: bool
+    quiet: bool
+
+
+def study_command(request: StudyRequest, options: StudyOptions) -> int:
+    """Run a study; the exit code is 0, or 1 if some of its runs have no result.
+
+    Raises:
+        GivewayError: one line that says what to do.
+    """
+    console = Console(quiet=request.quiet)
+    file = find_study(request.study)
+    definition = read_definition(file)
+    wanted = {"replications": request.runs, "first_seed": request.first_seed}
+    changes = {key: value for key, value in wanted.items() if value is not None}
+    definition = definition.model_copy(update=changes)
+    out = request.out or Path("results") / f"study_{definition.name}"
+    planned = plan(definition, request.study)
+    compile_kernels_once(console)
+    if request.dry_run:
+        with console.status("Trying one run of each cell ..."):
+            seconds, by_cell = estimate(planned, options)
+        print_plan(console, planned, seconds, by_cell, out)
+        return 0
+    began = time.monotonic()
+    with study_progress(console, definition.name) as watcher:
+        study = run_study(definition, request.study, out, options, watcher)
+    elapsed = time.monotonic() - began
+    workers = options.jobs or processors()
+    print_summary(console, study, elapsed, None if options.cluster else workers)
+    if request.report:
+        from giveway.cli.report import write_all
+
+        write_all(study, console)
+    return 1 if len(study.failures) else 0
+
+
+@contextmanager
+def study_progress(console: Console, name: str) -> Iterator[Callable[[StudyProgress], None] | None]:
+    """A bar with rate, remaining time and failures; lines now and then without a terminal."""
+    if console.quiet:
+        yield None
+    elif console.is_terminal:
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(bar_width=None),
+            TextColumn("{task.fields[state]}"),
+            TimeRemainingColumn(),
+        )
+        with Progress(*columns, console=console, transient=True, refresh_per_second=4) as bar:
+            yield _Bar(bar, name)
+    else:
+        yield _Lines(console, name)
+
+
+class _Rate:
+    """Runs per second, of this session."""
+
+    def __init__(self) -> None:
+        self._began = time.monotonic()
+
+    def text(self, state: StudyProgress) -> str:
+        elapsed = time.monotonic() - self._began
+        rate = state.made / elapsed if elapsed else 0.0
+        failed = f"  {state.failed} failed" if state.failed else ""
+        return f"{state.finished:,}/{state.total:,} runs  {rate:.1f}/s{failed}"
+
+
+class _Bar(_Rate):
+    def __init__(self, bar: Progress, name: str) -> None:
+        super().__init__()
+        self._bar = bar
+        self._task = bar.add_task(f"study {name}", total=None, state="")
+        self._drawn = 0.0
+
+    def __call__(self, state: StudyProgress) -> None:
+        now = time.monotonic()
+        if now - self._drawn < _REFRESH and state.finished < state.total:
+            return
+        self._drawn = now
+        self._bar.update(
+            self._task, total=state.total, completed=state.finished, state=self.text(state)
+        )
+
+
+class _Lines(_Rate):
+    def __init__(self, console: Console, name: str) -> None:
+        super().__init__()
+        self._console = console
+        self._name = name
+        self._told = time.monotonic()
+
+    def __call__(self, state: StudyProgress) -> None:
+        now = time.monotonic()
+        if state.latest is None or now - self._told < _LINE:
+            return
+        self._told = now
+        left = (state.total - state.finished) / state.made * (now - self._began)
+        text = f"study {self._name}: {self.text(state)}, about {left / 60.0:.0f} min left"
+        self._console.print(text, highlight=False)

@@ -1,0 +1,152 @@
+"""The tables of a study, made from its records."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from giveway.metrics import SUMMARY_FIELDS
+from giveway.schema import Column
+from giveway.studies.record import CRASHED
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from giveway.studies.design import Cell, Design, Level
+    from giveway.studies.record import RunRecord
+
+_HEAD = (
+    Column("run", "string", None, "id of the run: c2-s17 is cell 2, seed 17"),
+    Column("cell", "integer", None, "number of the cell, as in cells.csv"),
+    Column("seed", "integer", None, "seed of the crowd; equal in paired runs"),
+)
+_EGO = (
+    Column("ego", "string", None, "SUMO id of the ego; empty without one"),
+    Column(
+        "ending", "string", None, "why it ended; failed and crashed runs have no numbers"
+    ),
+)
+EXECUTION_COLUMNS = (
+    Column("run", "string", None, "id of the run"),
+    Column("seconds", "number", "s", "wall clock of the run: set-up, loop, metrics"),
+    Column("attempts", "integer", None, "how often it was tried"),
+    Column("worker", "string", None, "host and process that made it"),
+    Column("memory", "number", "MB", "memory that this process held afterwards"),
+)
+FAILURE_COLUMNS = (
+    Column("run", "string", None, "id of the run"),
+    Column("cell", "integer", None, "number of the cell"),
+    Column("seed", "integer", None, "seed of the crowd"),
+    Column("ending", "string", None, "failed (an error that was reported) or crashed (it died)"),
+    Column("cause", "string", None, "what happened, and where"),
+    Column("reproduce", "string", None, "the command that makes the run again"),
+)
+
+
+def runs_columns(design: Design) -> tuple[Column, ...]:
+    """The columns of ``runs.csv``."""
+    factors = tuple(
+        Column(f.name, _type_of(f.levels), f.unit, f"level of the factor {f.name}")
+        for f in design.factors
+    )
+    return (*_HEAD, *factors, *_EGO, *SUMMARY_FIELDS)
+
+
+def _type_of(levels: Iterable[Level]) -> Any:
+    kinds = {type(level.value) for level in levels}
+    if kinds == {bool}:
+        return "boolean"
+    if kinds == {int}:
+        return "integer"
+    return "number" if kinds <= {int, float} else "string"
+
+
+def runs_frame(records: Iterable[tuple[Cell, int, RunRecord]], design: Design) -> pd.DataFrame:
+    """``runs.csv``: one row per run and ego, ordered by cell, seed and ego.
+
+    Args:
+        records: with the cell and the seed of each.
+        design: of the study.
+    """
+    rows: list[dict[str, Any]] = []
+    for cell, seed, record in records:
+        head = {"run": record.run, "cell": cell.number, "seed": seed}
+        head |= {name: level.value for name, level in cell.levels.items()}
+        for row in record.rows or ({"ending": record.ending},):
+            known = {field.name: row[field.name] for field in SUMMARY_FIELDS if field.name in row}
+            rows.append(head | {"ego": row.get("ego", ""), "ending": row["ending"]} | known)
+    columns = runs_columns(design)
+    frame = pd.DataFrame(rows, columns=[column.name for column in columns])
+    frame = frame.sort_values(["cell", "seed", "ego"], kind="stable", ignore_index=True)
+    return _typed(frame, columns)
+
+
+def _typed(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
+    """Numbers are numbers also where some are missing: as floats, with nan for those."""
+    plain = {"integer": "int64", "boolean": "bool"}
+    for column in columns:
+        if column.type == "number" or (column.type in plain and frame[column.name].isna().any()):
+            frame[column.name] = frame[column.name].astype(float)
+        elif column.type in plain:
+            frame[column.name] = frame[column.name].astype(plain[column.type])
+    return frame
+
+
+def written(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
+    """``frame`` as a CSV file shows it: whole numbers whole, also beside missing ones."""
+    nullable = {"integer": "Int64", "boolean": "boolean"}
+    kinds = {c.name: nullable[c.type] for c in columns if c.type in nullable}
+    present = {name: kind for name, kind in kinds.items() if name in frame.columns}
+    return frame.astype(present)
+
+
+def cells_frame(cells: Iterable[Cell], records: Mapping[int, list[RunRecord]]) -> pd.DataFrame:
+    """``cells.csv``: what each cell is, and how many of its runs there are.
+
+    Args:
+        cells: of the design.
+        records: by the cell's number.
+    """
+    rows = []
+    for cell in cells:
+        made = records.get(cell.number, [])
+        rows.append(
+            {
+                "cell": cell.number,
+                **{name: level.value for name, level in cell.levels.items()},
+                "runs": len(made),
+                "failed": sum(record.failed for record in made),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def execution_frame(records: Iterable[RunRecord]) -> pd.DataFrame:
+    """``execution.csv``: how each run was computed; the one table that differs between studies."""
+    names = [column.name for column in EXECUTION_COLUMNS]
+    rows = [{"run": record.run, **asdict(record.computing)} for record in records]
+    return pd.DataFrame(rows, columns=names)
+
+
+def failures_frame(records: Iterable[tuple[Cell, int, RunRecord]], command: str) -> pd.DataFrame:
+    """``failures.csv``: the runs without a result, why, and how to make them again.
+
+    Args:
+        records: with the cell and the seed of each; those that did not fail are left out.
+        command: that makes a run of this study again, but for the run's id.
+    """
+    rows = [
+        {
+            "run": record.run,
+            "cell": cell.number,
+            "seed": seed,
+            "ending": record.ending or CRASHED,
+            "cause": record.failure,
+            "reproduce": f"{command} {record.run}",
+        }
+        for cell, seed, record in records
+        if record.failed
+    ]
+    return pd.DataFrame(rows, columns=[column.name for column in FAILURE_COLUMNS])

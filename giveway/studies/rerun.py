@@ -1,0 +1,106 @@
+"""One run of a study once more, with everything that a single run leaves behind."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from giveway.api import run_layers
+from giveway.configfile import Layer
+from giveway.errors import GivewayError
+from giveway.loading import load
+from giveway.studies.performing import rows_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from giveway.config import RunConfig
+    from giveway.run_result import RunResult
+    from giveway.simulation import Watcher
+    from giveway.studies.folder import StudyFolder
+    from giveway.studies.record import RunRecord, Scalar
+
+PREDICTIONS = 0.25  # [s] between two predicted positions that are kept, where they are
+
+
+class OtherNumbersError(GivewayError):
+    """A run that was made again does not give the study's row; its results are written."""
+
+
+def config_of(study: StudyFolder, run_id: str) -> RunConfig:
+    """The effective configuration of a run.
+
+    Raises:
+        GivewayError: there is no such run, or its scenario is no longer there.
+    """
+    cell, seed = study.cell_of(run_id)
+    origin = str(study.path / "study.toml")
+    config, _ = load([cell.layer(origin, study.definition.run)])
+    return config.model_copy(update={"seed": seed})
+
+
+def rerun(
+    study: StudyFolder,
+    run_id: str,
+    out: Path | None,
+    *,
+    predictions: bool = False,
+    force: bool = False,
+    pictures: bool = True,
+    watcher: Watcher | None = None,
+    journal: Path | None = None,
+) -> RunResult:
+    """Make one run of a study once more, in this process.
+
+    Args:
+        study: whose.
+        run_id: such as ``c2-s17``.
+        out: folder for its results; None writes nothing.
+        predictions: keep the predicted positions, for the replay.
+        force: replace the results that are there.
+        pictures: also draw the state figure and the top view.
+        watcher: told of every control step.
+        journal: an empty folder for the rows, to be read should this process die.
+
+    Raises:
+        OtherNumbersError: its numbers are not the study's.
+        GivewayError: it cannot be made, or fails.
+    """
+    config = config_of(study, run_id)
+    values = config.model_dump()
+    if predictions:
+        values["record"]["predictions"] = PREDICTIONS
+    result = run_layers(
+        [Layer(f"{study.path}: run {run_id}", values)],
+        results=out,
+        force=force,
+        pictures=pictures,
+        watcher=watcher,
+        journal=journal,
+    )
+    record = study.record(run_id)
+    if record is not None and not record.failed:
+        require_same_rows(result, record, study)
+    return result
+
+
+def require_same_rows(result: RunResult, record: RunRecord, study: StudyFolder) -> None:
+    """Make sure that a run gives the numbers of its record.
+
+    Raises:
+        OtherNumbersError: it does not; the message names the first difference.
+    """
+    for ours, theirs in zip(rows_of(result), record.rows, strict=False):
+        for name, value in theirs.items():
+            if not _same(ours.get(name), value):
+                msg = (
+                    f"run {record.run}: {name} = {ours.get(name)} where {study.path} has {value}; "
+                    "other software or scenario files since then? Compare its manifest.json"
+                )
+                raise OtherNumbersError(msg)
+
+
+def _same(a: Any, b: Scalar) -> bool:
+    if isinstance(a, float) and isinstance(b, float) and math.isnan(a) and math.isnan(b):
+        return True
+    return bool(a == b)

@@ -1,0 +1,188 @@
+"""Study files: what they may hold, and what is said of what they may not."""
+
+import pytest
+
+from giveway.errors import ConfigError
+from giveway.studies.definition import (
+    bundled_studies,
+    find_study,
+    parse_definition,
+    read_definition,
+)
+from giveway.studies.design import design
+
+MINIMAL = 'name = "mine"\n[factors]\ncontroller = ["mpc", "pid"]\n'
+
+
+def parsed(text, folder=None, tmp="."):
+    from pathlib import Path
+
+    return parse_definition(text, "mine.toml", folder or Path(tmp))
+
+
+def cells(text):
+    return [cell.label for cell in design(parsed(text), "mine.toml").cells]
+
+
+def test_a_study_of_three_lines_compares_two_controllers_a_hundred_times():
+    definition = parsed(MINIMAL)
+    assert definition.replications == 100
+    assert definition.comparison.factor == "controller"
+    assert cells(MINIMAL) == ["controller = mpc", "controller = pid"]
+
+
+@pytest.mark.parametrize("name", bundled_studies())
+def test_every_bundled_study_can_be_planned(name):
+    from giveway.studies.plan import plan
+
+    planned = plan(read_definition(find_study(name)), name)
+    assert len(planned) == len(planned.cells) * planned.definition.replications
+    assert len({cell.digest for cell in planned.cells}) == len(planned.cells)
+
+
+def test_the_papers_study_is_twelve_thousand_runs():
+    from giveway.studies.plan import plan
+
+    planned = plan(read_definition(find_study("paper")), "paper")
+    assert len(planned) == 12_000
+    labels = [planned.cell.label for planned in planned.cells]
+    assert labels == [
+        f"crowd.pedestrians = {n}, controller = {c}" for n in (30, 20, 10) for c in ("mpc", "pid")
+    ]
+
+
+def test_a_grid_has_every_combination_in_the_order_of_the_file():
+    text = MINIMAL + '"crowd.pedestrians" = [2, 1]\n'
+    assert cells(text) == [
+        "controller = mpc, crowd.pedestrians = 2",
+        "controller = mpc, crowd.pedestrians = 1",
+        "controller = pid, crowd.pedestrians = 2",
+        "controller = pid, crowd.pedestrians = 1",
+    ]
+
+
+def test_an_option_without_quotes_means_the_same():
+    quoted = cells(MINIMAL + '"mpc.horizon" = [10, 15]\n"mpc.solver" = ["osqp"]\n')
+    assert cells(MINIMAL + 'mpc.horizon = [10, 15]\nmpc.solver = ["osqp"]\n') == quoted
+
+
+def test_named_levels_may_set_several_options():
+    text = """
+        name = "mine"
+        [factors.driver]
+        "short MPC" = { controller = "mpc", mpc = { horizon = 10 } }
+        "soft PID" = { controller = "pid", pid = { proportional_gain = 300 } }
+        [comparison]
+        factor = "driver"
+    """
+    made = design(parsed(text), "mine.toml")
+    layer = made.cells[1].layer("mine.toml", {"pid": {"integral_gain": 0}})
+    assert layer.values == {
+        "controller": "pid",
+        "pid": {"integral_gain": 0, "proportional_gain": 300},
+    }
+
+
+def test_listed_cells_are_run_instead_of_the_grid():
+    text = """
+        name = "mine"
+        cells = [
+            { controller = "mpc", "crowd.pedestrians" = 2 },
+            { controller = "pid", crowd = { pedestrians = 1 } },
+        ]
+        [factors]
+        controller = ["mpc", "pid"]
+        "crowd.pedestrians" = [1, 2]
+    """
+    assert cells(text) == [
+        "controller = mpc, crowd.pedestrians = 2",
+        "controller = pid, crowd.pedestrians = 1",
+    ]
+
+
+def test_files_are_relative_to_the_study_file(tmp_path):
+    (tmp_path / "car.fmu").touch()
+    text = MINIMAL + '"vehicle.fmu" = ["fmi2", "./car.fmu"]\n[run.vehicle]\nprofile = "./no.toml"\n'
+    definition = parsed(text, tmp_path)
+    assert definition.factors["vehicle.fmu"] == ["fmi2", str(tmp_path / "car.fmu")]
+    assert definition.run["vehicle"]["profile"] == "./no.toml"  # there is none: said later
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("", "factors: missing"),
+        ("[factors]", "expected at least one factor"),
+        ("replicatons = 3\n[factors]\ncontroller = ['mpc']", "replicatons: unknown key"),
+        ("replications = 0\n[factors]\ncontroller = ['mpc']", "replications = 0"),
+        ("[factors]\ncontroler = ['mpc']", "did you mean 'controller'?"),
+        ("[factors]\nseed = [1, 2]", "replications and first_seed"),
+        ("[factors]\ncontroller = []", "controller: no levels"),
+        ("[factors]\ncontroller = ['mpc', 'mpc']", "level 'mpc' twice"),
+        ("[factors]\ncontroller = 'mpc'", "expected a list of values"),
+        ("[factors.ego]\na = {controller = 'mpc'}", "name is taken"),
+        ("cells = [{}]\n[factors]\ncontroller = ['mpc']", "cells[0]: no level of 'controller'"),
+        ("cells = [{controller = 'x'}]\n[factors]\ncontroller = ['mpc']", "expected one of mpc"),
+        ("cells = [{driver = 'x'}]\n[factors]\ncontroller = ['mpc']", "unknown factor 'driver'"),
+        (
+            "first_seed = 2147483647\nreplications = 5\n[factors]\ncontroller = ['mpc']",
+            "the last seed would be beyond",
+        ),
+        ("[precision]\nwidth = 0\n[factors]\ncontroller = ['mpc']", "precision.width = 0"),
+        ("[precision]\n[factors]\ncontroller = ['mpc']", "precision.width: missing"),
+    ],
+)
+def test_what_cannot_be_a_study_is_refused_in_one_line(change, said):
+    with pytest.raises(ConfigError) as refused:
+        design(parsed('name = "mine"\n' + change), "mine.toml")
+    assert said in str(refused.value)
+    assert str(refused.value).startswith("mine.toml")
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[factors]\ncontroller = ['mpc', 'nobody']", "cell 2 (controller = nobody)"),
+        ("[run]\nscenario = 'nowhere'\n[factors]\ncontroller = ['mpc']", "nowhere"),
+        ("[factors]\n'mpc.horizon' = [15, 1]", "horizon"),
+        ("[comparison]\nfactor = 'x'\n[factors]\ncontroller = ['mpc']", "factor 'x'"),
+        (
+            "[comparison]\nbaseline = 'x'\n[factors]\ncontroller = ['mpc', 'pid']",
+            "baseline = 'x': expected one of mpc, pid",
+        ),
+    ],
+)
+def test_a_cell_that_cannot_be_run_is_found_before_anything_runs(text, said):
+    from giveway.errors import GivewayError
+    from giveway.studies.plan import plan
+
+    with pytest.raises(GivewayError) as refused:
+        plan(parsed('name = "mine"\n' + text), "mine.toml")
+    assert said in str(refused.value)
+    assert "mine.toml" in str(refused.value)
+
+
+def test_an_unknown_study_names_the_known_ones():
+    with pytest.raises(ConfigError, match=r"expected a \.toml file or one of paper, readings"):
+        find_study("papper")
+
+
+def test_files_that_are_no_study(tmp_path):
+    with pytest.raises(ConfigError, match="no such file"):
+        read_definition(tmp_path / "none.toml")
+    broken = tmp_path / "broken.toml"
+    broken.write_bytes(b"name = \xff")
+    with pytest.raises(ConfigError, match="not UTF-8"):
+        read_definition(broken)
+    broken.write_text("name = ")
+    with pytest.raises(ConfigError, match="not valid TOML"):
+        read_definition(broken)
+
+
+def test_without_a_controller_among_them_the_last_factor_is_compared():
+    from giveway.studies.plan import plan
+
+    text = 'name = "mine"\n[factors]\n"crowd.pedestrians" = [1, 2]\n"mpc.horizon" = [15, 30]\n'
+    comparison = plan(parsed(text), "mine.toml").definition.comparison
+    assert (comparison.factor, comparison.baseline) == ("mpc.horizon", "30")
