@@ -1,0 +1,131 @@
+"""One crowd, met twice: speed and gap of treatment and baseline side by side.
+
+After figure 5 of Yang & Özgüner 2019 (MPC on the left, PID on the right).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from giveway.figures.state import NAMES, SHADES, phases
+from giveway.figures.study_rows import wrapped
+from giveway.figures.style import BLACK, BLUE, GREEN, GREY, quiet_grid, styled
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+    from giveway.tracks import EgoTrack
+
+DASHES = (0, (4, 2))
+
+
+@dataclass(frozen=True)
+class PairSide:
+    """One run of a pair.
+
+    Attributes:
+        label: of the compared level.
+        ego: its track.
+        safe_distance: d_safe [m] of its controller.
+        buffer_distance: d_buffer [m] on top of it.
+    """
+
+    label: str
+    ego: EgoTrack
+    safe_distance: float
+    buffer_distance: float
+
+
+@styled
+def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
+    """Speed with its reference, gap with d_safe, and who acts, on the same scales.
+
+    Args:
+        sides: normally two, the treatment first.
+        title: of the whole figure.
+
+    Raises:
+        ValueError: there is no side, or one without an instant.
+    """
+    if not sides or any(not side.ego.time.size for side in sides):
+        raise ValueError("pair: a run has no instants; pass tracks of at least one")
+    figure = Figure(figsize=(0.6 + 4.4 * len(sides), 4.4), layout="constrained")
+    grid = figure.subplots(2, len(sides), sharex=True, sharey="row", squeeze=False)
+    for (speed, gap), side in zip(grid.T, sides, strict=True):
+        for axes in (speed, gap):
+            quiet_grid(axes)
+            for acting, start, end in phases(side.ego):
+                colour, opacity = SHADES[acting]
+                axes.axvspan(
+                    start, end, color=colour, alpha=opacity, linewidth=0, label=acting, zorder=0
+                )  # fmt: skip
+        _draw_speed(speed, side.ego)
+        _draw_gap(gap, side)
+        speed.set_title(wrapped(side.label, 50))
+        gap.set_xlabel("Time [s]")
+    grid[0, 0].set_ylabel("Speed [m/s]")
+    grid[1, 0].set_ylabel("Gap in front [m]")
+    _scale(grid, sides)
+    figure.align_ylabels(grid[:, 0])
+    figure.suptitle(wrapped(title, 100))
+    figure.legend(handles=_legend(sides), loc="outside lower center", ncols=6)
+    return figure
+
+
+def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
+    axes.step(
+        ego.time, ego.reference_speed, where="post", color=BLACK, linewidth=0.9, linestyle=DASHES,
+        label="reference speed", zorder=3,
+    )  # fmt: skip
+    axes.plot(ego.time, ego.speed, color=BLUE, label="speed", zorder=4)
+
+
+def _draw_gap(axes: Axes, side: PairSide) -> None:
+    safe, whole = side.safe_distance, side.safe_distance + side.buffer_distance
+    axes.axhline(safe, color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe")
+    axes.axhline(whole, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)), label="d_safe + d_buffer")
+    gap = np.where(np.isfinite(side.ego.gap), side.ego.gap, np.nan)
+    axes.plot(side.ego.time, gap, color=GREEN, label="gap", zorder=3)
+    if not np.isfinite(gap).any():
+        axes.text(
+            0.5, 0.2, "nobody in front", transform=axes.transAxes, ha="center", color=GREY
+        )  # fmt: skip
+
+
+def _scale(grid: np.ndarray, sides: Sequence[PairSide]) -> None:
+    """One scale for both runs, zero on it."""
+    egos = [side.ego for side in sides]
+    start, end = min(e.time[0] for e in egos), max(e.time[-1] for e in egos)
+    margin = 0.5 if start == end else 0.0
+    fastest = max(max(e.speed.max(), e.reference_speed.max(), 1.0) for e in egos)
+    gaps = np.concatenate([e.gap[np.isfinite(e.gap)] for e in egos])
+    farthest = max(side.safe_distance + side.buffer_distance for side in sides)
+    grid[0, 0].set_xlim(start - margin, end + margin)
+    grid[0, 0].set_ylim(0.0, 1.1 * fastest)
+    grid[1, 0].set_ylim(1.1 * gaps.min(initial=0.0), 1.1 * gaps.max(initial=farthest))
+
+
+def _legend(sides: Sequence[PairSide]) -> list[Artist]:
+    handles: list[Artist] = [
+        Line2D([], [], color=BLUE, label="speed"),
+        Line2D([], [], color=BLACK, linewidth=0.9, linestyle=DASHES, label="reference speed"),
+        Line2D([], [], color=GREEN, label="gap"),
+        Line2D([], [], color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe"),
+        Line2D(
+            [], [], color=GREY, linewidth=0.9, linestyle=(0, (1, 2)), label="d_safe + d_buffer"
+        ),
+    ]  # fmt: skip
+    acted = {str(name) for side in sides for name in np.unique(side.ego.acting)}
+    for name, (colour, opacity) in SHADES.items():
+        if name in acted:
+            handles.append(Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name]))
+    return handles

@@ -1,0 +1,143 @@
+"""What the pictures of a study share: colours of levels, rows with headings, numbers as text."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SKY_BLUE,
+    VERMILION,
+    quiet_grid,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+
+LEVEL_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY_BLUE)
+PUBLISHED = PURPLE
+ROW_HEIGHT = 0.27  # [in]
+LABEL_WIDTH = 30  # characters until a label is broken
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of a picture: its own label, and the heading that it shares with its neighbours."""
+
+    label: str
+    heading: str = ""
+
+
+def level_colours(levels: Sequence[str], baseline: str) -> dict[str, str]:
+    """A colour per level of the compared factor; the baseline is grey."""
+    others = [level for level in levels if level != baseline]
+    colours = {
+        level: LEVEL_COLOURS[place % len(LEVEL_COLOURS)] for place, level in enumerate(others)
+    }
+    return {level: colours.get(level, GREY) for level in levels}
+
+
+def wrapped(label: str, width: int = LABEL_WIDTH) -> str:
+    """A label in as many lines as it needs; a dollar sign starts no formula."""
+    return "\n".join(textwrap.wrap(label, width)).replace("$", r"\$")
+
+
+def row_places(rows: Sequence[Row]) -> tuple[list[float], list[tuple[float, str]], float]:
+    """Where rows and headings stand, from the top (0) downwards.
+
+    Rows whose headings are all different need none: the heading is their label.
+
+    Returns:
+        A place per row, places and texts of headings, and the height of it all.
+    """
+    places: list[float] = []
+    headings: list[tuple[float, str]] = []
+    if not _grouped(rows):
+        return [float(k) for k in range(len(rows))], [], float(len(rows))
+    y, last = 0.0, None
+    for row in rows:
+        if row.heading != last:
+            y += 0.35 if places else 0.0
+            if row.heading:
+                headings.append((y, row.heading))
+                y += 1.0
+            last = row.heading
+        places.append(y)
+        y += 1.0
+    return places, headings, y
+
+
+def _grouped(rows: Sequence[Row]) -> bool:
+    headings = [row.heading for row in rows]
+    return len(set(headings)) < len(headings) and any(headings)
+
+
+def label_rows(axes: Axes, rows: Sequence[Row]) -> list[float]:
+    """Name the rows beside the axis, headings in bold; their places, for the caller to draw at."""
+    places, headings, height = row_places(rows)
+    alone = not _grouped(rows)
+    names = [row.heading if alone and row.heading else row.label for row in rows]
+    ticks = sorted(
+        [(y, name, False) for y, name in zip(places, names, strict=True)]
+        + [(y, heading, True) for y, heading in headings]
+    )
+    axes.set_yticks([y for y, _, _ in ticks], [wrapped(name) for _, name, _ in ticks])
+    for label, (_, _, bold) in zip(axes.get_yticklabels(), ticks, strict=True):
+        label.set_fontweight("bold" if bold else "normal")
+    axes.set_ylim(height - 0.4, -0.6)
+    axes.tick_params(axis="y", length=0)
+    return places
+
+
+def rows_height(rows: Sequence[Row]) -> float:
+    """The height [in] that rows and their broken labels need."""
+    _, _, height = row_places(rows)
+    alone = not _grouped(rows)
+    names = [row.heading if alone and row.heading else row.label for row in rows]
+    tallest = max((wrapped(name).count("\n") + 1 for name in names), default=1)
+    return height * max(ROW_HEIGHT, 0.05 + 0.14 * tallest)
+
+
+def horizontal_grid(axes: Axes) -> None:
+    """Vertical lines only: rows need none of their own."""
+    quiet_grid(axes)
+    axes.grid(visible=False, axis="y")
+    axes.spines["left"].set_visible(False)
+
+
+def number(value: float, digits: int = 2) -> str:
+    """A number with a true minus sign; N.A. where there is none."""
+    if not math.isfinite(value):
+        return "N.A."
+    text = f"{value:.{digits}f}"
+    if float(text) == 0.0:
+        text = text.removeprefix("-")
+    return text.replace("-", "−")
+
+
+def digits_for(width: float) -> int:
+    """Decimals by which an interval of that width is told to two significant digits."""
+    if not math.isfinite(width) or width <= 0.0:
+        return 2
+    return int(np.clip(1 - math.floor(math.log10(width)), 0, 4))
+
+
+def with_unit(text: str, unit: str) -> str:
+    """Text and unit, as "Time [s]"; without a unit the text alone."""
+    return f"{text} [{pretty_unit(unit)}]" if unit else text
+
+
+def pretty_unit(unit: str) -> str:
+    """The unit as it is printed: m/s², not m/s^2."""
+    return unit.replace("^2", "²").replace("^3", "³").replace(".", "·")

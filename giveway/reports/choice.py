@@ -1,0 +1,191 @@
+"""Which runs a report shows: examples of pairs, and the runs that one would look at first.
+
+Nothing is drawn by lot: the same study gives the same choice, and ties go to the run that stands
+first in the study.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from giveway.reports.pairing import DIFFERENCE, paired
+from giveway.studies.statistics import metric
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.reports.study import Study
+
+
+@dataclass(frozen=True)
+class ExamplePair:
+    """Two runs on the same crowd, side by side.
+
+    Attributes:
+        reason: why it is shown: median, best, worst or stop-and-wait.
+        context: label of the other factors' levels; empty without any.
+        ego: its id; empty where a run has none.
+        treatment: label of the compared level.
+        baseline: label of the level that is subtracted.
+        seed: of both runs.
+        run: id of the treatment's run.
+        run_baseline: id of the baseline's run.
+        metric: by which the pair was chosen.
+        difference: treatment minus baseline, in the metric's unit.
+    """
+
+    reason: str
+    context: str
+    ego: str
+    treatment: str
+    baseline: str
+    seed: int
+    run: str
+    run_baseline: str
+    metric: str
+    difference: float
+
+
+@dataclass(frozen=True)
+class WorstRun:
+    """A run that is worth looking at.
+
+    Attributes:
+        reason: the heading that it stands under.
+        run: its id; of a pair, the treatment's.
+        partner: the baseline's run of a pair; else empty.
+        cell: label of its levels.
+        ego: which ego of the run; may be empty.
+        metric: that is extreme.
+        value: of the metric, or the pair's difference.
+        unit: of the value.
+    """
+
+    reason: str
+    run: str
+    partner: str
+    cell: str
+    ego: str
+    metric: str
+    value: float
+    unit: str
+
+
+CLOSEST = "Smallest clearance to a pedestrian"
+OVERLAPS = "Longest overlap with pedestrians"
+WAITS = "Longest wait"
+SLOWER = "Slower than the baseline by most"
+FASTER = "Faster than the baseline by most"
+
+
+def worst_runs(study: Study, count: int = 5) -> list[WorstRun]:
+    """The runs that are extreme in safety or time, at most ``count`` for each reason.
+
+    Args:
+        study: its runs, design and definition are read.
+        count: per reason.
+    """
+    return [
+        *_extreme(study, CLOSEST, "minimum_clearance", count, sign=1.0),
+        *_extreme(study, OVERLAPS, "overlap_time", count, sign=-1.0),
+        *_extreme(study, WAITS, "longest_wait", count, sign=-1.0),
+        *_differing(study, SLOWER, count, sign=-1.0),
+        *_differing(study, FASTER, count, sign=1.0),
+    ]
+
+
+def example_pairs(study: Study, count: int = 4) -> list[ExamplePair]:
+    """Pairs that show what the differences are made of: median, best, worst, one that waits.
+
+    They are of the first context, ego and treatment that have pairs; the waiting pair is of a
+    later context where the first has none. A pair is shown once.
+
+    Args:
+        study: its runs, design and definition are read.
+        count: at most so many.
+    """
+    pairs = paired(study)
+    name = deciding_metric(pairs)
+    pairs = pairs[pairs[name + DIFFERENCE].notna()]
+    if pairs.empty:
+        return []
+    head = pairs.iloc[0]
+    pairs = pairs[(pairs["treatment"] == head["treatment"]) & (pairs["ego"] == head["ego"])]
+    here = pairs[pairs["context"] == head["context"]]
+    waiting = pairs[pairs["situation"] == "stop-and-wait"]
+    waiting = waiting[waiting["context"].isin(waiting["context"].iloc[:1])]
+    by_time, by_wait = here[name + DIFFERENCE], waiting["longest_wait" + DIFFERENCE]
+    chosen: list[ExamplePair] = []
+    for reason, table, by, cost in (
+        ("median", here, name, (by_time - by_time.median()).abs()),
+        ("best", here, name, by_time),
+        ("worst", here, name, -by_time),
+        ("stop-and-wait", waiting, "longest_wait", (by_wait - by_wait.median()).abs()),
+    ):
+        free = ~table["run"].isin([pair.run for pair in chosen])
+        best = _smallest(cost.where(free).to_numpy(float), 1)
+        chosen += [_example(reason, table.iloc[place], by) for place in best]
+    return chosen[: max(count, 0)]
+
+
+def deciding_metric(pairs: pd.DataFrame) -> str:
+    """Completion time; total wait in a study whose runs have no goal that both sides reach."""
+    reached = pairs["completion_time" + DIFFERENCE].notna()
+    return "completion_time" if reached.any() else "total_wait"
+
+
+def _example(reason: str, row: pd.Series, name: str) -> ExamplePair:
+    return ExamplePair(
+        reason=reason,
+        context=str(row["context"]),
+        ego=str(row["ego"]),
+        treatment=str(row["treatment"]),
+        baseline=str(row["baseline"]),
+        seed=int(row["seed"]),
+        run=str(row["run"]),
+        run_baseline=str(row["run_baseline"]),
+        metric=name,
+        difference=float(row[name + DIFFERENCE]),
+    )
+
+
+def _extreme(study: Study, reason: str, name: str, count: int, *, sign: float) -> list[WorstRun]:
+    """The runs with the smallest (+1) or largest (-1) numbers; a largest one of zero is none."""
+    values = pd.to_numeric(study.runs[name], errors="coerce").to_numpy(float)
+    cost = np.where((values > 0.0) | (sign > 0.0), sign * values, np.nan)
+    labels = {cell.number: cell.label for cell in study.design.cells}
+    found = []
+    for place in _smallest(cost, count):
+        row = study.runs.iloc[place]
+        ego = row["ego"] if isinstance(row["ego"], str) else ""
+        cell = labels[int(row["cell"])]
+        value, unit = float(values[place]), metric(name).unit
+        found.append(WorstRun(reason, str(row["run"]), "", cell, ego, name, value, unit))
+    return found
+
+
+def _differing(study: Study, reason: str, count: int, *, sign: float) -> list[WorstRun]:
+    """The pairs with the most negative (+1) or positive (-1) differences."""
+    pairs = paired(study)
+    name = deciding_metric(pairs)
+    values = pairs[name + DIFFERENCE].to_numpy(float)
+    cost = np.where(sign * values < 0.0, sign * values, np.nan)
+    found = []
+    for place in _smallest(cost, count):
+        row = pairs.iloc[place]
+        levels = f"{row['treatment']} against {row['baseline']}"
+        cell = ", ".join(filter(None, (row["context"], levels)))
+        value, unit = float(values[place]), metric(name).unit
+        ids = str(row["run"]), str(row["run_baseline"])
+        found.append(WorstRun(reason, *ids, cell, str(row["ego"]), name, value, unit))
+    return found
+
+
+def _smallest(cost: NDArray[np.float64], count: int) -> list[int]:
+    """Places of the ``count`` smallest finite values; of equal ones the first."""
+    order = np.argsort(cost, kind="stable")
+    return [int(place) for place in order if np.isfinite(cost[place])][: max(count, 0)]

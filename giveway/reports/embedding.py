@@ -1,0 +1,41 @@
+"""Pictures for a page: SVG with the page's colours and fonts, and ids that do not clash."""
+
+from __future__ import annotations
+
+import re
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+from matplotlib import rc_context
+
+from giveway.figures.style import house_style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# Black is the page's ink, so that a dark page has light lines; white is its paper.
+_COLOURS = {"#000000": "currentColor", "#505050": "var(--muted)", "#ffffff": "var(--paper)"}
+_DIGITS = re.compile(r"-?\d+\.\d{3,}")
+
+
+def inline_svg(figure: Figure, prefix: str) -> str:
+    """The figure as an ``<svg>`` element.
+
+    Args:
+        figure: what to draw.
+        prefix: for the ids within; letters and digits, unique in the page.
+    """
+    stream = BytesIO()
+    with house_style(), rc_context({"svg.fonttype": "none"}):
+        figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None})
+    text = stream.getvalue().decode("utf-8")
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    text = re.sub(r'\bid="', f'id="{prefix}-', text)
+    text = re.sub(r"url\(#", f"url(#{prefix}-", text)
+    text = re.sub(r'xlink:href="#', f'href="#{prefix}-', text)
+    text = re.sub(r'\s(?:xmlns(?::xlink)?|version)="[^"]*"', "", text, count=3)
+    for colour, name in _COLOURS.items():
+        text = text.replace(colour, name)
+    text = _DIGITS.sub(lambda found: f"{float(found[0]):.2f}", text)
+    return re.sub(r"<svg ", '<svg aria-hidden="true" focusable="false" ', text, count=1).strip()

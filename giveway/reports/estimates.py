@@ -1,0 +1,37 @@
+"""The comparison table by key, so that pictures and words find their numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from giveway.figures.study_forest import Estimate
+from giveway.reports.study import context_key, level_label
+
+if TYPE_CHECKING:
+    from giveway.reports.study import Context, Study
+
+Key = tuple[tuple[str, ...], str, str, str, str]
+"""Context, ego, treatment, situation, metric."""
+
+
+def estimates(study: Study) -> dict[Key, Estimate]:
+    """Mean difference and interval of every row of the comparison; nan is N.A."""
+    return {
+        (
+            context_key(study, row),
+            level_label(row["ego"]),
+            level_label(row["treatment"]),
+            str(row["situation"]),
+            str(row["metric"]),
+        ): Estimate(
+            float(row["mean_difference"]) if row["verdict"] != "N.A." else float("nan"),
+            float(row["ci_low"]),
+            float(row["ci_high"]),
+        )
+        for row in study.comparison.to_dict("records")
+    }
+
+
+def estimate_key(context: Context, ego: str, treatment: str, situation: str, metric: str) -> Key:
+    """The key of one row."""
+    return (context.key, ego, treatment, situation, metric)

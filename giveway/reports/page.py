@@ -1,0 +1,259 @@
+"""The report of a study: one HTML file that needs nothing else, and the pictures as files."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from giveway.configfile import options
+from giveway.errors import ResultsError
+from giveway.figures.style import save_figure
+from giveway.metrics import SUMMARY_FIELDS
+from giveway.reports import findings, tables
+from giveway.reports.beside import published_frame, published_table
+from giveway.reports.choice import example_pairs, worst_runs
+from giveway.reports.embedding import inline_svg
+from giveway.reports.examples import TITLES, example_pictures
+from giveway.reports.pictures import Picture, study_pictures
+from giveway.reports.study import contexts
+from giveway.reports.wording import pretty_unit
+from giveway.studies.statistics import METRICS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from giveway.reports.choice import ExamplePair, WorstRun
+    from giveway.reports.study import Study
+    from giveway.run_result import RunResult
+
+REPORT = "report.html"
+FIGURES = "figures"
+_FORMATS = (".png", ".svg")
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A picture in the page.
+
+    Attributes:
+        name: of its files, and its id in the page.
+        title: above it; may be empty.
+        caption: beneath it.
+        alt: what is to be seen.
+        svg: the picture.
+        links: label and address of replays that belong to it.
+    """
+
+    name: str
+    title: str
+    caption: str
+    alt: str
+    svg: Markup
+    links: Sequence[tuple[str, str]] = ()
+
+
+def shown_runs(study: Study, *, examples: int = 4, worst: int = 5) -> list[str]:
+    """The ids of the runs that a report of the same arguments names, each once."""
+    ids = [run for pair in example_pairs(study, examples) for run in (pair.run, pair.run_baseline)]
+    ids += [run for row in worst_runs(study, worst) for run in (row.run, row.partner) if run]
+    return list(dict.fromkeys(ids))
+
+
+def write_report(
+    study: Study,
+    *,
+    examples: int = 4,
+    worst: int = 5,
+    rerun: Callable[[str], RunResult] | None = None,
+    replay: Callable[[str], Path | None] | None = None,
+    target: Path | None = None,
+) -> Path:
+    """Draw the figures of a study and write its report; both replace what is there.
+
+    Args:
+        study: its folder, read.
+        examples: pairs of which speed and gap are drawn, at most; 0: none.
+        worst: runs that are listed, for each reason.
+        rerun: makes a run again, by its id, for the examples; None: there are none.
+        replay: the page that plays a run, by its id, or None; None: no links.
+        target: the file to write; None: ``report.html`` in the study's folder. Figures go to
+            the folder ``figures`` of the study.
+
+    Returns:
+        The file that was written.
+
+    Raises:
+        ResultsError: it cannot be written.
+    """
+    target = study.path / REPORT if target is None else target
+    pairs = example_pairs(study, examples)
+    extremes = worst_runs(study, worst)
+    replays = _replays(shown_runs(study, examples=examples, worst=worst), replay, target)
+    try:
+        pictures = [_drawn(picture, study) for picture in study_pictures(study)]
+        shown, missing = _examples(study, pairs, rerun, replays)
+        content = _content(study, extremes, replays)
+        by_section = {
+            name: [d for s, d in pictures if s == name]
+            for name in ("differences", "cells", "trade-off")
+        }
+        html = (
+            _environment()
+            .get_template("report.html.j2")
+            .render(**content, pictures=by_section, examples=shown, missing=missing)
+        )
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(html, encoding="utf-8", newline="\n")
+    except OSError as error:
+        msg = f"{error.filename or target}: cannot be written ({error.strerror}); free the disk"
+        raise ResultsError(msg) from error
+    return target
+
+
+def _replays(
+    runs: Iterable[str], replay: Callable[[str], Path | None] | None, target: Path
+) -> dict[str, str]:
+    """Addresses of replays as seen from the report."""
+    found = {}
+    for run in runs:
+        page = None if replay is None else replay(run)
+        if page is not None:
+            seen = Path(os.path.relpath(page, target.parent)).as_posix()
+            found[run] = quote(seen)
+    return found
+
+
+def _drawn(picture: Picture, study: Study, title: str = "", **more: Any) -> tuple[str, Drawn]:
+    """Write the picture's files; the section it belongs to, and the picture for the page."""
+    folder = study.path / FIGURES
+    folder.mkdir(parents=True, exist_ok=True)
+    for suffix in _FORMATS:
+        save_figure(picture.figure, folder / f"{picture.name}{suffix}")
+    svg = Markup(inline_svg(picture.figure, picture.name.replace("_", "")))
+    return picture.section, Drawn(picture.name, title, picture.caption, picture.alt, svg, **more)
+
+
+def _examples(
+    study: Study,
+    pairs: Sequence[ExamplePair],
+    rerun: Callable[[str], RunResult] | None,
+    replays: dict[str, str],
+) -> tuple[list[Drawn], list[str]]:
+    if rerun is None:
+        return [], []
+    pictures, missing = example_pictures(pairs, rerun)
+    shown = []
+    for pair, picture in pictures:
+        runs = ((pair.treatment, pair.run), (pair.baseline, pair.run_baseline))
+        links = [(f"{label} ({run})", replays[run]) for label, run in runs if run in replays]
+        shown.append(_drawn(picture, study, TITLES[pair.reason], links=links)[1])
+    return shown, missing
+
+
+def _content(study: Study, extremes: Sequence[WorstRun], replays: dict[str, str]) -> dict[str, Any]:
+    definition = study.definition
+    published = published_frame(study)
+    some = not study.comparison.empty
+    return {
+        "name": definition.name,
+        "title": definition.description or definition.name,
+        "lead": findings.lead(study),
+        "facts": findings.facts(study),
+        "findings": findings.findings(study) if some else [],
+        "cautions": findings.cautions(study),
+        "published": None if published is None else published_table(published),
+        "glance": tables.glance_table(study) if some else None,
+        "comparison": tables.comparison_table(study) if some else None,
+        "situations": tables.situations_table(study) if len(study.situations) else None,
+        "cells": tables.cells_table(study),
+        "worst": tables.worst_tables(extremes, replays),
+        "failures": tables.failures_table(study) if len(study.failures) else None,
+        "execution": tables.settings_table(
+            "execution-table", "How it was computed", _execution(study)
+        ),
+        "glossary": _glossary(),
+        "factors": _factors(study),
+        "definition": json.dumps(
+            definition.model_dump(mode="json", exclude_none=True), indent=2, ensure_ascii=False
+        ),
+        "manifest": json.dumps(study.manifest, indent=2, ensure_ascii=False),
+        "software": tables.settings_table(
+            "software-table", "Versions", study.manifest.get("software", {})
+        ),
+        "confidence": f"{100.0 * definition.comparison.confidence:g} %",
+        "minimum_pairs": definition.comparison.minimum_pairs,
+        "contexts": len(contexts(study)),
+    }
+
+
+def _execution(study: Study) -> dict[str, str]:
+    frame = study.execution
+    if frame.empty:
+        return {}
+    seconds, memory = (
+        frame[name].astype(float).to_numpy(np.float64) for name in ("seconds", "memory")
+    )
+    seconds, memory = seconds[np.isfinite(seconds)], memory[np.isfinite(memory)]
+    repeated = int((frame["attempts"] > 1).sum())
+    workers = frame["worker"].fillna("").astype(str)
+    found = {"runs": f"{len(frame):,}", "workers": f"{workers[workers != ''].nunique():,}"}
+    if seconds.size:
+        found["computing time"] = f"{seconds.sum():,.0f} s"
+        found["a run, median"] = f"{1000.0 * float(np.median(seconds)):,.0f} ms"
+        found["a run, longest"] = f"{seconds.max():,.2f} s"
+    if memory.size:
+        found["memory of a worker, at most"] = f"{memory.max():,.0f} MB"
+    return found | {"runs that were tried again": f"{repeated:,}"}
+
+
+def _glossary() -> list[dict[str, str]]:
+    meanings = {field.name: field.description for field in SUMMARY_FIELDS}
+    return [
+        {
+            "name": metric.name,
+            "label": metric.label,
+            "unit": pretty_unit(metric.unit),
+            "better": metric.better,
+            "meaning": meanings[metric.name],
+        }
+        for metric in METRICS
+    ]
+
+
+def _factors(study: Study) -> list[tuple[str, str, str]]:
+    """Name, levels and meaning of what was varied."""
+    known = {".".join(option.location): option.field.description or "" for option in options()}
+    return [
+        (
+            factor.name,
+            ", ".join(level.label for level in factor.levels)
+            + (f" [{pretty_unit(factor.unit)}]" if factor.unit else ""),
+            known.get(factor.name, ""),
+        )
+        for factor in study.design.factors
+    ]
+
+
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("giveway.reports", "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    folder = files("giveway.reports") / "templates"
+    for name in ("report.css", "report.js"):
+        text = (folder / name).read_text(encoding="utf-8")
+        environment.globals[name.replace(".", "_")] = Markup(text)
+    return environment

@@ -1,0 +1,285 @@
+"""The pictures of a study: what of its tables each one shows, drawn by ``giveway.figures``."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from scipy import stats
+
+from giveway.figures.study_differences import DifferenceColumn, Differences, differences_figure
+from giveway.figures.study_distributions import DistributionColumn, distributions_figure
+from giveway.figures.study_forest import Estimate, ForestColumn, forest_figure
+from giveway.figures.study_rows import Row, level_colours
+from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
+from giveway.reports.estimates import estimate_key, estimates
+from giveway.reports.pairing import BASELINE, DIFFERENCE, paired, situation_of
+from giveway.reports.published import SOURCE, published_numbers
+from giveway.reports.study import baseline_label, compared_labels, contexts, treatment_labels
+from giveway.reports.wording import shown_ego
+from giveway.studies.statistics import SITUATIONS, metric
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from giveway.reports.study import Context, Study
+
+ROWS_PER_PICTURE = 8
+FOREST = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
+SPREADS = {
+    "time and comfort": ("completion_time", "longest_wait", "rms_jerk"),
+    "safety": ("minimum_clearance", "minimum_ttc", "maximum_drac"),
+}
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One figure of a study.
+
+    Attributes:
+        name: of its files, without suffix; unique within the study.
+        section: of the report that it belongs to.
+        caption: one or two sentences beneath it.
+        alt: what is to be seen, for those who do not see it.
+        figure: itself.
+    """
+
+    name: str
+    section: str
+    caption: str
+    alt: str
+    figure: Figure
+
+
+def study_pictures(study: Study) -> Iterator[Picture]:
+    """Everything that can be drawn of a study's tables; what has no numbers is left out.
+
+    Args:
+        study: whose.
+    """
+    if study.runs.empty:
+        return
+    yield from _histograms(study)
+    yield from _forest(study)
+    yield from _spreads(study)
+    yield from _trade_off(study)
+
+
+def _histograms(study: Study) -> Iterator[Picture]:
+    pairs = paired(study)
+    time = (
+        "completion_time" if pairs["completion_time" + DIFFERENCE].notna().any() else "total_wait"
+    )
+    names = {"general": time, "stop-and-wait": "longest_wait", "non-stop": time}
+    columns = [_difference_column(situation, name) for situation, name in names.items()]
+    reported = estimates(study)
+    printed = published_numbers(study)
+    number = 0
+    for (ego, treatment), group in pairs.groupby(["ego", "treatment"], sort=False):
+        rows = []
+        for context in contexts(study):
+            some = group[group["context"] == context.label]
+            if len(some):
+                panels = [
+                    _panel(
+                        some, situation, name,
+                        reported.get((context.key, ego, treatment, situation, name)),
+                        printed.get((context.key, treatment, situation, name)),
+                    )
+                    for situation, name in names.items()
+                ]  # fmt: skip
+                rows.append((context.short, panels))
+        rows = [row for row in rows if any(panel.values.size for panel in row[1])]
+        for first in range(0, len(rows), ROWS_PER_PICTURE):
+            number += 1
+            what = f"{treatment} minus {baseline_label(study)}{shown_ego(ego)}"
+            part = rows[first : first + ROWS_PER_PICTURE]
+            yield Picture(
+                name="differences" if number == 1 else f"differences_{number}",
+                section="differences",
+                caption=(
+                    f"{what}, pair by pair, on the same crowds. General: {metric(time).label} of "
+                    f"all pairs; stop-and-wait: longest wait where both stopped; non-stop: "
+                    f"{metric(time).label} where neither did."
+                ),
+                alt=f"Histograms of the differences {what}: {_in_words(part, names)}",
+                figure=differences_figure(columns, part, title=what, source=SOURCE),
+            )
+
+
+def _difference_column(situation: str, name: str) -> DifferenceColumn:
+    quantity = metric(name)
+    return DifferenceColumn(situation, quantity.label, quantity.unit, quantity.better)
+
+
+def _panel(
+    pairs: pd.DataFrame,
+    situation: str,
+    name: str,
+    reported: Estimate | None,
+    printed: float | None,
+) -> Differences:
+    values = situation_of(pairs, situation)[name + DIFFERENCE].dropna().to_numpy(float)
+    seen = int((pairs["stops"].notna() & pairs["stops" + BASELINE].notna()).sum())
+    share = values.size / seen if seen else math.nan
+    reported = reported or Estimate(math.nan, math.nan, math.nan)
+    return Differences(values, share, reported.mean, reported.low, reported.high, printed)
+
+
+def _in_words(rows: Sequence[tuple[str, Sequence[Differences]]], names: dict[str, str]) -> str:
+    """The means of the panels, row by row."""
+    said = []
+    for label, panels in rows:
+        for situation, panel in zip(names, panels, strict=True):
+            mean = f"mean {panel.mean:.2f} s" if math.isfinite(panel.mean) else "no mean (N.A.)"
+            said.append(f"{label or 'all'}, {situation}: {panel.values.size} pairs, {mean}")
+    return "; ".join(said) + "."
+
+
+def _forest(study: Study) -> Iterator[Picture]:
+    reported, printed = estimates(study), published_numbers(study)
+    groups = [
+        (context, ego, treatment)
+        for context in contexts(study)
+        for ego in dict.fromkeys(key[1] for key in reported)
+        for treatment in treatment_labels(study)
+        if any(key[:3] == (context.key, ego, treatment) for key in reported)
+    ]
+    columns = []
+    for name in FOREST:
+        found = {}
+        for row, (context, ego, treatment) in enumerate(groups):
+            for situation in SITUATIONS:
+                key = estimate_key(context, ego, treatment, situation, name)
+                value = reported.get(key)
+                if value is not None:
+                    print_ = printed.get((context.key, treatment, situation, name))
+                    found[row, situation] = Estimate(value.mean, value.low, value.high, print_)
+        if any(math.isfinite(value.mean) for value in found.values()):
+            quantity = metric(name)
+            columns.append(ForestColumn(quantity.label, quantity.unit, quantity.better, found))
+    if not groups or not columns:
+        return
+    several = len(treatment_labels(study)) > 1 or len({ego for _, ego, _ in groups}) > 1
+    rows = [
+        Row(f"{treatment}{shown_ego(ego)}" if several or not context.short else "", context.short)
+        for context, ego, treatment in groups
+    ]
+    baseline = baseline_label(study)
+    what = " and ".join(treatment_labels(study)) if not several else "each level"
+    percent = 100.0 * study.definition.comparison.confidence
+    yield Picture(
+        name="forest",
+        section="differences",
+        caption=(
+            f"Mean differences, {what} minus {baseline}, with {percent:g} % intervals. An interval "
+            "that leaves out the line in the middle shows a difference."
+        ),
+        alt=f"Mean differences with intervals against {baseline}; the comparison table has them.",
+        figure=forest_figure(rows, columns, title=f"{what} minus {baseline}", source=SOURCE),
+    )
+
+
+def _spreads(study: Study) -> Iterator[Picture]:
+    cells = [
+        (context, label, cell)
+        for context in contexts(study)
+        for label, cell in context.cells.items()
+    ]
+    colours = level_colours(compared_labels(study), baseline_label(study))
+    rows = [Row(label, context.short) for context, label, _ in cells]
+    if len({label for _, label, _ in cells}) == 1:
+        rows = [Row(context.short or label) for context, label, _ in cells]
+    for place, (what, names) in enumerate(SPREADS.items()):
+        columns = [_spread(study, name, [cell for _, _, cell in cells]) for name in names]
+        columns = [c for c in columns if any(np.isfinite(v).any() for v in c.values)]
+        if not columns:
+            continue
+        yield Picture(
+            name=f"distributions_{'time' if place == 0 else 'safety'}",
+            section="cells",
+            caption=(
+                f"Spread of the runs of each cell, {what}: a line from the 5th to the 95th "
+                "percentile, a bar over the middle half, the median as a tick, the mean as a dot."
+            ),
+            alt=f"Spread per cell of {', '.join(column.quantity for column in columns)}.",
+            figure=distributions_figure(
+                rows, [colours[label] for _, label, _ in cells], columns, title=what.capitalize()
+            ),
+        )
+
+
+def _spread(study: Study, name: str, cells: Sequence[int]) -> DistributionColumn:
+    values = _by_cell(study, name)
+    quantity = metric(name)
+    return DistributionColumn(quantity.label, quantity.unit, [values[cell] for cell in cells])
+
+
+def _by_cell(study: Study, name: str) -> dict[int, NDArray[np.float64]]:
+    """A metric's finite numbers of every cell."""
+    numbers = pd.to_numeric(study.runs[name], errors="coerce").to_numpy(float)
+    cell = study.runs["cell"].to_numpy()
+    kept = np.isfinite(numbers)
+    return {c.number: numbers[kept & (cell == c.number)] for c in study.design.cells}
+
+
+def _trade_off(study: Study) -> Iterator[Picture]:
+    times = _by_cell(study, "completion_time")
+    name = "completion_time" if any(v.size for v in times.values()) else "total_wait"
+    x, y = _by_cell(study, name), _by_cell(study, "minimum_clearance")
+    confidence = study.definition.comparison.confidence
+    points = [
+        TradeOffPoint(
+            _tag(context), label, float(x[cell].mean()), float(y[cell].mean()),
+            mean_interval(x[cell], confidence), mean_interval(y[cell], confidence),
+        )
+        for context in contexts(study)
+        for label, cell in context.cells.items()
+        if x[cell].size and y[cell].size
+    ]  # fmt: skip
+    if not points:
+        return
+    labels = [label for label in compared_labels(study) if any(p.level == label for p in points)]
+    factors = " / ".join(contexts(study)[0].levels)
+    tags = f" Beside each point: {factors}." if factors else ""
+    time, clearance = metric(name), metric("minimum_clearance")
+    yield Picture(
+        name="tradeoff",
+        section="trade-off",
+        caption=(
+            f"Mean {time.label} against mean {clearance.label} of each cell, with "
+            f"{100.0 * confidence:g} % intervals of the means (Student's t). Up and to the left is "
+            f"better; a thin line joins cells that differ in {study.definition.comparison.factor} "
+            f"alone.{tags}"
+        ),
+        alt="; ".join(
+            f"{p.context} {p.level}: {p.x:.2f} {time.unit}, {p.y:.2f} {clearance.unit}"
+            for p in points
+        ),
+        figure=tradeoff_figure(
+            sorted(points, key=lambda point: labels.index(point.level)),
+            level_colours(compared_labels(study), baseline_label(study)),
+            x_label=(f"Mean {time.label}", time.unit),
+            y_label=(f"Mean {clearance.label}", clearance.unit),
+        ),
+    )
+
+
+def _tag(context: Context) -> str:
+    return " / ".join(context.levels.values())
+
+
+def mean_interval(values: NDArray[np.float64], confidence: float) -> tuple[float, float]:
+    """Student's interval of a mean; the mean itself where there is one value, or all are equal."""
+    mean = float(values.mean())
+    if values.size < 2:
+        return mean, mean
+    half = float(stats.t.ppf((1.0 + confidence) / 2.0, values.size - 1))
+    half *= float(values.std(ddof=1)) / math.sqrt(values.size)
+    return mean - half, mean + half

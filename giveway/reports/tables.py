@@ -1,0 +1,317 @@
+"""A study's frames as tables for people: words for names, units, digits that mean something."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from giveway.reports.study import contexts, level_label, short_name
+from giveway.reports.wording import digits_for, interval, number, pretty_unit, quantity, share
+from giveway.studies.statistics import METRICS, metric
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from giveway.reports.choice import WorstRun
+    from giveway.reports.study import Study
+
+SHOWN_IN_CELLS = (
+    "completion_time",
+    "longest_wait",
+    "rms_jerk",
+    "minimum_clearance",
+    "minimum_ttc",
+    "mpc_feasibility_rate",
+)
+MOST_FAILURES = 200
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell of a table.
+
+    Attributes:
+        text: what it says.
+        kind: class of its look: number, better, worse, none, na, code.
+        link: of the text; relative to the report.
+    """
+
+    text: str
+    kind: str = ""
+    link: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of the report.
+
+    Attributes:
+        name: its id in the page.
+        caption: what it shows.
+        headings: of the columns; those of numbers are told by their cells.
+        rows: of cells, as many as headings.
+        filters: columns by whose values rows can be chosen.
+        note: beneath it.
+    """
+
+    name: str
+    caption: str
+    headings: Sequence[str]
+    rows: Sequence[Sequence[Cell]]
+    filters: tuple[int, ...] = ()
+    note: str = ""
+
+    @property
+    def numeric(self) -> list[bool]:
+        """Which columns hold numbers."""
+        return [
+            bool(self.rows) and all(row[k].kind in {"number", "na"} for row in self.rows)
+            for k in range(len(self.headings))
+        ]
+
+
+def _number(value: float, digits: int = 2) -> Cell:
+    return Cell(number(value, digits), "number" if math.isfinite(value) else "na")
+
+
+def _whole(value: object) -> Cell:
+    return Cell(f"{int(str(value).partition('.')[0]):,}", "number")
+
+
+def verdict_cell(verdict: str) -> Cell:
+    """Better, worse, no difference shown, N.A., in its colour."""
+    kinds = {"better": "better", "worse": "worse", "N.A.": "na"}
+    return Cell(verdict, kinds.get(verdict, "none"))
+
+
+def comparison_table(study: Study) -> Table:
+    """The whole comparison."""
+    frame = study.comparison
+    factors = [name for name in _factors(study) if name in frame.columns]
+    who = [name for name in ("ego", "treatment") if frame[name].nunique() > 1]
+    headings = [*(short_name(name) for name in factors), *who, "situation", "metric"]
+    filters = tuple(range(len(headings)))
+    headings += ["unit", "n", "share", "treatment mean", "baseline mean", "mean difference"]
+    headings += ["interval", "median difference", "q", "verdict"]
+    rows = [
+        [
+            *(_level(row[name]) for name in (*factors, *who)),
+            Cell(row["situation"]),
+            Cell(metric(row["metric"]).label),
+            *_numbers(row),
+        ]
+        for row in frame.to_dict("records")
+    ]
+    percent = 100.0 * study.definition.comparison.confidence
+    return Table(
+        name="comparison-table",
+        caption=f"Paired differences, treatment minus baseline, with {percent:g} % intervals",
+        headings=headings,
+        rows=rows,
+        filters=(*filters, len(headings) - 1),
+    )
+
+
+def _numbers(row: Mapping[Any, Any]) -> list[Cell]:
+    digits = digits_for(row["ci_high"] - row["ci_low"])
+    return [
+        Cell(pretty_unit(level_label(row["unit"]))),
+        _whole(row["n"]),
+        Cell(share(row["share"]), "number"),
+        _number(row["treatment_mean"], max(digits, 2)),
+        _number(row["baseline_mean"], max(digits, 2)),
+        _number(row["mean_difference"], digits),
+        Cell(interval(row["ci_low"], row["ci_high"])),
+        _number(row["median_difference"], digits),
+        _probability(row["q_value"]),
+        verdict_cell(str(row["verdict"])),
+    ]
+
+
+def _probability(value: float) -> Cell:
+    if math.isfinite(value) and value < 0.001:
+        return Cell("< 0.001", "number")
+    return _number(value, 3)
+
+
+def glance_table(study: Study) -> Table:
+    """Every metric in the general situation: a row each, a column per context and treatment."""
+    frame = study.comparison[study.comparison["situation"] == "general"]
+    several = frame["treatment"].nunique() > 1
+    egos = frame["ego"].nunique() > 1
+    names = _factors(study)
+    columns: dict[str, dict[str, Mapping[Any, Any]]] = {}
+    for row in frame.to_dict("records"):
+        parts = [f"{short_name(name)} = {level_label(row[name])}" for name in names]
+        parts += [level_label(row["treatment"])] if several or not names else []
+        parts += [f"ego {row['ego']}"] if egos else []
+        columns.setdefault(", ".join(parts), {})[str(row["metric"])] = row
+    rows = []
+    for known in METRICS:
+        cells = [_glance(column.get(known.name)) for column in columns.values()]
+        if any(cell.kind != "na" for cell in cells):
+            unit = f" [{pretty_unit(known.unit)}]" if known.unit else ""
+            rows.append([Cell(known.label + unit, link=f"#metric-{known.name}"), *cells])
+    return Table(
+        name="glance-table",
+        caption="Mean differences of all pairs: better, worse, or = no difference shown",
+        headings=["metric", *columns],
+        rows=rows,
+    )
+
+
+def _glance(row: Mapping[Any, Any] | None) -> Cell:
+    if row is None or not math.isfinite(row["mean_difference"]) or row["verdict"] == "N.A.":
+        return Cell("N.A.", "na")
+    text = number(row["mean_difference"], digits_for(row["ci_high"] - row["ci_low"]))
+    verdict = str(row["verdict"])
+    return Cell(f"{text} {verdict if verdict in {'better', 'worse'} else '='}",
+                verdict_cell(verdict).kind)  # fmt: skip
+
+
+def situations_table(study: Study) -> Table:
+    """How often both, one or neither stopped."""
+    frame = study.situations
+    factors = [name for name in _factors(study) if name in frame.columns]
+    who = [name for name in ("ego", "treatment") if frame[name].nunique() > 1]
+    shares = {
+        "share_both_stop": "both stop",
+        "share_neither_stops": "neither stops",
+        "share_only_treatment_stops": "only treatment stops",
+        "share_only_baseline_stops": "only baseline stops",
+    }
+    rows = [
+        [
+            *(_level(row[name]) for name in (*factors, *who)),
+            _whole(row["pairs"]),
+            *(Cell(share(row[name]), "number") for name in shares),
+            _whole(row["lost"]),
+            _whole(row["incomplete"]),
+        ]
+        for row in frame.to_dict("records")
+    ]
+    headings = [*(short_name(name) for name in factors), *who, "pairs", *shares.values()]
+    return Table(
+        name="situations-table",
+        caption="How often the vehicle had to stop",
+        headings=[*headings, "lost", "incomplete"],
+        rows=rows,
+        note="Lost: one side has no result. Incomplete: one side did not reach its goal.",
+    )
+
+
+def cells_table(study: Study) -> Table:
+    """Each cell: its levels, its runs, means of the main metrics."""
+    runs = study.runs
+    names = [factor.name for factor in study.design.factors]
+    shown = [
+        name for name in SHOWN_IN_CELLS if pd.to_numeric(runs[name], errors="coerce").notna().any()
+    ]
+    rows = []
+    for cell in study.design.cells:
+        here = runs[runs["cell"] == cell.number]
+        lost = here["ending"].isin(["failed", "crashed"])
+        rows.append(
+            [
+                _whole(cell.number),
+                *(_level(cell.levels[name].label) for name in names),
+                _whole(here["run"].nunique()),
+                _whole(int(lost.sum())),
+                Cell(share(_completed(here[~lost])), "number"),
+                *(_mean(here[name]) for name in shown),
+            ]
+        )
+    quantities = [_with_unit(name) for name in shown]
+    return Table(
+        name="cells-table",
+        caption="The cells of the study, with means over their runs",
+        headings=["cell", *map(short_name, names), "runs", "no result", "completed", *quantities],
+        rows=rows,
+    )
+
+
+def _completed(rows: pd.DataFrame) -> float:
+    return float(rows["completed"].astype(float).mean()) if len(rows) else math.nan
+
+
+def _mean(column: pd.Series) -> Cell:
+    values = pd.to_numeric(column, errors="coerce").to_numpy(float)
+    values = values[np.isfinite(values)]
+    return _number(float(values.mean()) if values.size else math.nan)
+
+
+def worst_tables(worst: Iterable[WorstRun], replays: Mapping[str, str]) -> list[Table]:
+    """One table per reason; runs link to their replay."""
+    groups: dict[str, list[WorstRun]] = {}
+    for run in worst:
+        groups.setdefault(run.reason, []).append(run)
+    tables = []
+    for number_, (reason, runs) in enumerate(groups.items(), start=1):
+        paired = any(run.partner for run in runs)
+        what = "difference of " if paired else ""
+        headings = [what + metric(runs[0].metric).label, "run"]
+        headings += ["baseline's run"] if paired else []
+        egos = any(run.ego not in {"", "ego"} for run in runs)
+        headings += ["ego"] if egos else []
+        rows = [
+            [
+                Cell(quantity(run.value, run.unit), "number"),
+                Cell(run.run, link=replays.get(run.run, "")),
+                *([Cell(run.partner, link=replays.get(run.partner, ""))] if paired else []),
+                *([Cell(run.ego)] if egos else []),
+                Cell(run.cell),
+            ]
+            for run in runs
+        ]
+        tables.append(Table(f"worst-{number_}", reason, [*headings, "levels"], rows))
+    return tables
+
+
+def failures_table(study: Study) -> Table:
+    """Runs without a result, why, and how to make them again."""
+    frame = study.failures
+    rows = [
+        [
+            Cell(str(row["run"])),
+            Cell(str(row["ending"])),
+            Cell(str(row["cause"])),
+            Cell(str(row["reproduce"]), "code"),
+        ]
+        for row in frame.head(MOST_FAILURES).to_dict("records")
+    ]
+    more = len(frame) - len(rows)
+    return Table(
+        name="failures-table",
+        caption="Runs without a result",
+        headings=["run", "ending", "cause", "to make it again"],
+        rows=rows,
+        note=f"{more:,} more are in failures.csv." if more > 0 else "",
+    )
+
+
+def settings_table(name: str, caption: str, values: Mapping[str, object]) -> Table:
+    """Names and values, as in a manifest."""
+    rows = [[Cell(str(key)), Cell(str(value))] for key, value in values.items()]
+    return Table(name, caption, ["name", "value"], rows)
+
+
+def _factors(study: Study) -> list[str]:
+    return list(contexts(study)[0].levels) if study.design.cells else []
+
+
+def _level(value: object) -> Cell:
+    label = level_label(value)
+    try:
+        float(label)
+    except ValueError:
+        return Cell(label)
+    return Cell(label, "number")
+
+
+def _with_unit(name: str) -> str:
+    known = metric(name)
+    return f"{known.label} [{pretty_unit(known.unit)}]" if known.unit else known.label

@@ -1,0 +1,35 @@
+"""How numbers, units and identities are written in a report."""
+
+from __future__ import annotations
+
+import math
+
+from giveway.figures.study_rows import digits_for, number, pretty_unit
+
+__all__ = ["digits_for", "interval", "number", "pretty_unit", "quantity", "share", "shown_ego"]
+
+_USUAL_EGO = frozenset({"", "ego"})
+
+
+def shown_ego(ego: object) -> str:
+    """The ego's id, where it says something."""
+    return "" if str(ego) in _USUAL_EGO else f" (ego {ego})"
+
+
+def quantity(value: float, unit: str, digits: int = 2) -> str:
+    """A number with its unit: "−0.57 s"."""
+    text = number(value, digits)
+    return f"{text} {pretty_unit(unit)}" if unit and math.isfinite(value) else text
+
+
+def interval(low: float, high: float, unit: str = "") -> str:
+    """Both ends as in "−0.84 to −0.31 s"; a dash where there is none."""
+    if not (math.isfinite(low) and math.isfinite(high)):
+        return "–"
+    digits = digits_for(high - low)
+    return f"{number(low, digits)} to {quantity(high, unit, digits)}"
+
+
+def share(value: float) -> str:
+    """A share in per cent."""
+    return f"{100.0 * value:.1f} %" if math.isfinite(value) else "–"
