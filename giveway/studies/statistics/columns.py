@@ -20,7 +20,7 @@ COMPARISON_COLUMNS = (
     _SITUATION,
     *_METRIC,
     Column("n", "integer", None, "pairs in the situation with a number on both sides"),
-    Column("share", "number", None, "n over all pairs that are not lost"),
+    Column("share", "number", None, "of the situation among the pairs that are not lost"),
     Column("treatment_mean", "number", None, "mean over the treatment's side of the n pairs"),
     Column("baseline_mean", "number", None, "mean over the baseline's side of the n pairs"),
     Column("mean_difference", "number", None, "mean of treatment minus baseline, pair by pair"),
@@ -41,7 +41,7 @@ SITUATION_COLUMNS = (
     Column("share_neither_stops", "number", None, "of the pairs that are not lost"),
     Column("share_only_treatment_stops", "number", None, "of the pairs that are not lost"),
     Column("share_only_baseline_stops", "number", None, "of the pairs that are not lost"),
-    Column("lost", "integer", None, "pairs of which a side failed, crashed or has no such ego"),
+    Column("lost", "integer", None, "pairs of which a side failed or crashed"),
     Column("incomplete", "integer", None, "pairs, not lost, of which a side missed its goal"),
 )
 
@@ -69,7 +69,7 @@ TABLE_2_COLUMNS = (
     Column("ci_low", "number", "s", "lower end of our interval"),
     Column("ci_high", "number", "s", "upper end of our interval"),
     Column("n", "integer", None, "our pairs in the situation"),
-    Column("share", "number", None, "n over all pairs that are not lost"),
+    Column("share", "number", None, "of the situation among the pairs that are not lost"),
     Column("verdict", "string", None, "better, worse, no difference shown, or N.A."),
     Column("agreement", "string", None, "inside, below, above our interval; empty: no number"),
 )

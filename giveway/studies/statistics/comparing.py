@@ -14,7 +14,7 @@ from giveway.studies.statistics.metrics import METRICS
 from giveway.studies.statistics.pairs import other_factors, paired
 from giveway.studies.statistics.rounding import mean, median, tabulated, to_decimals
 from giveway.studies.statistics.signed_rank import SignedRank, q_values, signed_rank
-from giveway.studies.statistics.situations import SITUATIONS, kept, within
+from giveway.studies.statistics.situations import SITUATIONS, share, within
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Mapping
@@ -110,14 +110,13 @@ def _row(
     pairs: Pairs, metric: Metric, situation: Situation, comparison: Comparison
 ) -> dict[str, object]:
     found = differences(pairs, metric.name, situation)
-    seen = np.count_nonzero(kept(pairs))
     row: dict[str, object] = {
         **pairs.row,
         "situation": situation,
         "metric": metric.name,
         "unit": metric.unit,
         "n": len(found),
-        "share": len(found) / seen if seen else np.nan,
+        "share": share(pairs, situation),
         "better": metric.better,
         "interval": "",
     }

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 DECIMALS = 6
+_PER_ONE = 10.0**DECIMALS
 _DIGITS = 6
 _PROBABILITIES = frozenset({"p_value", "q_value"})
 _COARSE = 1e9  # beyond it a double's last digit is larger than the sixth decimal
@@ -39,20 +40,27 @@ def tabulated(frame: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
     return frame
 
 
-def scale_of(values: Array) -> float:
-    """A power of two near the largest magnitude: dividing by it costs no bit, sums stay finite."""
+def in_units(values: Array) -> tuple[Array, float]:
+    """Finite numbers as whole ones, whose sums are exact and equal in any order.
+
+    Returns:
+        ``values`` in units of the sixth decimal, and the units per one. Numbers beyond 1e9 are
+        only scaled, by a power of two that keeps their sums finite.
+    """
     largest = float(np.max(np.abs(values), initial=0.0))
-    exponent = math.frexp(largest)[1] - 1  # the largest double itself has no power of two above
-    return math.ldexp(1.0, max(exponent, -1000)) if largest > 0.0 else 1.0
+    if largest < _COARSE:
+        return np.rint(values * _PER_ONE), _PER_ONE
+    per_one = math.ldexp(1.0, 1 - math.frexp(largest)[1])
+    return values * per_one, per_one
 
 
 def mean(values: Array) -> float:
     """The mean of finite numbers, however large."""
-    scale = scale_of(values)
-    return float(np.mean(values / scale)) * scale
+    whole, per_one = in_units(values)
+    return float(np.sum(whole)) / whole.size / per_one
 
 
 def median(values: Array) -> float:
     """The median of finite numbers, however large."""
-    scale = scale_of(values)
-    return float(np.median(values / scale)) * scale
+    whole, per_one = in_units(values)
+    return float(np.median(whole)) / per_one

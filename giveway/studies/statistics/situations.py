@@ -47,16 +47,13 @@ def _row(pairs: Pairs) -> dict[str, object]:
     seen = kept(pairs)
     arrived = np.isfinite(pairs.of("completion_time")).all(axis=0)
 
-    def share(which: Mask) -> float:
-        return float(np.mean(which[seen])) if seen.any() else np.nan
-
     return {
         **pairs.row,
         "pairs": len(pairs),
-        "share_both_stop": share(treated & based),
-        "share_neither_stops": share(~treated & ~based),
-        "share_only_treatment_stops": share(treated & ~based),
-        "share_only_baseline_stops": share(~treated & based),
+        "share_both_stop": _mean(treated & based, seen),
+        "share_neither_stops": _mean(~treated & ~based, seen),
+        "share_only_treatment_stops": _mean(treated & ~based, seen),
+        "share_only_baseline_stops": _mean(~treated & based, seen),
         "lost": int(np.count_nonzero(~seen)),
         "incomplete": int(np.count_nonzero(seen & ~arrived)),
     }
@@ -76,6 +73,15 @@ def within(pairs: Pairs, situation: Situation) -> Mask:
     if situation == "non-stop":
         return seen & ~treated & ~based
     return seen
+
+
+def share(pairs: Pairs, situation: Situation) -> float:
+    """Of the pairs that are not lost, how many are in the situation; nan if all are lost."""
+    return _mean(within(pairs, situation), kept(pairs))
+
+
+def _mean(which: Mask, among: Mask) -> float:
+    return float(np.mean(which[among])) if among.any() else np.nan
 
 
 def _stopped(pairs: Pairs) -> tuple[Mask, Mask]:

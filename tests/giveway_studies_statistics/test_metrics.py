@@ -1,0 +1,25 @@
+"""What is compared: numbers of the summary, each with its unit and its better side."""
+
+import pytest
+
+from giveway.errors import ConfigError
+from giveway.metrics import SUMMARY_FIELDS
+from giveway.studies.statistics import METRICS, metric
+
+UNITS = {column.name: column.unit or "" for column in SUMMARY_FIELDS}
+
+
+@pytest.mark.parametrize("each", METRICS, ids=lambda each: each.name)
+def test_every_metric_is_a_column_of_the_summary_with_its_unit(each) -> None:
+    assert UNITS[each.name] == each.unit
+    assert metric(each.name) is each
+
+
+def test_what_is_left_out_says_nothing_about_a_controller() -> None:
+    left = set(UNITS) - {each.name for each in METRICS}
+    assert left == {"completed", "simulated_time", "travelled_distance", "maximum_speed"}
+
+
+def test_a_name_without_any_likeness_lists_them_all(refused) -> None:
+    with refused(ConfigError, "colour", "completion_time, longest_wait"):
+        metric("colour")
