@@ -39,6 +39,7 @@ _SHOWN = (
     "minimum_gap", "minimum_clearance", "overlaps", "minimum_ttc", "minimum_pet",
     "peak_deceleration", "rms_jerk",
 )  # fmt: skip
+_SPELT = ("mpc", "ttc", "pet", "rms")
 _BODY = (5.0, 2.0)  # [m] of an ego, where the folder does not tell
 _BEYOND = 150.0  # [m] of corridor beyond the end of the drive
 _CAR = (4.3, 1.8)  # [m] SUMO's passenger car, likewise
@@ -241,14 +242,20 @@ def _summary(row: dict[str, Any]) -> list[dict[str, Any]]:
     columns = {column.name: column for column in SUMMARY_FIELDS}
     return [
         {
-            "label": name.replace("_", " "),
+            "label": _label(name),
             "value": row[name] if _is_number(row[name]) else None,
-            "unit": columns[name].unit or "",
+            "unit": (columns[name].unit or "").replace("^2", "²").replace("^3", "³"),
             "meaning": columns[name].description,
         }
         for name in _SHOWN
         if name in row
     ]
+
+
+def _label(name: str) -> str:
+    """A column's name in words; abbreviations as they are spoken."""
+    words = (word.upper() if word in _SPELT else word for word in name.split("_"))
+    return " ".join(words)
 
 
 def _is_number(value: object) -> bool:

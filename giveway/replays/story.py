@@ -62,7 +62,7 @@ def events(rows: pd.DataFrame, people: pd.DataFrame, config: RunConfig) -> list[
         for start, end in _phases(acting, time):
             at = int(np.searchsorted(time, start))
             told = why(str(rows["reason"].iloc[at]), str(rows["solver_status"].iloc[at]))
-            found.append(_event("pid", start, end, f"PID takes over: {told['text']}"))
+            found.append(_event("pid", start, end, told["text"]))
     found += _encounters(people)
     return sorted(found, key=lambda event: (event["from"], event["to"], event["kind"]))
 

@@ -35,6 +35,7 @@ function clamp(value, low, high) {
 /** A number for people to read; an absent one is a dash. */
 function readable(value, digits = 2, unit = "") {
   if (value === null || !Number.isFinite(value)) return "–";
-  const text = value.toFixed(digits).replace("-", "−");
+  const zero = Math.abs(value) < 0.5 * 10 ** -digits; // without a sign
+  const text = (zero ? 0 : value).toFixed(digits).replace("-", "−");
   return unit ? `${text} ${unit}` : text;
 }

@@ -31,7 +31,7 @@ const player = {
   play(on) {
     if (on && this.time >= END) this.time = START;
     this.playing = on;
-    $("play").textContent = on ? "❚❚" : "▶";
+    $("play").classList.toggle("playing", on);
     $("play").setAttribute("aria-label", on ? "pause" : "play");
     this.redraw();
     noteTime();

@@ -13,19 +13,23 @@ const ROAD = (() => {
   return road;
 })();
 
+const LABEL_SIDES = [[-1, 0], [0, 1], [1, 0]]; // of 10, 100, 1000 N in the vehicle's frame
+
 /** Lines of equal force: one path per speed and level, in the vehicle's frame. */
 const CONTOURS = RUN.contours.map((kind) => {
   const x = metres(kind.x);
   const y = metres(kind.y);
   const paths = kind.lines.map((levels) =>
-    levels.map((starts) => {
+    levels.map((starts, level) => {
+      const outwards = LABEL_SIDES[level % LABEL_SIDES.length];
       const path = new Path2D();
-      let label = null; // the foremost point
+      let label = null; // each level has its own side: at the nose they meet
       for (let piece = 0; piece + 1 < starts.length; piece++) {
         for (let i = starts[piece]; i < starts[piece + 1]; i++) {
           if (i === starts[piece]) path.moveTo(x[i], y[i]);
           else path.lineTo(x[i], y[i]);
-          if (!label || x[i] > label[0]) label = [x[i], y[i]];
+          const out = x[i] * outwards[0] + y[i] * outwards[1];
+          if (!label || out > label.out) label = { x: x[i], y: y[i], out, outwards };
         }
       }
       return { path, label };
@@ -36,8 +40,9 @@ const CONTOURS = RUN.contours.map((kind) => {
 
 const layers = { corridor: true, influence: true, predictions: true, people: true, road: true };
 const selected = { person: -1, ego: 0 };
-const FADED = [0.95, 0.25]; // opacity of the nearest and the farthest prediction
+const FADED = [1, 0.3]; // opacity of the nearest and the farthest prediction
 const CORRIDOR_BEYOND = 12; // [m] of corridor drawn beyond the safe distance
+const LEAD = 3; // [m] that the middle of the picture is ahead of a followed ego
 const SIGHT = 100; // [m] along its path an ego looks out for people
 
 function toScene() {
@@ -54,7 +59,7 @@ function drawScene(t) {
   const states = EGOS.map((ego) => ego.at(t));
   if (view.follow) {
     const state = states[selected.ego];
-    if (state) [view.x, view.y] = [state.centreX, state.centreY];
+    if (state) [view.x, view.y] = [state.x + LEAD * state.cos, state.y + LEAD * state.sin];
   }
   pen.setTransform(1, 0, 0, 1, 0, 0);
   pen.fillStyle = colours.ground;
@@ -116,17 +121,29 @@ function drawInfluence(ego, state) {
     toScene();
     pen.translate(state.centreX, state.centreY);
     pen.rotate(state.heading);
-    pen.globalAlpha = 0.55 + 0.2 * l;
+    pen.globalAlpha = 0.6 + 0.2 * l;
     pen.lineWidth = (0.9 + 0.45 * l) / view.scale;
     pen.stroke(path);
-    if (view.scale < 7) return;
-    const x = state.centreX + label[0] * state.cos - label[1] * state.sin;
-    const y = state.centreY + label[0] * state.sin + label[1] * state.cos;
+    if (view.scale < 9) return;
+    const [dx, dy] = turned(state, ...label.outwards);
+    const [x, y] = turned(state, label.x, label.y);
     toPixels();
+    pen.globalAlpha = 1;
     pen.font = "10px system-ui, sans-serif";
-    pen.fillText(`${level} N`, toScreenX(x) + 3 * state.cos, toScreenY(y) - 4);
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    const text = `${level} N`;
+    const away = 8 + 14 * Math.abs(dx); // wide to the sides
+    pen.fillText(
+      text, toScreenX(state.centreX + x) + away * dx, toScreenY(state.centreY + y) - away * dy,
+    );
   });
   pen.globalAlpha = 1;
+}
+
+/** A direction of a vehicle's frame in the scene's. */
+function turned(state, X, Y) {
+  return [X * state.cos - Y * state.sin, X * state.sin + Y * state.cos];
 }
 
 function drawPredictions(ego, t) {
@@ -135,7 +152,7 @@ function drawPredictions(ego, t) {
   const { start, look, looks, x, y } = ego.predicted;
   toPixels();
   pen.fillStyle = colours.prediction;
-  const radius = clamp(0.11 * view.scale, 1.2, 5);
+  const radius = clamp(0.11 * view.scale, 1.5, 5);
   for (let l = looks.length - 1; l >= 0; l--) {
     const share = looks.length > 1 ? l / (looks.length - 1) : 0;
     pen.globalAlpha = FADED[0] + share * (FADED[1] - FADED[0]);
@@ -201,7 +218,7 @@ function drawPeople(t, present) {
   kindOf.forEach((name, kind) => {
     pen.fillStyle = colours[name];
     pen.fill(bodies[kind]);
-    if (kind) pen.stroke(bodies[kind]);
+    if (kind && radius > 2.5) pen.stroke(bodies[kind]);
   });
   return found;
 }
@@ -251,5 +268,7 @@ function drawScale() {
   pen.lineTo(x + length * view.scale, y - 5);
   pen.stroke();
   pen.font = "11px system-ui, sans-serif";
+  pen.textAlign = "left";
+  pen.textBaseline = "alphabetic";
   pen.fillText(`${length} m`, x + 5, y - 5);
 }

@@ -1,0 +1,246 @@
+"""The page plays the run: what is drawn is what the tables say, and hands move it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+DRIVING, STANDING = 4.0, 6.9  # [s] under the MPC; under the PID
+
+
+@pytest.fixture(scope="module")
+def ego(recorded: Path) -> pd.DataFrame:
+    return pd.read_csv(recorded / "ego.csv", dtype={"id": str})
+
+
+def at(ego: pd.DataFrame, time: float) -> Any:
+    return ego.iloc[(ego["time"] - time).abs().argmin()]
+
+
+def tail(row: Any) -> tuple[float, float]:
+    """A place on the ego's body, away from the arrow on its front [m]."""
+    heading = np.radians(90.0 - row["angle"])
+    return row["x"] - 3.5 * np.cos(heading), row["y"] - 3.5 * np.sin(heading)
+
+
+@pytest.mark.parametrize("time", [1.0, DRIVING, STANDING])
+def test_the_ego_is_where_its_row_says_in_the_colour_of_who_drives(
+    watched: Any, ego: pd.DataFrame, time: float
+) -> None:
+    watched.seek(time)
+    row = at(ego, time)
+    assert watched.pixel(*watched.place(*tail(row))) == watched.colour(row["controller"])
+    assert watched.tab.inner_text("#badge") == row["controller"].upper()
+
+
+def test_it_moves_by_as_many_pixels_as_metres_and_scale_tell(
+    watched: Any, ego: pd.DataFrame
+) -> None:
+    rear = []
+    for time in (1.0, 2.0):
+        watched.seek(time)
+        row = at(ego, time)
+        x, y = watched.place(*tail(row))
+        ours = watched.columns(watched.colour("mpc"), y, "stage")
+        assert min(ours) < x < max(ours)
+        rear.append(min(ours))
+    driven = at(ego, 2.0)["x"] - at(ego, 1.0)["x"]
+    assert rear[1] - rear[0] == pytest.approx(
+        driven * watched.tab.evaluate("replay.scale"), abs=1.5
+    )
+
+
+def test_pedestrians_stand_at_their_places(watched: Any, recorded: Path) -> None:
+    rows = pd.read_csv(recorded / "trajectories.csv", dtype={"id": str})
+    people = rows[(rows["type"] == "pedestrian") & np.isclose(rows["time"], 3.0)]
+    for layer in ("influence", "predictions"):
+        watched.tab.uncheck(f"[data-layer={layer}]")
+    watched.seek(3.0)
+    bodies = {watched.colour(name) for name in ("person", "close", "inside")}
+    behind = np.radians(90.0 - people["angle"].to_numpy())  # away from the tick
+    x = people["x"] - 0.15 * np.cos(behind)
+    y = people["y"] - 0.15 * np.sin(behind)
+    seen = [watched.pixel(*watched.place(*place)) in bodies for place in zip(x, y, strict=True)]
+    assert len(seen) == 30
+    assert all(seen)
+
+
+@pytest.mark.parametrize("layer", ["influence", "prediction"])
+def test_a_layer_appears_and_disappears_with_its_switch(watched: Any, layer: str) -> None:
+    watched.tab.keyboard.press("f")  # close by
+    watched.seek(5.2)
+    box = {"influence": "influence", "prediction": "predictions"}[layer]
+    colour = watched.colour(layer)
+    with_it = watched.count(colour)
+    watched.tab.uncheck(f"[data-layer={box}]")
+    watched.settle()
+    assert with_it > 20
+    assert watched.count(colour) == 0
+
+
+def test_predictions_are_drawn_where_they_were_recorded(watched: Any, recorded: Path) -> None:
+    rows = pd.read_csv(recorded / "predictions.csv", dtype={"id": str})
+    time = rows["time"].iloc[0]
+    nearest = rows[(rows["time"] == time) & (rows["look_ahead"] == 0.75)]
+    for layer in ("people", "influence", "corridor", "road"):
+        watched.tab.uncheck(f"[data-layer={layer}]")
+    watched.seek(time)
+    ground = watched.colour("ground")
+    places = zip(nearest["x"], nearest["y"], strict=True)
+    drawn = [watched.pixel(*watched.place(*place)) != ground for place in places]
+    assert np.mean(drawn) == 1.0
+    watched.seek(time - 0.1)  # none had been made by then
+    assert watched.count(watched.colour("prediction")) == 0
+
+
+def test_keys_move_time(watched: Any, ego: pd.DataFrame) -> None:
+    instants = ego["time"].to_numpy()
+    press = watched.tab.keyboard.press
+    press("End")
+    assert watched.time == pytest.approx(instants[-1])
+    press("ArrowLeft")
+    assert watched.time == pytest.approx(instants[-2])
+    press("Shift+ArrowLeft")
+    assert watched.time == pytest.approx(instants[-2] - 1.0)
+    press("Home")
+    assert watched.time == pytest.approx(instants[0])
+    press("ArrowRight")
+    assert watched.time == pytest.approx(instants[1])
+    before = watched.time
+    press("ArrowUp")
+    assert watched.tab.input_value("#speed") == "2"
+    press(" ")
+    watched.tab.wait_for_timeout(300)
+    press(" ")
+    stopped = watched.time
+    assert stopped > before + 0.2
+    watched.tab.wait_for_timeout(100)
+    assert watched.time == stopped
+
+
+def test_the_scrubber_and_the_charts_move_time(watched: Any) -> None:
+    scrubber = watched.tab.locator("#scrubber").bounding_box()
+    middle = scrubber["x"] + scrubber["width"] / 2
+    watched.tab.mouse.click(middle, scrubber["y"] + scrubber["height"] / 2)
+    assert watched.time == pytest.approx(3.5, abs=0.1)
+    charts = watched.tab.locator("#charts").bounding_box()
+    watched.tab.mouse.click(charts["x"] + 46, charts["y"] + 60)
+    assert watched.time == pytest.approx(0.0, abs=0.02)
+
+
+def test_the_charts_cursor_is_at_the_time(watched: Any) -> None:
+    box = watched.tab.locator("#charts").bounding_box()
+    columns = []
+    for time in (1.75, 5.25):
+        watched.seek(time)
+        dark = watched.columns(watched.colour("ink"), 4.0, "charts")  # its round head
+        assert max(dark) - min(dark) < 10
+        columns.append(float(np.mean(dark)))
+    plot = box["width"] - 46 - 14
+    assert columns == pytest.approx([46 + plot / 4, 46 + 3 * plot / 4], abs=2.0)
+
+
+def test_the_address_points_at_an_instant(watch: Callable[..., Any], page: Path) -> None:
+    watched = watch(page, at="#t=3.2")
+    assert watched.time == pytest.approx(3.2)
+    watched.seek(4.5)
+    assert watched.tab.evaluate("location.hash") == "#t=4.5"
+    watched.tab.evaluate("location.hash = '#t=2'")
+    watched.tab.wait_for_function("replay.time === 2")
+
+
+def test_wheel_keys_and_drag_change_the_view_and_follow_keeps_the_ego_in_it(
+    watched: Any, ego: pd.DataFrame
+) -> None:
+    scale = watched.tab.evaluate("replay.scale")
+    box = watched.tab.locator("#stage").bounding_box()
+    x, y = box["x"] + 300, box["y"] + 200
+    watched.tab.mouse.move(x, y)
+    watched.tab.mouse.wheel(0, -200)
+    watched.tab.wait_for_function("scale => replay.scale > 1.2 * scale", arg=scale)
+    watched.tab.keyboard.press("-")
+    before = watched.place(20.0, 0.0)
+    watched.tab.mouse.down()
+    watched.tab.mouse.move(x + 50, y + 30, steps=3)
+    watched.tab.mouse.up()
+    after = watched.place(20.0, 0.0)
+    assert np.subtract(after, before) == pytest.approx([50.0, 30.0], abs=0.5)
+    watched.tab.keyboard.press("f")
+    middles = []
+    for time in (1.0, STANDING):
+        watched.seek(time)
+        middles.append(watched.place(*at(ego, time)[["x", "y"]]))
+    assert middles[0] == pytest.approx(middles[1], abs=1.0)
+
+
+def test_a_click_on_a_pedestrian_tells_who_it_is(watched: Any, recorded: Path) -> None:
+    rows = pd.read_csv(recorded / "trajectories.csv", dtype={"id": str})
+    now = rows[(rows["type"] == "pedestrian") & np.isclose(rows["time"], 3.0)]
+    loneliest = now.assign(
+        apart=[np.sort(np.hypot(now["x"] - row.x, now["y"] - row.y))[1] for row in now.itertuples()]
+    ).nlargest(1, "apart")
+    person = loneliest.iloc[0]
+    watched.seek(3.0)
+    box = watched.tab.locator("#stage").bounding_box()
+    x, y = watched.place(person["x"], person["y"])
+    watched.tab.mouse.click(box["x"] + x, box["y"] + y)
+    watched.settle()
+    assert watched.tab.inner_text("#person-id") == person["id"]
+    speed = float(watched.tab.inner_text("#person-speed").split()[0])
+    assert speed == pytest.approx(person["speed"], abs=0.011)
+
+
+def test_time_to_collision_and_distance_are_those_of_the_metrics(
+    watched: Any, recorded: Path
+) -> None:
+    people = pd.read_csv(recorded / "pedestrians.csv", dtype={"id": str})
+    for what, minimum in (("clearance", "minimum_clearance"), ("timeToCollision", "minimum_ttc")):
+        row = people.loc[people[minimum].idxmin()]
+        measure = f"""([name, t]) => {{
+          const who = PEOPLE.names.indexOf(name);
+          let found = null;
+          PEOPLE.each(t, (at) => {{ if (at.who === who) found = {{...at}}; }});
+          const state = EGOS[0].at(t);
+          return {what} === clearance ? clearance(EGOS[0], state, found.x, found.y)
+            : timeToCollision(EGOS[0], state, found);
+        }}"""
+        value = watched.tab.evaluate(measure, [row["id"], row[f"time_of_{minimum}"]])
+        assert value == pytest.approx(row[minimum], abs=0.02)
+
+
+def test_an_event_leads_to_its_instant(watched: Any, ego: pd.DataFrame) -> None:
+    acting = ego["controller"].to_numpy()
+    first = next(i + 1 for i, (a, b) in enumerate(pairwise(acting)) if (a, b) == ("mpc", "pid"))
+    watched.tab.locator("#events button", has_text="PID").first.click()
+    assert watched.time == pytest.approx(ego["time"].iloc[first])
+    assert "QP infeasible" in watched.tab.inner_text(".wheel")
+
+
+def test_it_complains_about_nothing_and_asks_nobody(watched: Any) -> None:
+    watched.tab.keyboard.press(" ")
+    watched.tab.wait_for_timeout(200)
+    watched.tab.keyboard.press("?")
+    assert watched.tab.locator("#help").is_visible()
+    watched.tab.keyboard.press("Escape")
+    assert watched.complaints == []
+    assert watched.requests == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_phone_shows_it_without_scrolling_sideways(
+    watch: Callable[..., Any], page: Path, scheme: str
+) -> None:
+    watched = watch(
+        page, viewport={"width": 400, "height": 800}, color_scheme=scheme, has_touch=True
+    )
+    assert watched.tab.evaluate("document.documentElement.scrollWidth") <= 400
+    assert watched.pixel(3, 30) == watched.colour("ground")
+    assert (sum(watched.colour("ground")) < 300) == (scheme == "dark")
