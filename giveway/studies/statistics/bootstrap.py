@@ -3,7 +3,7 @@
 Efron 1987, "Better bootstrap confidence intervals", J. Am. Stat. Assoc. 82, 171-185; the equations
 are numbered as in Efron & Tibshirani 1993, "An Introduction to the Bootstrap", chapter 14. A kernel
 draws the resamples from a generator that is written out here: the same differences give the same
-interval with any version of any library, six times as fast as scipy's general bootstrap.
+interval with any version of any library, several times as fast as scipy's general bootstrap.
 """
 
 from __future__ import annotations
