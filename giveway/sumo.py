@@ -74,7 +74,7 @@ class SumoSession:
         if SumoSession._running:
             msg = "SUMO: a simulation is already running; libsumo holds one per process, close it"
             raise SumoError(msg)
-        self.module = self._sumo = _import_libsumo()
+        self.module = self._sumo = import_libsumo()
         self._config_file = scenario.config_file
         self._native_log = native_log
         self._extra = options.extra
@@ -302,7 +302,12 @@ def _compare(
         raise SumoError(msg)
 
 
-def _import_libsumo() -> Any:
+def import_libsumo() -> Any:
+    """The module.
+
+    Raises:
+        InstallationError: it cannot be imported.
+    """
     try:
         import libsumo
     except ImportError as error:

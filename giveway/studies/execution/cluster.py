@@ -36,10 +36,11 @@ Future = Any
 
 PATIENCE: Final = 300.0  # [s] to wait for a scheduler or worker to come back
 _LOCAL: Final = re.compile(r"local(?::([1-9]\d*))?")
+_REMOTE: Final = re.compile(r"(?!local:)([\w.+-]+://\S+|[\w.-]+:\d+)")
 _LOCAL_WORKERS: Final = 2
 _AHEAD: Final = 3  # runs per worker that are handed out: the network must not be waited for
 _LOOK: Final = 1.0  # [s] between two looks at the cluster, and at Ctrl-C
-_CONNECT: Final = 10.0  # [s] for one attempt
+_CONNECT: Final = 5.0  # [s] for one attempt
 _FETCH: Final = 30.0  # [s] for a result to arrive, or its worker has died meanwhile
 _FAREWELL: Final = 5.0  # [s] for the workers to end the study's processes
 
@@ -67,7 +68,7 @@ class ClusterExecutor:
     ) -> None:
         _require_dask()
         local = _LOCAL.fullmatch(address)
-        if local is None and not re.fullmatch(r"(\w+://)?[^\s/:]+:\d+|(\w+://)\S+", address):
+        if local is None and not _REMOTE.fullmatch(address):
             msg = f"cluster '{address}': expected tcp://host:port of a Dask scheduler, or local:N"
             raise WorkerError(msg)
         self._address = address

@@ -37,7 +37,7 @@ Delivery = Callable[[RunRecord | Exception], None]
 
 _IDLE_LIMIT: Final = 300.0  # [s] after which a worker without work gives its memory back
 _VAIN_STARTS: Final = 5  # deaths without a finished run in between: it is not by accident
-_PAUSE: Final = 0.2  # [s] after the first of them; it doubles: memory may become free
+_PAUSE: Final = 0.1  # [s] after the first of them; it doubles: memory may become free
 _LOOK: Final = 1.0  # [s] after which a waiting caller looks whether the pool has been closed
 _JOIN: Final = 10.0  # [s] for a slot to notice that its worker has been killed
 

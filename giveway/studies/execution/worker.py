@@ -41,7 +41,9 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
         faulthandler.enable(file)
         heartbeat = Heartbeat(Path(folder))
         from giveway.studies import performing
+        from giveway.sumo import import_libsumo
 
+        import_libsumo()  # what every run would find missing is no run's failure
         line.send(READY)
         with contextlib.suppress(EOFError):
             while message := line.receive():

@@ -1,0 +1,179 @@
+"""The pool of one machine: how it takes runs, and how it ends."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import psutil
+import pytest
+
+from giveway.studies.execution import WorkerError, local_executor
+
+SCRIPT = """
+import sys
+from pathlib import Path
+from giveway.studies.execution import local_executor
+from giveway.studies.record import Task
+
+tasks = [Task(str(n), str(n), Path(sys.argv[1]).read_text(), {{}}, "") for n in range(100000)]
+{body}
+"""
+
+
+@pytest.fixture
+def script(tmp_path, task):
+    """Starts a Python of its own that has 100,000 tasks."""
+    started = []
+
+    def start(body: str) -> subprocess.Popen[str]:
+        program, config = tmp_path / "study.py", tmp_path / "config.json"
+        program.write_text(SCRIPT.format(body=textwrap.dedent(body)))
+        config.write_text(task("x").config)
+        process = subprocess.Popen(
+            [sys.executable, str(program), str(config)],
+            env=os.environ | {"TMPDIR": str(tmp_path)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        started.append(process)
+        return process
+
+    yield start
+    for process in started:
+        process.kill()
+        process.communicate()
+
+
+def test_every_run_is_made_once_and_like_in_one_process(
+    healthy, expected, numbers, left_behind, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with local_executor(jobs=2) as executor:
+        assert executor.workers == 2
+        made = {record.run: numbers(record) for record in executor.run(healthy)}
+        assert made == expected
+        assert len(list(tmp_path.iterdir())) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_tasks_are_taken_when_they_are_needed_and_workers_stay(task, left_behind):
+    taken = 0
+
+    def plan():
+        nonlocal taken
+        for number in range(12):
+            taken += 1
+            yield task(f"r{number}", number)
+
+    with local_executor(jobs=1) as executor:
+        first = executor.run(plan())
+        one = next(first)
+        assert taken <= 3
+        assert len({record.computing.worker for record in (one, *first)}) == 1
+        (again,) = executor.run([task("again")])
+        assert again.computing.worker == one.computing.worker
+        assert list(executor.run([])) == []
+
+
+def test_a_study_that_is_given_up_leaves_no_process(task, left_behind):
+    with local_executor(jobs=2) as executor:
+        for _ in executor.run(task(f"r{n}", n) for n in range(1000)):
+            break
+        assert left_behind() == []
+        (again,) = executor.run([task("again")])
+        assert not again.failed
+
+
+def test_a_run_whose_worker_was_killed_is_made_again(healthy, expected, numbers, left_behind):
+    with local_executor(jobs=1) as executor:
+        made = []
+        for record in executor.run(healthy):
+            made.append(record)
+            if len(made) == 2:
+                (worker,) = psutil.Process().children()
+                worker.kill()
+    assert {record.run: numbers(record) for record in made} == expected
+
+
+def test_ctrl_c_ends_all_at_once(script):
+    study = script(
+        """
+        with local_executor(jobs=2) as executor:
+            for record in executor.run(tasks):
+                assert not record.failed, record.failure
+                print(record.run, flush=True)
+        """
+    )
+    assert study.stdout.readline()
+    workers = psutil.Process(study.pid).children(recursive=True)
+    assert len(workers) == 2
+    study.send_signal(signal.SIGINT)
+    _, errors = study.communicate(timeout=20)
+    assert errors.strip().endswith("KeyboardInterrupt")
+    assert errors.count("Traceback") == 1
+    assert psutil.wait_procs(workers, timeout=5)[1] == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a thread sees to it, in time")
+def test_workers_die_with_the_study(script, tmp_path):
+    study = script(
+        """
+        with local_executor(jobs=2) as executor:
+            for record in executor.run(tasks):
+                print(record.run, flush=True)
+        """
+    )
+    assert study.stdout.readline()
+    workers = psutil.Process(study.pid).children(recursive=True)
+    assert len(workers) == 2
+    study.kill()
+    assert psutil.wait_procs(workers, timeout=5)[1] == []
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory")
+def test_workers_that_cannot_start_are_an_error_that_says_why(script):
+    study = script(
+        """
+        import resource
+        from giveway.studies.execution import WorkerError
+        with local_executor(jobs=1) as executor:
+            # too little for what a worker imports
+            resource.setrlimit(resource.RLIMIT_AS, (300_000_000, resource.RLIM_INFINITY))
+            try:
+                list(executor.run(tasks))
+            except WorkerError as error:
+                print(error)
+        """
+    )
+    output, errors = study.communicate(timeout=60)
+    assert errors == ""
+    (line,) = output.splitlines()
+    assert "5 processes in turn have ended before they could make a run (" in line
+    assert "--jobs" in line
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux's preference")
+def test_short_of_memory_the_system_takes_a_worker_first(task):
+    with local_executor(jobs=1) as executor:
+        list(executor.run([task("a")]))
+        (worker,) = psutil.Process().children()
+        assert Path(f"/proc/{worker.pid}/oom_score_adj").read_text().strip() == "500"
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        ({"jobs": 0}, "jobs = 0"),
+        ({"jobs": 1, "hang_limit": 0.0}, "hang_limit = 0.0"),
+        ({"jobs": 1, "run_limit": float("nan")}, "run_limit = nan"),
+    ],
+)
+def test_numbers_that_cannot_be_used(options, named, refused):
+    with refused(WorkerError, named, "expected"):
+        local_executor(**options)
