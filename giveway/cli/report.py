@@ -13,17 +13,22 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def report_command(study: Path, *, quiet: bool) -> int:
+def report_command(study: Path, *, replays: bool, quiet: bool) -> int:
     """Write them anew; nothing is computed but the few runs that are shown.
+
+    Args:
+        study: the study's folder.
+        replays: make those runs again at all.
+        quiet: print nothing.
 
     Raises:
         GivewayError: there is no study, or nothing to show, or the disk is full.
     """
-    write_all(StudyFolder.open(study), Console(quiet=quiet))
+    write_all(StudyFolder.open(study), Console(quiet=quiet), replays=replays)
     return 0
 
 
-def write_all(study: StudyFolder, console: Console) -> None:
+def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> None:
     """Write tables if there are none, figures, replays and the report."""
     from giveway.kernels import compile_kernels_once
     from giveway.studies.output import write_tables
@@ -32,6 +37,6 @@ def write_all(study: StudyFolder, console: Console) -> None:
     compile_kernels_once(console)
     if not (study.path / "comparison.csv").is_file():
         write_tables(study, whole=True)
-    with console.status("Drawing, and replaying the most telling runs ..."):
-        page = write_report_of(study)
+    with console.status("Drawing ...") as status:
+        page = write_report_of(study, replays=replays, tell=status.update)
     console.print(f"Report in [bold]{escape(str(page))}[/bold]", highlight=False)

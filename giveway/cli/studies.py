@@ -126,12 +126,15 @@ def _rerun(
 
 def _report(
     study: _Folder,
+    replays: Annotated[
+        bool, typer.Option(help="Make the runs that it points at again, to play and show them.")
+    ] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
 ) -> None:
     """Write figures, replays of the most telling runs, and report.html into a study's folder."""
     from giveway.cli.report import report_command
 
-    raise typer.Exit(report_command(study, quiet=quiet))
+    raise typer.Exit(report_command(study, replays=replays, quiet=quiet))
 
 
 def _replay(

@@ -9,11 +9,28 @@ from typing import TYPE_CHECKING, Any
 
 from giveway.configfile import Layer, merge, options
 from giveway.errors import ConfigError
+from giveway.metrics import SUMMARY_FIELDS
+from giveway.studies.statistics.columns import (
+    COMPARISON_COLUMNS,
+    PRECISION_COLUMNS,
+    SITUATION_COLUMNS,
+    TABLE_2_COLUMNS,
+)
 
 if TYPE_CHECKING:
     from giveway.studies.definition import StudyDefinition
 
-_RESERVED = frozenset({"run", "cell", "seed", "ego", "ending", "scenario_name"})
+_RESERVED = frozenset({"run", "cell", "seed", "ego", "ending", "runs", "failed"}) | {
+    column.name
+    for columns in (
+        SUMMARY_FIELDS,
+        COMPARISON_COLUMNS,
+        SITUATION_COLUMNS,
+        PRECISION_COLUMNS,
+        TABLE_2_COLUMNS,
+    )
+    for column in columns
+}  # columns of the tables
 
 
 @dataclass(frozen=True)

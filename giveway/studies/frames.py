@@ -24,9 +24,7 @@ _HEAD = (
 )
 _EGO = (
     Column("ego", "string", None, "SUMO id of the ego; empty without one"),
-    Column(
-        "ending", "string", None, "why it ended; failed and crashed runs have no numbers"
-    ),
+    Column("ending", "string", None, "why it ended; failed and crashed runs have no numbers"),
 )
 EXECUTION_COLUMNS = (
     Column("run", "string", None, "id of the run"),

@@ -12,6 +12,7 @@ from giveway.scenario_files import read_scenario
 from giveway.studies.design import design
 from giveway.studies.identity import cell_digest, input_hashes, run_key, software_identity
 from giveway.studies.record import Task
+from giveway.studies.statistics import metric
 from giveway.vehicles import require_vehicles
 from giveway.zone import Zone
 
@@ -122,6 +123,11 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
         known = ", ".join(level.label for level in factor.levels)
         msg = f"{origin}: [comparison] baseline = {wanted.baseline!r}: expected one of {known}"
         raise ConfigError(msg)
+    if definition.precision is not None:
+        try:
+            metric(definition.precision.metric)
+        except ConfigError as error:
+            raise ConfigError(f"{origin}: [precision] {error}") from None
     complete = wanted.model_copy(update={"factor": factor.name, "baseline": baseline.label})
     return definition.model_copy(update={"comparison": complete})
 

@@ -235,7 +235,11 @@ class _Session:
         ]
         frame = runs_frame(made, self._plan.design)
         enough, _ = precise_enough(
-            frame, self._plan.design, definition.comparison, definition.precision
+            frame,
+            self._plan.design,
+            definition.comparison,
+            definition.precision,
+            seeds=len(seeds),
         )
         return enough
 

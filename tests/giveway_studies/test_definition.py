@@ -121,6 +121,7 @@ def test_files_are_relative_to_the_study_file(tmp_path):
         ("[factors]\ncontroller = ['mpc', 'mpc']", "level 'mpc' twice"),
         ("[factors]\ncontroller = 'mpc'", "expected a list of values"),
         ("[factors.ego]\na = {controller = 'mpc'}", "name is taken"),
+        ("[factors.stops]\na = {controller = 'mpc'}", "name is taken"),
         ("cells = [{}]\n[factors]\ncontroller = ['mpc']", "cells[0]: no level of 'controller'"),
         ("cells = [{controller = 'x'}]\n[factors]\ncontroller = ['mpc']", "expected one of mpc"),
         ("cells = [{driver = 'x'}]\n[factors]\ncontroller = ['mpc']", "unknown factor 'driver'"),
@@ -150,6 +151,10 @@ def test_what_cannot_be_a_study_is_refused_in_one_line(change, said):
         (
             "[comparison]\nbaseline = 'x'\n[factors]\ncontroller = ['mpc', 'pid']",
             "baseline = 'x': expected one of mpc, pid",
+        ),
+        (
+            "[precision]\nwidth = 1\nmetric = 'x'\n[factors]\ncontroller = ['mpc', 'pid']",
+            "[precision] ",
         ),
     ],
 )
