@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from giveway.config import RunConfig
 
 _INFEASIBLE = {
-    "infeasible: too close": "no plan: somebody is already inside the safe distance",
+    "infeasible: too close": "no plan: the next position is already inside the safe distance",
     "infeasible: cannot stop": "no plan: not even full braking keeps the safe distance",
     "infeasible: speed bounds": "no plan: the speed is outside its bounds",
     "infeasible: cannot hold speed": "no plan: the speed cannot be held within its bounds",

@@ -3,13 +3,18 @@
 const RUN = JSON.parse(document.getElementById("run").textContent);
 
 function unpack(text, Type) {
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const letters = atob(text);
+  const bytes = new Uint8Array(letters.length);
+  for (let i = 0; i < letters.length; i++) bytes[i] = letters.charCodeAt(i);
   return new Type(bytes.buffer);
 }
 
 /** Metres in the page's own frame. */
 function metres(text) {
-  return Float32Array.from(unpack(text, Int32Array), (millimetres) => millimetres / 1000);
+  const millimetres = unpack(text, Int32Array);
+  const values = new Float32Array(millimetres.length);
+  for (let i = 0; i < values.length; i++) values[i] = millimetres[i] / 1000;
+  return values;
 }
 
 const FRAMES = unpack(RUN.time, Float64Array);

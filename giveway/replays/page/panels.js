@@ -74,6 +74,8 @@ function writeEgo() {
     item.append(button);
     events.append(item);
   }
+  $("key-vehicle").hidden = !ego?.vehicle_gap.some(Number.isFinite);
+  $("key-light").hidden = !ego?.stop_gap.some(Number.isFinite);
   $("no-events").hidden = events.children.length > 0;
   const summary = $("summary");
   summary.replaceChildren();

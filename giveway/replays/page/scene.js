@@ -179,6 +179,8 @@ function drawVehicle(at) {
   pen.beginPath();
   pen.roundRect(-length, -width / 2, length, width, 0.3);
   pen.fill();
+  pen.fillStyle = colours.road; // its windscreen: where the front is
+  pen.fillRect(-0.32 * length, -0.38 * width, 0.1 * length, 0.76 * width);
 }
 
 const kindOf = ["person", "close", "inside"];
