@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
 
 from giveway.figures.study_rows import PUBLISHED, digits_for, number, pretty_unit, wrapped
 from giveway.figures.style import BLACK, BLUE, GREY, ORANGE, quiet_grid, styled
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BINS = 48
-TAIL = 1.0  # [%] of the differences at either end that need not be within the picture
+TAIL = 2.5  # [%] of the differences at either end that need not be within the picture
 DASHES = (0, (4, 2))
 
 
@@ -115,7 +116,7 @@ def bin_edges(panels: Sequence[Differences]) -> NDArray[np.float64]:
         low, high = -1.0, 1.0
     width = _round_up((high - low) / BINS)
     first, last = math.floor(low / width) - 1, math.ceil(high / width) + 1
-    return width * np.arange(first, last + 1)
+    return np.asarray(width * np.arange(first, last + 1), dtype=np.float64)
 
 
 def _round_up(width: float) -> float:
@@ -159,7 +160,7 @@ def _draw(
             panel.published, color=PUBLISHED, linewidth=1.6, linestyle=DASHES, label="published"
         )  # fmt: skip
     axes.set_ylim(0.0, 1.12 * max(float(counts.max()), 1.0))
-    axes.yaxis.get_major_locator().set_params(integer=True, nbins=3)
+    axes.yaxis.set_major_locator(MaxNLocator(3, integer=True))
     _count_beyond(axes, panel.values, edges)
 
 
@@ -176,15 +177,15 @@ def _numbers(panel: Differences, unit: str) -> str:
 
 
 def _count_beyond(axes: Axes, values: NDArray[np.float64], edges: NDArray[np.float64]) -> None:
-    """How many pairs are out of the picture, at the side where they are."""
+    """How many pairs are beyond the axis, at the side where they are."""
     for count, x, text, align in (
-        (int((values < edges[0]).sum()), 0.01, "‹ {} beyond", "left"),
-        (int((values > edges[-1]).sum()), 0.99, "{} beyond ›", "right"),
+        (int((values < edges[0]).sum()), 0.01, "‹ {}", "left"),
+        (int((values > edges[-1]).sum()), 0.99, "{} ›", "right"),
     ):
         if count:
             axes.text(
-                x, 0.93, text.format(count), transform=axes.transAxes, ha=align, va="top",
-                fontsize=7, color=GREY,
+                x, 0.6, text.format(count), transform=axes.transAxes, ha=align, va="top",
+                fontsize=8, color="#505050",
             )  # fmt: skip
 
 

@@ -31,16 +31,26 @@ MANNERS = {  # colour and marker
     "stop-and-wait": (VERMILION, "s"),
     "non-stop": (GREEN, "^"),
 }
+PAPER = "#ffffff"
 SPREAD = 0.26  # of a row, between the situations
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A mean difference: nan where it is not reported (N.A.)."""
+    """A mean difference.
+
+    Attributes:
+        mean: nan where it is not reported (N.A.).
+        low: lower end of its interval.
+        high: upper end.
+        shown: whether interval and test show a difference; hollow if they do not.
+        published: the mean in the literature, or None.
+    """
 
     mean: float
     low: float
     high: float
+    shown: bool = True
     published: float | None = None
 
 
@@ -107,7 +117,14 @@ def _draw(axes: Axes, column: ForestColumn, places: list[float], used: list[str]
                 label=f"{situation} interval",
             )  # fmt: skip
             axes.plot(
-                estimate.mean, y, marker, color=colour, markersize=5, zorder=4, label=situation
+                estimate.mean,
+                y,
+                marker,
+                color=colour,
+                markersize=5,
+                zorder=4,
+                label=situation,
+                markerfacecolor=colour if estimate.shown else PAPER,
             )
         else:
             axes.annotate(

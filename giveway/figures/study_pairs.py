@@ -77,7 +77,7 @@ def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
     _scale(grid, sides)
     figure.align_ylabels(grid[:, 0])
     figure.suptitle(wrapped(title, 100))
-    figure.legend(handles=_legend(sides), loc="outside lower center", ncols=6)
+    figure.legend(handles=_legend(sides), loc="outside lower center", ncols=4)
     return figure
 
 

@@ -127,8 +127,10 @@ def number(value: float, digits: int = 2) -> str:
 
 
 def digits_for(width: float) -> int:
-    """Decimals by which an interval of that width is told to two significant digits."""
+    """Decimals by which an interval of that width is told to two significant digits or more."""
     if not math.isfinite(width) or width <= 0.0:
+        return 2
+    if 1.0 <= width < 10.0:
         return 2
     return int(np.clip(1 - math.floor(math.log10(width)), 0, 4))
 

@@ -14,7 +14,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # Black is the page's ink, so that a dark page has light lines; white is its paper.
-_COLOURS = {"#000000": "currentColor", "#505050": "var(--muted)", "#ffffff": "var(--paper)"}
+_COLOURS = {
+    "#000000": "currentColor",
+    "#505050": "var(--muted)",
+    "#767676": "var(--grey)",
+    "#0072b2": "var(--blue)",
+    "#ffffff": "var(--paper)",
+}
 _DIGITS = re.compile(r"-?\d+\.\d{3,}")
 
 

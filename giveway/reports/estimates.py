@@ -27,6 +27,7 @@ def estimates(study: Study) -> dict[Key, Estimate]:
             float(row["mean_difference"]) if row["verdict"] != "N.A." else float("nan"),
             float(row["ci_low"]),
             float(row["ci_high"]),
+            shown=row["verdict"] in {"better", "worse"},
         )
         for row in study.comparison.to_dict("records")
     }

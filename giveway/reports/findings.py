@@ -5,7 +5,6 @@ Every sentence is made from the study's numbers.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import pandas as pd
@@ -23,7 +22,7 @@ from giveway.reports.wording import digits_for, interval, number, quantity, shar
 from giveway.studies.statistics import metric
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from giveway.reports.study import Study
 
@@ -38,13 +37,13 @@ def lead(study: Study) -> str:
     seeds = sorted(set(runs["seed"]))
     made = int(runs["run"].nunique())
     where = len(contexts(study))
-    levels = _listed(treatment_labels(study))
+    levels = _listed([_named(label) for label in treatment_labels(study)])
+    compares = f"The study compares {levels} with the baseline {_named(baseline_label(study))}"
     if not made:
-        return f"The study compares {compared}: {levels} with {baseline_label(study)}; no run yet."
+        return f"{compares} ({compared}); there is no run yet."
     return (
-        f"The study compares {levels} with the baseline {baseline_label(study)} ({compared}) in "
-        f"{_count(where, 'context')}: {made:,} runs on {_count(len(seeds), 'crowd')} per cell "
-        f"(seeds {seeds[0]} to {seeds[-1]}). All levels met the same crowds, so that differences "
+        f"{compares} ({compared}) in {_count(where, 'context')}: {made:,} runs on "
+        f"{_count(len(seeds), 'crowd')} per cell (seeds {seeds[0]} to {seeds[-1]}). All levels met the same crowds, so that differences "
         "are taken pair by pair."
     )
 
@@ -101,46 +100,61 @@ def _of_metric(study: Study, name: str) -> list[str]:
         return []
     if len(verdicts) > IN_FULL:
         return [_counted(name, verdicts)]
-    places = {context.key: context.label for context in contexts(study)}
-    said = []
-    for row in frame.to_dict("records"):
-        place = places.get(context_key(study, row), "")
-        said.append((f"{place}: " if place else "") + _sentence(study, name, row))
-    return said
+    groups = frame.groupby(["treatment", "ego"], sort=False, dropna=False)
+    return [_sentence(study, name, group.to_dict("records")) for _, group in groups]
 
 
-def _sentence(study: Study, name: str, row: Mapping[Any, Any]) -> str:
-    quantity_ = metric(name)
-    baseline = baseline_label(study)
-    treatment = level_label(row["treatment"]) + shown_ego(level_label(row["ego"]))
-    mean, low, high = row["mean_difference"], row["ci_low"], row["ci_high"]
-    pairs = _count(int(row["n"]), "pair")
-    if row["verdict"] == "N.A." or not math.isfinite(mean):
-        return f"{quantity_.label}, {treatment} against {baseline}: N.A. ({pairs})."
+def _sentence(study: Study, name: str, rows: Sequence[Mapping[Any, Any]]) -> str:
+    """One treatment, all contexts: better and worse with numbers, the others by name."""
+    known, baseline = metric(name), _named(baseline_label(study))
+    treatment = _named(level_label(rows[0]["treatment"])) + shown_ego(level_label(rows[0]["ego"]))
+    label = known.label[0].upper() + known.label[1:]
+    told = []
+    for verdict in ("better", "worse"):
+        here = [row for row in rows if row["verdict"] == verdict]
+        if here:
+            side = "lower" if here[0]["mean_difference"] < 0 else "higher"
+            sizes = "; ".join(_size(study, row, known.unit) for row in here)
+            told.append(
+                f"is {side} with {treatment} than with {baseline}, which is {verdict}: {sizes}"
+            )
+    rest = [row for row in rows if row["verdict"] not in {"better", "worse", "N.A."}]
+    if rest:
+        where = _where(study, rest)
+        told.append(f"no difference between {treatment} and {baseline} is shown{where}")
+    few = [row for row in rows if row["verdict"] == "N.A."]
+    if few:
+        told.append(f"there are too few pairs (N.A.){_where(study, few)}")
+    joint = " " if told[0].startswith("is ") else ": "
+    return f"{label}{joint}{'; '.join(told)}."
+
+
+def _size(study: Study, row: Mapping[Any, Any], unit: str) -> str:
+    """As in "by 1.62 s (95 % interval 0.91 to 2.49 s) where crowd.pedestrians = 30"."""
+    low, high = row["ci_low"], row["ci_high"]
+    if row["mean_difference"] < 0:
+        low, high = -high, -low
+    size = quantity(abs(row["mean_difference"]), unit, digits_for(high - low))
     percent = 100.0 * study.definition.comparison.confidence
-    digits = digits_for(high - low)
-    within = f"{percent:g} % interval {interval(low, high, quantity_.unit)}; {pairs}"
-    if row["verdict"] not in {"better", "worse"}:
-        return (
-            f"no difference in {quantity_.label} is shown between {treatment} and {baseline} "
-            f"({quantity(mean, quantity_.unit, digits)}; {within})."
-        )
-    side = "lower" if mean < 0 else "higher"
-    size = quantity(abs(mean), quantity_.unit, digits)
-    return (
-        f"{quantity_.label} with {treatment} is {side} than with {baseline} by {size} on average, "
-        f"which is {row['verdict']} ({within})."
-    )
+    within = f"{percent:g} % interval {interval(low, high, unit)}; {_count(int(row['n']), 'pair')}"
+    return f"by {size} ({within}){_where(study, [row])}"
+
+
+def _where(study: Study, rows: Sequence[Mapping[Any, Any]]) -> str:
+    """The contexts of some rows, as in " where crowd.pedestrians = 30 or ..."; or nothing."""
+    places = {context.key: context.label for context in contexts(study)}
+    labels = [places.get(context_key(study, row), "") for row in rows]
+    return f" where {' or '.join(labels)}" if any(labels) else ""
 
 
 def _counted(name: str, verdicts: list[str]) -> str:
     counts = [(word, verdicts.count(word)) for word in ("better", "worse", "N.A.")]
     rest = len(verdicts) - sum(count for _, count in counts)
-    parts = [f"{word} in {count}" for word, count in counts[:2]] + [
-        f"no difference shown in {rest}"
-    ]
+    parts = [f"{word} in {count}" for word, count in counts[:2]]
+    parts += [f"no difference shown in {rest}"]
     parts += [f"N.A. in {counts[2][1]}"] if counts[2][1] else []
     label = metric(name).label
+    label = label[0].upper() + label[1:]
     return f"{label}: {', '.join(parts)} of {len(verdicts)} comparisons with the baseline."
 
 
@@ -149,18 +163,15 @@ def _overlaps(study: Study) -> list[str]:
     runs = study.runs
     numbers = pd.to_numeric(runs["overlaps"], errors="coerce")
     if not (numbers > 0).any():
-        return (
-            ["No pedestrian's circle ever overlapped the vehicle's rectangle."]
-            if len(numbers.dropna())
-            else []
-        )
+        never = "No pedestrian's circle ever overlapped the vehicle's rectangle."
+        return [never] if numbers.notna().any() else []
     by_cell = {cell: label for context in contexts(study) for label, cell in context.cells.items()}
     level = runs["cell"].map(by_cell)
     parts = []
     for label in compared_labels(study):
         here = numbers[level == label].dropna()
         if len(here):
-            parts.append(f"{share(float((here > 0).mean()))} of the runs with {label}")
+            parts.append(f"{share(float((here > 0).mean()))} of the runs with {_named(label)}")
     return [f"A pedestrian's circle overlapped the vehicle's rectangle in {_listed(parts)}."]
 
 
@@ -174,12 +185,18 @@ def _in_all(study: Study) -> list[str]:
     return [
         f"Over all metrics and situations, {enough:,} comparisons have enough pairs: {better:,} "
         f"better, {worse:,} worse, {enough - better - worse:,} without a difference shown. "
-        f"Verdicts count on a false discovery rate of {number(rate, 0)} %."
+        f"A difference counts as shown where its interval leaves out zero and the signed-rank "
+        f"test agrees, at a false discovery rate of {number(rate, 0)} % over the whole study."
     ]
 
 
 def _count(n: int, noun: str) -> str:
     return f"{n:,} {noun}" if n == 1 else f"{n:,} {noun}s"
+
+
+def _named(level: str) -> str:
+    """A level's label in a sentence: in quotation marks if it is not a single word."""
+    return level if level and not set(level) & set(" ,;:") else f"“{level}”"
 
 
 def _listed(words: list[str]) -> str:

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 REPORT = "report.html"
 FIGURES = "figures"
 _FORMATS = (".png", ".svg")
+_NAMES = ("differences", "forest", "distributions", "tradeoff", "example")
 
 
 @dataclass(frozen=True)
@@ -95,12 +96,15 @@ def write_report(
         ResultsError: it cannot be written.
     """
     target = study.path / REPORT if target is None else target
+    folder = study.path / FIGURES
     pairs = example_pairs(study, examples)
     extremes = worst_runs(study, worst)
     replays = _replays(shown_runs(study, examples=examples, worst=worst), replay, target)
     try:
-        pictures = [_drawn(picture, study) for picture in study_pictures(study)]
-        shown, missing = _examples(study, pairs, rerun, replays)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        _clear(folder)
+        pictures = [_drawn(picture, folder) for picture in study_pictures(study)]
+        shown, missing = _examples(folder, pairs, rerun, replays)
         content = _content(study, extremes, replays)
         by_section = {
             name: [d for s, d in pictures if s == name]
@@ -111,7 +115,6 @@ def write_report(
             .get_template("report.html.j2")
             .render(**content, pictures=by_section, examples=shown, missing=missing)
         )
-        target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(html, encoding="utf-8", newline="\n")
     except OSError as error:
         msg = f"{error.filename or target}: cannot be written ({error.strerror}); free the disk"
@@ -132,10 +135,19 @@ def _replays(
     return found
 
 
-def _drawn(picture: Picture, study: Study, title: str = "", **more: Any) -> tuple[str, Drawn]:
-    """Write the picture's files; the section it belongs to, and the picture for the page."""
-    folder = study.path / FIGURES
+def _clear(folder: Path) -> None:
+    """Make room for the figures; those of a former report are taken away."""
     folder.mkdir(parents=True, exist_ok=True)
+    for name in _NAMES:
+        for suffix in _FORMATS:
+            for path in folder.glob(f"{name}*{suffix}"):
+                path.unlink()
+
+
+def _drawn(picture: Picture, folder: Path, title: str = "", **more: Any) -> tuple[str, Drawn]:
+    """Write the picture's files; the section it belongs to, and the picture for the page."""
+    picture.figure.draw_without_rendering()
+    picture.figure.set_layout_engine("none")  # the arrangement is found once, for all formats
     for suffix in _FORMATS:
         save_figure(picture.figure, folder / f"{picture.name}{suffix}")
     svg = Markup(inline_svg(picture.figure, picture.name.replace("_", "")))
@@ -143,7 +155,7 @@ def _drawn(picture: Picture, study: Study, title: str = "", **more: Any) -> tupl
 
 
 def _examples(
-    study: Study,
+    folder: Path,
     pairs: Sequence[ExamplePair],
     rerun: Callable[[str], RunResult] | None,
     replays: dict[str, str],
@@ -155,7 +167,7 @@ def _examples(
     for pair, picture in pictures:
         runs = ((pair.treatment, pair.run), (pair.baseline, pair.run_baseline))
         links = [(f"{label} ({run})", replays[run]) for label, run in runs if run in replays]
-        shown.append(_drawn(picture, study, TITLES[pair.reason], links=links)[1])
+        shown.append(_drawn(picture, folder, TITLES[pair.reason], links=links)[1])
     return shown, missing
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -81,7 +81,8 @@ def _histograms(study: Study) -> Iterator[Picture]:
     reported = estimates(study)
     printed = published_numbers(study)
     number = 0
-    for (ego, treatment), group in pairs.groupby(["ego", "treatment"], sort=False):
+    for names_, group in pairs.groupby(["ego", "treatment"], sort=False):
+        ego, treatment = map(str, names_)
         rows = []
         for context in contexts(study):
             some = group[group["context"] == context.label]
@@ -106,7 +107,8 @@ def _histograms(study: Study) -> Iterator[Picture]:
                 caption=(
                     f"{what}, pair by pair, on the same crowds. General: {metric(time).label} of "
                     f"all pairs; stop-and-wait: longest wait where both stopped; non-stop: "
-                    f"{metric(time).label} where neither did."
+                    f"{metric(time).label} where neither did. A number with an arrow counts "
+                    "pairs beyond the axis."
                 ),
                 alt=f"Histograms of the differences {what}: {_in_words(part, names)}",
                 figure=differences_figure(columns, part, title=what, source=SOURCE),
@@ -159,8 +161,8 @@ def _forest(study: Study) -> Iterator[Picture]:
                 key = estimate_key(context, ego, treatment, situation, name)
                 value = reported.get(key)
                 if value is not None:
-                    print_ = printed.get((context.key, treatment, situation, name))
-                    found[row, situation] = Estimate(value.mean, value.low, value.high, print_)
+                    known = printed.get((context.key, treatment, situation, name))
+                    found[row, str(situation)] = replace(value, published=known)
         if any(math.isfinite(value.mean) for value in found.values()):
             quantity = metric(name)
             columns.append(ForestColumn(quantity.label, quantity.unit, quantity.better, found))
@@ -178,8 +180,8 @@ def _forest(study: Study) -> Iterator[Picture]:
         name="forest",
         section="differences",
         caption=(
-            f"Mean differences, {what} minus {baseline}, with {percent:g} % intervals. An interval "
-            "that leaves out the line in the middle shows a difference."
+            f"Mean differences, {what} minus {baseline}, with {percent:g} % intervals. Filled: "
+            "interval and test show a difference; hollow: no difference shown."
         ),
         alt=f"Mean differences with intervals against {baseline}; the comparison table has them.",
         figure=forest_figure(rows, columns, title=f"{what} minus {baseline}", source=SOURCE),

@@ -84,7 +84,7 @@ def _whole(value: object) -> Cell:
 
 def verdict_cell(verdict: str) -> Cell:
     """Better, worse, no difference shown, N.A., in its colour."""
-    kinds = {"better": "better", "worse": "worse", "N.A.": "na"}
+    kinds = {"better": "better", "worse": "worse"}
     return Cell(verdict, kinds.get(verdict, "none"))
 
 
@@ -95,13 +95,14 @@ def comparison_table(study: Study) -> Table:
     who = [name for name in ("ego", "treatment") if frame[name].nunique() > 1]
     headings = [*(short_name(name) for name in factors), *who, "situation", "metric"]
     filters = tuple(range(len(headings)))
-    headings += ["unit", "n", "share", "treatment mean", "baseline mean", "mean difference"]
-    headings += ["interval", "median difference", "q", "verdict"]
+    verdict = len(headings) + 2
+    headings += ["mean difference", "interval", "verdict", "pairs", "share", "treatment mean"]
+    headings += ["baseline mean", "median difference", "q"]
     rows = [
         [
             *(_level(row[name]) for name in (*factors, *who)),
             Cell(row["situation"]),
-            Cell(metric(row["metric"]).label),
+            Cell(_with_unit(row["metric"]), "text"),
             *_numbers(row),
         ]
         for row in frame.to_dict("records")
@@ -112,23 +113,22 @@ def comparison_table(study: Study) -> Table:
         caption=f"Paired differences, treatment minus baseline, with {percent:g} % intervals",
         headings=headings,
         rows=rows,
-        filters=(*filters, len(headings) - 1),
+        filters=(*filters, verdict),
     )
 
 
 def _numbers(row: Mapping[Any, Any]) -> list[Cell]:
     digits = digits_for(row["ci_high"] - row["ci_low"])
     return [
-        Cell(pretty_unit(level_label(row["unit"]))),
+        _number(row["mean_difference"], digits),
+        Cell(interval(row["ci_low"], row["ci_high"])),
+        verdict_cell(str(row["verdict"])),
         _whole(row["n"]),
         Cell(share(row["share"]), "number"),
         _number(row["treatment_mean"], max(digits, 2)),
         _number(row["baseline_mean"], max(digits, 2)),
-        _number(row["mean_difference"], digits),
-        Cell(interval(row["ci_low"], row["ci_high"])),
         _number(row["median_difference"], digits),
         _probability(row["q_value"]),
-        verdict_cell(str(row["verdict"])),
     ]
 
 
@@ -263,7 +263,7 @@ def worst_tables(worst: Iterable[WorstRun], replays: Mapping[str, str]) -> list[
                 Cell(run.run, link=replays.get(run.run, "")),
                 *([Cell(run.partner, link=replays.get(run.partner, ""))] if paired else []),
                 *([Cell(run.ego)] if egos else []),
-                Cell(run.cell),
+                Cell(run.cell, "text"),
             ]
             for run in runs
         ]
@@ -278,7 +278,7 @@ def failures_table(study: Study) -> Table:
         [
             Cell(str(row["run"])),
             Cell(str(row["ending"])),
-            Cell(str(row["cause"])),
+            Cell(str(row["cause"]), "text"),
             Cell(str(row["reproduce"]), "code"),
         ]
         for row in frame.head(MOST_FAILURES).to_dict("records")

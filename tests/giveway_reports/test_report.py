@@ -1,0 +1,246 @@
+"""The report: one file, nothing from elsewhere, the study's own numbers, the same bytes again."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from itertools import pairwise
+
+import pandas as pd
+import pytest
+
+from giveway.errors import GivewayError, ResultsError
+from giveway.reports import example_pairs, shown_runs, worst_runs, write_report
+from giveway.reports.wording import digits_for, number
+from giveway.studies.statistics import METRICS, PUBLISHED
+
+LIMIT = 5_000_000  # bytes
+
+
+@pytest.fixture(scope="module")
+def report(study, again):
+    def replay(run):
+        page = study.path / "replays" / f"{run}.html"
+        page.parent.mkdir(exist_ok=True)
+        page.write_text("a replay")
+        return page
+
+    return write_report(study, rerun=again, replay=replay)
+
+
+def test_it_needs_nothing_but_itself(report, parsed):
+    page = parsed(report)
+    for tag, values in page.tags:
+        assert tag not in {"link", "iframe", "object", "embed", "base"}
+        for name in ("src", "srcset", "data", "action", "xlink:href"):
+            assert name not in values
+    html = report.read_text("utf-8")
+    assert not re.search(r"@import|url\(\s*[\"']?(?!#)", html)
+    assert not re.search(r"(?:https?:)?//[\w.-]+\.\w", html)
+    assert len(html.encode()) < LIMIT
+
+
+def test_every_link_leads_somewhere(report, parsed):
+    page = parsed(report)
+    assert len(set(page.ids)) == len(page.ids)
+    for link in page.links:
+        if link.startswith("#"):
+            assert link[1:] in page.ids
+        else:
+            assert (report.parent / link).is_file()
+    used = [re.findall(r"url\(#([^)]+)\)", value) for _, v in page.tags for value in v.values()]
+    used += [[v["href"][1:]] for tag, v in page.tags if tag == "use"]
+    assert {name for names in used for name in names} <= set(page.ids)
+
+
+def test_runs_that_are_shown_link_to_their_replay(study, report, parsed):
+    links = {link for link in parsed(report).links if not link.startswith("#")}
+    assert links == {f"replays/{run}.html" for run in shown_runs(study)}
+
+
+def test_the_comparison_table_holds_the_frame(study, report, parsed):
+    head, *rows = parsed(report).tables["comparison-table"]
+    frame = study.comparison
+    assert len(rows) == len(frame)
+    place = {name: head.index(name) for name in ("mean difference", "pairs", "verdict")}
+    for row, known in zip(rows, frame.to_dict("records"), strict=True):
+        assert row[place["verdict"]] == known["verdict"]
+        assert int(row[place["pairs"]]) == known["n"]
+        digits = digits_for(known["ci_high"] - known["ci_low"])
+        assert row[place["mean difference"]] == number(known["mean_difference"], digits)
+        assert row[:2] == [str(known["crowd.pedestrians"]), known["situation"]]
+
+
+def test_the_cells_table_has_means_of_the_runs(study, report, parsed):
+    head, *rows = parsed(report).tables["cells-table"]
+    for row in rows:
+        runs = study.runs[study.runs["cell"] == int(row[0])]
+        assert int(row[head.index("runs")]) == len(runs)
+        mean = runs["completion_time"].mean()
+        assert row[head.index("completion time [s]")] == number(mean)
+
+
+def test_published_numbers_stand_beside_ours(study, report, parsed):
+    head, *rows = parsed(report).tables["published-table"]
+    assert len(rows) == len(PUBLISHED)
+    for row, ((pedestrians, situation), mean) in zip(rows, PUBLISHED.items(), strict=True):
+        assert row[:2] == [str(pedestrians), situation]
+        assert row[head.index("Yang & Özgüner 2019")] == number(mean, 4)
+
+
+def test_without_a_reference_nothing_is_published(changed, parsed):
+    study = changed(lambda record: record, lambda text: text.replace('"yang2019"', '""'))
+    page = parsed(write_report(study))
+    assert "published-table" not in page.tables
+    assert "Özgüner" not in page.text
+
+
+def test_the_summary_is_made_of_the_numbers(study, report, parsed):
+    text = parsed(report).text
+    frame = study.comparison
+    verdicts = frame["verdict"].value_counts()
+    enough = int(len(frame) - verdicts.get("N.A.", 0))
+    assert f"{enough} comparisons have enough pairs" in text
+    assert f"{verdicts.get('better', 0)} better, {verdicts.get('worse', 0)} worse" in text
+    assert "36 runs on 9 crowds per cell (seeds 1 to 9)" in text
+
+
+def test_every_metric_is_explained(report, parsed):
+    page = parsed(report)
+    assert {f"metric-{metric.name}" for metric in METRICS} <= set(page.ids)
+
+
+def test_it_can_be_read_without_seeing(report, parsed):
+    page = parsed(report)
+    levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch(r"h[1-6]", tag)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(b - a <= 1 for a, b in pairwise(levels))
+    assert all(page.captions.get(name) for name in page.tables)
+    pictures = [v["aria-label"] for tag, v in page.tags if v.get("role") == "img"]
+    assert len(pictures) == len([tag for tag, _ in page.tags if tag == "svg"]) > 4
+    assert all(len(words) > 20 for words in pictures)
+    assert all(v.get("aria-hidden") == "true" for tag, v in page.tags if tag == "svg")
+    assert dict(page.tags)["html"] == {"lang": "en"}
+
+
+def test_the_same_study_gives_the_same_bytes(study, again, report):
+    first = {path.name: path.read_bytes() for path in (study.path / "figures").iterdir()}
+    known = report.read_bytes()
+
+    def replay(run):
+        return study.path / "replays" / f"{run}.html"
+
+    assert write_report(study, rerun=again, replay=replay).read_bytes() == known
+    second = {path.name: path.read_bytes() for path in (study.path / "figures").iterdir()}
+    assert second == first
+    assert {name.rpartition(".")[2] for name in second} == {"png", "svg"}
+
+
+def test_hostile_names_are_text(changed, parsed):
+    hostile = '</svg><img src=x onerror=alert(1)> $x_$ & "'
+    levels = f"{{ '{hostile}' = {{ controller = 'mpc' }}, '$$' = {{ controller = 'pid' }} }}"
+
+    def rename(text):
+        text = text.replace('controller = ["mpc", "pid"]', f"'<b>' = {levels}")
+        return text.replace('factor = "controller"', "factor = '<b>'").replace('"pid"', "'$$'")
+
+    page = parsed(write_report(changed(lambda record: record, rename)))
+    assert "img" not in dict(page.tags)
+    assert "b" not in dict(page.tags)
+    assert [values for tag, values in page.tags if tag == "script"] == [{}]  # our own
+    assert f"The study compares “{hostile}” with the baseline $$ (<b>)" in page.text
+    assert "<script>alert('x')</script> & others" in page.text
+
+
+def test_a_lost_run_is_told_with_its_cause_and_command(lost, parsed):
+    page = parsed(write_report(lost))
+    _, row = page.tables["failures-table"]
+    assert row == [
+        "c1-s3",
+        "crashed",
+        "SIGKILL <b>at</b> 4.2 s",
+        f"giveway rerun {lost.path} c1-s3",
+    ]
+    assert "1 run has no result" in page.text
+    head, *cells = page.tables["cells-table"]
+    assert [row[head.index("no result")] for row in cells] == ["1", "0", "0", "0"]
+
+
+def test_an_example_that_cannot_be_made_again_is_left_out(study, tmp_path, parsed):
+    def rerun(run):
+        raise GivewayError(f"run {run}: other numbers")
+
+    page = parsed(write_report(study, rerun=rerun, target=tmp_path / "report.html"))
+    assert "are not drawn: run c1-s" in page.text
+    assert not [name for name in page.ids if name.startswith("figure-example")]
+
+
+def test_a_study_without_runs_has_a_report(study, tmp_path, parsed):
+    class Empty:
+        path, definition, design = tmp_path, study.definition, study.design
+        manifest = study.manifest
+        runs, comparison = study.runs.iloc[:0], study.comparison.iloc[:0]
+        situations, failures = study.situations.iloc[:0], study.failures.iloc[:0]
+        execution = study.execution.iloc[:0]
+
+    page = parsed(write_report(Empty()))
+    assert "there is no run yet" in page.text
+    assert "There is no pair of finished runs to compare." in page.text
+
+
+def test_a_study_that_never_reaches_a_goal_is_compared_by_its_waits(changed, parsed):
+    def stuck(record):
+        rows = ({**row, "completed": False, "completion_time": math.nan} for row in record.rows)
+        return replace(record, rows=tuple(rows))
+
+    study = changed(stuck)
+    assert {pair.metric for pair in example_pairs(study)} <= {"total_wait", "longest_wait"}
+    text = parsed(write_report(study)).text
+    assert "one side did not reach its goal" in text
+
+
+def test_a_disk_that_refuses_is_one_line(study, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ResultsError, match=r"^[^\n]*cannot be written[^\n]*$"):
+        write_report(study, target=tmp_path / "file" / "report.html")
+
+
+class TestChoice:
+    """Which runs are shown, from the frames alone."""
+
+    def test_the_closest_run_comes_first(self, study):
+        first = worst_runs(study, 3)[0]
+        closest = study.runs["minimum_clearance"].min()
+        assert first.value == closest
+        assert first.run == study.runs.loc[study.runs["minimum_clearance"].idxmin(), "run"]
+
+    def test_never_more_than_asked_for(self, study):
+        reasons = pd.Series([run.reason for run in worst_runs(study, 2)])
+        assert reasons.value_counts().max() <= 2
+        assert worst_runs(study, 0) == []
+
+    def test_best_and_worst_are_the_extremes_of_the_first_context(self, study):
+        runs = study.runs[study.runs["crowd.pedestrians"] == 30].set_index("seed")
+        sides = {name: frame["completion_time"] for name, frame in runs.groupby("controller")}
+        difference = (sides["mpc"] - sides["pid"]).dropna()
+        chosen = {pair.reason: pair for pair in example_pairs(study)}
+        assert chosen["best"].difference == pytest.approx(difference.min())
+        assert chosen["worst"].difference == pytest.approx(difference.max())
+        for pair in chosen.values():
+            assert (pair.run, pair.run_baseline) == (
+                f"c{1 if '30' in pair.context else 3}-s{pair.seed}",
+                f"c{2 if '30' in pair.context else 4}-s{pair.seed}",
+            )
+
+    def test_no_pair_is_shown_twice(self, study):
+        runs = [pair.run for pair in example_pairs(study)]
+        assert len(set(runs)) == len(runs)
+
+    def test_ties_go_to_the_first_run(self, changed):
+        def same(record):
+            return replace(record, rows=tuple({**r, "minimum_clearance": 0.5} for r in record.rows))
+
+        closest = [run.run for run in worst_runs(changed(same), 3) if "clearance" in run.reason]
+        assert closest == ["c1-s1", "c1-s2", "c1-s3"]
