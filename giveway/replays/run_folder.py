@@ -87,7 +87,7 @@ class RunFolder:
             raise ResultsError(msg) from error
         ego = _table(folder / "ego.csv", EGO_COLUMNS)
         trajectories = _table(folder / "trajectories.csv", TRAJECTORY_COLUMNS)
-        time = np.union1d(ego["time"].to_numpy(), trajectories["time"].to_numpy())
+        time = np.union1d(*(rows["time"].to_numpy(np.float64) for rows in (ego, trajectories)))
         if not len(time):
             msg = f"{folder}: the run left no rows; there is nothing to play"
             raise ResultsError(msg)

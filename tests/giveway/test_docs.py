@@ -10,14 +10,21 @@ import pytest
 from fmus import VehicleProfile, make_profile
 from giveway.configfile import options
 from giveway.metrics import PEDESTRIAN_FIELDS, SUMMARY_FIELDS
-from giveway.schema import EGO_COLUMNS, TIMING_COLUMNS, TRAJECTORY_COLUMNS
+from giveway.schema import EGO_COLUMNS, PREDICTION_COLUMNS, TIMING_COLUMNS, TRAJECTORY_COLUMNS
 
 DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.mark.parametrize(
     "columns",
-    [EGO_COLUMNS, TRAJECTORY_COLUMNS, TIMING_COLUMNS, PEDESTRIAN_FIELDS, SUMMARY_FIELDS],
+    [
+        EGO_COLUMNS,
+        TRAJECTORY_COLUMNS,
+        PREDICTION_COLUMNS,
+        TIMING_COLUMNS,
+        PEDESTRIAN_FIELDS,
+        SUMMARY_FIELDS,
+    ],
 )
 def test_every_column_is_documented_as_it_is_declared(columns: tuple) -> None:
     text = (DOCS / "results.md").read_text(encoding="utf-8")
