@@ -79,6 +79,12 @@ def _is_pythons_own(process: psutil.Process) -> bool:
         return False
 
 
+@pytest.fixture(scope="session")
+def worker_of() -> Callable[[RunRecord], psutil.Process]:
+    """The process that made a run."""
+    return lambda record: psutil.Process(int(record.computing.worker.rpartition(":")[2]))
+
+
 @pytest.fixture
 def left_behind() -> Iterator[Callable[[], list[psutil.Process]]]:
     """Processes that have been started since, and are still there after some seconds."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import time
 from dataclasses import replace
 
 import psutil
@@ -54,7 +53,7 @@ def test_the_records_of_one_machine_though_a_worker_dies(
     assert len({record.computing.worker for record in made}) > 2
 
 
-def test_workers_that_come_late_are_waited_for(empty_cluster, task, left_behind):
+def test_workers_that_come_late_are_waited_for(left_behind, empty_cluster, task, worker_of):
     told = []
 
     def tell(line: str) -> None:
@@ -66,14 +65,10 @@ def test_workers_that_come_late_are_waited_for(empty_cluster, task, left_behind)
         (record,) = executor.run([task("a")])
         assert not record.failed
         assert empty_cluster.workers  # somebody else's cluster goes on
-        pids = [p.pid for p in psutil.Process().children(recursive=True)]
-        assert int(record.computing.worker.rpartition(":")[2]) in pids
+        worker = worker_of(record)
+        assert worker in psutil.Process().children(recursive=True)
     assert told == [f"cluster {address}: it has no worker; waiting 60 s for it, nothing is lost"]
-    gone = int(record.computing.worker.rpartition(":")[2])
-    end = time.monotonic() + 5.0
-    while psutil.pid_exists(gone) and time.monotonic() < end:
-        time.sleep(0.05)
-    assert not psutil.pid_exists(gone)
+    assert psutil.wait_procs([worker], timeout=5.0)[1] == []
 
 
 def test_nobody_comes(empty_cluster, task, refused):

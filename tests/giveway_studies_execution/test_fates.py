@@ -15,7 +15,7 @@ FATES = {
     "exit_0": r"exit\(0\) called by native code in the vehicle FMU's step from 4\.\d\d s \(.*\)",
     "last_words": r"SIGABRT in the vehicle FMU's step .*, after printing '[^']+'",
     "hang": r"no progress for [23](\.\d+)? s in the vehicle FMU's step from 4\.\d\d s \(.*\)",
-    "slow": r"not finished within 4 s, the limit of a run, in the vehicle FMU's step from .*",
+    "slow": r"not finished within 6 s, the limit of a run, in the vehicle FMU's step from .*",
 }
 
 
@@ -25,7 +25,7 @@ def records(healthy, faulty):
     tasks = [faulty(fault, time_limit=60.0) for fault in (*FATES, "error")]
     for place, task in enumerate(healthy):
         tasks.insert(2 * place, task)
-    with local_executor(jobs=2, hang_limit=2.0, run_limit=4.0) as executor:
+    with local_executor(jobs=3, hang_limit=2.0, run_limit=6.0) as executor:
         made = list(executor.run(tasks))
     assert Counter(record.run for record in made) == Counter(task.run for task in tasks)
     return {record.run: record for record in made}

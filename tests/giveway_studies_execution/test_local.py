@@ -90,14 +90,15 @@ def test_a_study_that_is_given_up_leaves_no_process(task, left_behind):
         assert not again.failed
 
 
-def test_a_run_whose_worker_was_killed_is_made_again(healthy, expected, numbers, left_behind):
+def test_a_run_whose_worker_was_killed_is_made_again(
+    healthy, expected, numbers, worker_of, left_behind
+):
     with local_executor(jobs=1) as executor:
         made = []
         for record in executor.run(healthy):
             made.append(record)
             if len(made) == 2:
-                (worker,) = psutil.Process().children()
-                worker.kill()
+                worker_of(record).kill()
     assert {record.run: numbers(record) for record in made} == expected
 
 
@@ -159,10 +160,10 @@ def test_workers_that_cannot_start_are_an_error_that_says_why(script):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux's preference")
-def test_short_of_memory_the_system_takes_a_worker_first(task):
+def test_short_of_memory_the_system_takes_a_worker_first(task, worker_of):
     with local_executor(jobs=1) as executor:
-        list(executor.run([task("a")]))
-        (worker,) = psutil.Process().children()
+        (record,) = executor.run([task("a")])
+        worker = worker_of(record)
         assert Path(f"/proc/{worker.pid}/oom_score_adj").read_text().strip() == "500"
 
 
