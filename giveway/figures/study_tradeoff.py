@@ -14,9 +14,7 @@ from giveway.figures.style import GREY, quiet_grid, styled
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-Tag = tuple[tuple[float, float], str, str]
-"""Place, text and colour."""
-SAME_PLACE = 0.02  # of the picture's width and height
+SAME_PLACE = 0.05  # of the picture's width and height
 
 
 @dataclass(frozen=True)
@@ -77,10 +75,10 @@ def tradeoff_figure(
         axes.plot((point.x, point.x), point.y_interval, color=colour, linewidth=1.4, zorder=2)
         axes.plot(point.x, point.y, "o", color=colour, markersize=6, zorder=3, label=point.level)
     if len(contexts) > 1:
-        for (x, y), text, colour in tags(points, colours):
+        for (x, y), text in tags(points):
             axes.annotate(
                 wrapped(text), (x, y), (5, 5), textcoords="offset points", fontsize=7,
-                color=colour, zorder=4,
+                color="#505050", zorder=4,
             )  # fmt: skip
     axes.set_xlabel(with_unit(*x_label))
     axes.set_ylabel(with_unit(*y_label))
@@ -95,18 +93,17 @@ def tradeoff_figure(
     return figure
 
 
-def tags(points: Sequence[TradeOffPoint], colours: Mapping[str, str]) -> list[Tag]:
-    """The contexts' names beside the points; points of one level at one place share a tag."""
+def tags(points: Sequence[TradeOffPoint]) -> list[tuple[tuple[float, float], str]]:
+    """Places and names of the contexts; points that lie together share one."""
     width = max(p.x for p in points) - min(p.x for p in points)
     height = max(p.y for p in points) - min(p.y for p in points)
     found: list[tuple[TradeOffPoint, list[str]]] = []
     for point in points:
         for there, names in found:
             beside = abs(point.x - there.x) <= SAME_PLACE * width
-            beside &= abs(point.y - there.y) <= SAME_PLACE * height
-            if beside and point.level == there.level:
+            if beside and abs(point.y - there.y) <= SAME_PLACE * height:
                 names.append(point.context)
                 break
         else:
             found.append((point, [point.context]))
-    return [((p.x, p.y), ", ".join(names), colours[p.level]) for p, names in found]
+    return [((p.x, p.y), ", ".join(dict.fromkeys(names))) for p, names in found]

@@ -43,8 +43,8 @@ def lead(study: Study) -> str:
         return f"{compares} ({compared}); there is no run yet."
     return (
         f"{compares} ({compared}) in {_count(where, 'context')}: {made:,} runs on "
-        f"{_count(len(seeds), 'crowd')} per cell (seeds {seeds[0]} to {seeds[-1]}). All levels met the same crowds, so that differences "
-        "are taken pair by pair."
+        f"{_count(len(seeds), 'crowd')} per cell (seeds {seeds[0]} to {seeds[-1]}). All levels "
+        "met the same crowds, so that differences are taken pair by pair."
     )
 
 
