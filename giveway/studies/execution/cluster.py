@@ -8,40 +8,34 @@ then everything that was under way is simply handed out again.
 from __future__ import annotations
 
 import logging
-import queue
 import re
 import sys
 import threading
 import time
 import uuid
-from collections import deque
 from contextlib import suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final, Self
 
+from giveway.studies.execution.errand import Errand
 from giveway.studies.execution.errors import WorkerError
-from giveway.studies.execution.limits import ATTEMPTS
-from giveway.studies.record import CRASHED, Computing, RunRecord
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
     from types import TracebackType
 
     from giveway.studies.execution.limits import Limits
-    from giveway.studies.record import Task
+    from giveway.studies.record import RunRecord, Task
 
 Client = Any  # Dask's classes, most of whose methods have no types
 Cluster = Any
-Future = Any
 
 PATIENCE: Final = 300.0  # [s] to wait for a scheduler or worker to come back
 _LOCAL: Final = re.compile(r"local(?::([1-9]\d*))?")
 _REMOTE: Final = re.compile(r"(?!local:)([\w.+-]+://\S+|[\w.-]+:\d+)")
 _LOCAL_WORKERS: Final = 2
-_AHEAD: Final = 3  # runs per worker that are handed out: the network must not be waited for
-_LOOK: Final = 1.0  # [s] between two looks at the cluster, and at Ctrl-C
+_LOOK: Final = 1.0  # [s] between two looks at the cluster
 _CONNECT: Final = 5.0  # [s] for one attempt
-_FETCH: Final = 30.0  # [s] for a result to arrive, or its worker has died meanwhile
 _FAREWELL: Final = 5.0  # [s] for the workers to end the study's processes
 
 
@@ -90,7 +84,7 @@ class ClusterExecutor:
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
         """As the protocol says."""
-        return _Errand(self, tasks).run()
+        return Errand(self, tasks).run()
 
     def __enter__(self) -> Self:
         self._connect()
@@ -113,10 +107,13 @@ class ClusterExecutor:
         if cluster is not None:
             _in_time(lambda: cluster.close(timeout=_FAREWELL))
 
-    # --- for _Errand --------------------------------------------------------------------------
+    # --- for Errand --------------------------------------------------------------------------
 
-    def submit(self, task: Task, name: str) -> Future:
+    def submit(self, task: Task, name: str) -> Any:
         """Hand a run out.
+
+        Returns:
+            Dask's future.
 
         Raises:
             Exception: of whatever kind; the cluster is not there.
@@ -155,7 +152,7 @@ class ClusterExecutor:
             raise WorkerError(msg)
         return False
 
-    def abandon(self, futures: Iterable[Future]) -> None:
+    def abandon(self, futures: Iterable[Any]) -> None:
         """Take back runs, and end those that are being made."""
         from giveway.studies.execution.cluster_task import leave
 
@@ -185,6 +182,8 @@ class ClusterExecutor:
     def _connect(self) -> Client:
         import distributed
 
+        from giveway.studies.execution.cluster_task import leave_interrupts_to_the_study
+
         dask: Any = distributed
         try:
             if self._local and self._cluster is None:
@@ -196,6 +195,8 @@ class ClusterExecutor:
                 )
             where = self._cluster or self._address
             self._client = dask.Client(where, timeout=_CONNECT, set_as_default=False)
+            if self._cluster is not None:
+                self._client.run(leave_interrupts_to_the_study)
             self._threads = sum(self._client.nthreads().values())
         except (OSError, ValueError, RuntimeError) as error:
             reason = " ".join(str(error).split()) or type(error).__name__
@@ -204,95 +205,6 @@ class ClusterExecutor:
             )
             raise WorkerError(msg) from error
         return self._client
-
-
-class _Errand:
-    """One call of :meth:`ClusterExecutor.run`."""
-
-    def __init__(self, executor: ClusterExecutor, tasks: Iterable[Task]) -> None:
-        self._executor = executor
-        self._source = iter(tasks)
-        self._again: deque[Task] = deque()
-        self._killed: dict[str, int] = {}  # run: Dask workers that died of it, or so it seems
-        self._under_way: dict[str, tuple[Task, Future]] = {}
-        self._finished: queue.SimpleQueue[str] = queue.SimpleQueue()
-        self._number = 0
-
-    def run(self) -> Iterator[RunRecord]:
-        try:
-            while True:
-                there = self._executor.is_there()
-                if there and not self._hand_out():
-                    return
-                try:
-                    name = self._finished.get(timeout=_LOOK)
-                except queue.Empty:
-                    continue
-                task, future = self._under_way.pop(name)
-                record = self._record(task, future)
-                if record is None:
-                    self._again.append(task)
-                else:
-                    yield record
-        finally:
-            if self._under_way:
-                self._executor.abandon(future for _, future in self._under_way.values())
-
-    def _hand_out(self) -> bool:
-        """Fill the window; False: there is nothing more to do."""
-        while len(self._under_way) < _AHEAD * self._executor.workers:
-            task = self._again.popleft() if self._again else next(self._source, None)
-            if task is None:
-                break
-            self._number += 1
-            name = f"{task.run}-{self._number}"
-            try:
-                future = self._executor.submit(task, name)
-            except Exception:  # Dask has many; the next look at the cluster tells what is wrong
-                self._again.append(task)
-                return True
-            self._under_way[name] = (task, future)
-            future.add_done_callback(lambda _, name=name: self._finished.put(name))
-        return bool(self._under_way)
-
-    def _record(self, task: Task, future: Future) -> RunRecord | None:
-        """What became of it; None: to be handed out again.
-
-        Raises:
-            WorkerError: a worker refuses this study.
-        """
-        from distributed.scheduler import KilledWorker
-
-        from giveway.studies.execution.cluster_task import RECORD, REFUSED
-
-        if future.status not in {"finished", "error"}:
-            return None  # the connection was lost
-        try:
-            answer: dict[str, str] = future.result(timeout=_FETCH)
-        except KilledWorker as error:
-            return self._died(task, error)
-        except Exception as error:
-            if future.status != "error":  # its worker died before it could be fetched
-                return None
-            reason = " ".join(f"{type(error).__name__}: {error}".split())
-            msg = f"a worker cannot make runs ({reason}); install this giveway on every machine"
-            raise WorkerError(msg) from error
-        finally:
-            future.release()
-        if REFUSED in answer:
-            raise WorkerError(answer[REFUSED])
-        return RunRecord.from_json(answer[RECORD])
-
-    def _died(self, task: Task, error: Any) -> RunRecord | None:
-        count = self._killed[task.run] = self._killed.get(task.run, 0) + 1
-        if count < ATTEMPTS:
-            return None
-        deaths = (error.allowed_failures + 1) * count
-        failure = f"{deaths} Dask workers ended while they had this run, the last on "
-        failure += f"{error.last_worker.address}; look at their logs"
-        return RunRecord(
-            task.run, task.key, CRASHED, failure=failure, computing=Computing(attempts=count)
-        )
 
 
 def _require_dask() -> None:

@@ -6,6 +6,7 @@ worker along. Arguments and results are plain values: the other side may be anot
 
 from __future__ import annotations
 
+import signal
 import threading
 from pathlib import Path
 from typing import Any, Final
@@ -55,6 +56,11 @@ def leave(study: str) -> None:
         pool = _POOLS.pop(study, None)
     if pool is not None:
         pool.close()
+
+
+def leave_interrupts_to_the_study() -> None:
+    """In a Dask worker on the study's own terminal: Ctrl-C is not for it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _pool(study: str, limits: Limits) -> Pool:
