@@ -34,13 +34,13 @@ def row(study, metric: str = "completion_time", situation: str = "general") -> p
 def test_difference_is_treatment_minus_baseline_seed_by_seed(new_study) -> None:
     study = new_study({"controller": ["mpc", "pid"]})
     study.add("mpc", completion_time=[10.0, 20.0, 31.0])
-    study.add("pid", completion_time=[33.0, 21.0, 12.0], seeds=[3, 2, 1])
+    study.add("pid", completion_time=[35.0, 21.0, 12.0], seeds=[3, 2, 1])
     found = row(study)
     assert (found.treatment, found.baseline, found.n, found.unit) == ("mpc", "pid", 3, "s")
-    assert found.mean_difference == round(-5 / 3, 6)
+    assert found.mean_difference == round(-7 / 3, 6)
     assert found.median_difference == -2.0
     assert found.treatment_mean == round(61 / 3, 6)
-    assert found.baseline_mean == 22.0
+    assert found.baseline_mean == round(68 / 3, 6)
     assert found.wilcoxon_statistic == 0.0
     assert found.p_value == 0.25
 
