@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from sumo_scenarios import Scenario
 
+_KINDS_OF_EGO = ("take_over", "route", "none")
+
 
 def load(layers: Sequence[Layer]) -> tuple[RunConfig, Scenario]:
     """The configuration that ``layers`` amount to on top of their scenario's own settings.
@@ -43,7 +45,8 @@ def load(layers: Sequence[Layer]) -> tuple[RunConfig, Scenario]:
     layers = [*own, *layers]
     config = build_config([*_identified(layers), *layers])
     own_model = _model_of(build_config(layers))
-    return _placed(_each_identified(config, own_model), scenario), scenario
+    config = _with_one_ego(_each_identified(config, own_model), layers)
+    return _placed(config, scenario), scenario
 
 
 def _identified(layers: Sequence[Layer]) -> list[Layer]:
@@ -89,16 +92,31 @@ def _model_in(profile: object) -> dict[str, float]:
     return {} if model is None else {"mass": model.mass, "friction": model.friction}
 
 
+def _with_one_ego(config: RunConfig, layers: Sequence[Layer]) -> RunConfig:
+    """``config`` with the kind of ego that was asked for last, and nothing left of the others.
+
+    A scenario's own route means nothing to a run that takes over a vehicle; written down beside
+    it, the two would contradict each other.
+    """
+    asked = [key for layer in layers for key in _KINDS_OF_EGO if _ego_of(layer).get(key)]
+    nothing: dict[str, Any] = {"take_over": (), "route": (), "none": False}
+    others = {key: value for key, value in nothing.items() if asked and key != asked[-1]}
+    return config.model_copy(update={"ego": config.ego.model_copy(update=others)})
+
+
+def _ego_of(layer: Layer) -> Mapping[str, Any]:
+    ego = layer.values.get("ego")
+    return ego if isinstance(ego, Mapping) else {}
+
+
 def _require_one_ego(layer: Layer) -> None:
     """Make sure that one origin does not ask for several kinds of ego at once.
 
     Raises:
         ConfigError: it does.
     """
-    ego = layer.values.get("ego")
-    if not isinstance(ego, Mapping):
-        return
-    named = [layer.name(("ego", key)) for key in ("take_over", "route", "none") if ego.get(key)]
+    ego = _ego_of(layer)
+    named = [layer.name(("ego", key)) for key in _KINDS_OF_EGO if ego.get(key)]
     if len(named) > 1:
         msg = (
             f"{' and '.join(named)}: contradict each other; expected one of them: a vehicle of the "

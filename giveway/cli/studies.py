@@ -145,8 +145,9 @@ def _replay(
     rerun: Annotated[
         bool, typer.Option(help="Make the run again for its predicted positions.")
     ] = True,
+    show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write one HTML page that plays a run, in any browser, without a network."""
     from giveway.cli.replay import replay_command
 
-    raise typer.Exit(replay_command(run, out=out, rerun=rerun))
+    raise typer.Exit(replay_command(run, out=out, rerun=rerun, show=show))

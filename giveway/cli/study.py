@@ -13,7 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from giveway.cli.study_summary import print_plan, print_summary
 from giveway.kernels import compile_kernels_once
-from giveway.studies.definition import find_study, read_definition
+from giveway.studies.definition import changed, find_study, read_definition
 from giveway.studies.plan import plan
 from giveway.studies.study import estimate, processors, run_study
 
@@ -50,7 +50,7 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
     definition = read_definition(file)
     wanted = {"replications": request.runs, "first_seed": request.first_seed}
     changes = {key: value for key, value in wanted.items() if value is not None}
-    definition = definition.model_copy(update=changes)
+    definition = changed(definition, changes, request.study)
     out = request.out or Path("results") / f"study_{definition.name}"
     planned = plan(definition, request.study)
     compile_kernels_once(console)

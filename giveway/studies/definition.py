@@ -150,8 +150,21 @@ def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
     except tomllib.TOMLDecodeError as error:
         msg = f"{origin}: not valid TOML: {error}; mend the line named"
         raise ConfigError(msg) from None
+    return _validated(_anchored(values, folder), origin)
+
+
+def changed(definition: StudyDefinition, changes: dict[str, Any], origin: str) -> StudyDefinition:
+    """The study with some keys changed.
+
+    Raises:
+        ConfigError: it no longer is one.
+    """
+    return _validated(definition.model_dump(exclude_unset=True) | changes, origin)
+
+
+def _validated(values: dict[str, Any], origin: str) -> StudyDefinition:
     try:
-        return StudyDefinition.model_validate(_anchored(values, folder))
+        return StudyDefinition.model_validate(values)
     except ValidationError as error:
         raise ConfigError(f"{origin}: {_explain(error.errors(include_url=False)[0])}") from None
 

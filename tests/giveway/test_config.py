@@ -234,3 +234,10 @@ def test_a_long_clock_keeps_its_fractions_on_the_way_to_sumo() -> None:
 
     config = RunConfig.model_validate({"sumo": {"end": 54012.35}})
     assert _start_options(config, True, None).extra == ("--end", "54012.350")
+
+
+def test_an_ego_taken_over_leaves_nothing_of_the_scenarios_route():
+    """What is written down can be read again: the two kinds of ego would contradict each other."""
+    config, _ = load([Layer("user", {"scenario": "shared_space", "ego": {"take_over": ["car"]}})])
+    assert config.ego.route == ()
+    assert load([Layer("again", config.model_dump())])[0] == config
