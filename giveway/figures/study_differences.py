@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullLocator
 
 from giveway.figures.study_rows import PUBLISHED, digits_for, number, pretty_unit, wrapped
 from giveway.figures.style import BLACK, BLUE, GREY, ORANGE, quiet_grid, styled
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 BINS = 48
 TAIL = 2.5  # [%] of the differences at either end that need not be within the picture
+SPIKE = 30.0  # times the median bin, beyond which a bin hides the others
 DASHES = (0, (4, 2))
 
 
@@ -159,9 +160,25 @@ def _draw(
         axes.axvline(
             panel.published, color=PUBLISHED, linewidth=1.6, linestyle=DASHES, label="published"
         )  # fmt: skip
-    axes.set_ylim(0.0, 1.12 * max(float(counts.max()), 1.0))
-    axes.yaxis.set_major_locator(MaxNLocator(3, integer=True))
+    _count_axis(axes, counts)
     _count_beyond(axes, panel.values, edges)
+
+
+def _count_axis(axes: Axes, counts: NDArray[np.intp]) -> None:
+    """Counts from zero on; logarithmic where one bin would hide all others.
+
+    Most pairs may differ by next to nothing and a few by a lot, and these make the mean.
+    """
+    highest = max(float(counts.max()), 1.0)
+    if highest > SPIKE * max(float(np.median(counts[counts > 0])) if counts.any() else 0.0, 1.0):
+        axes.set_yscale("symlog", linthresh=1.0, linscale=0.5)
+        axes.set_ylim(0.0, 2.0 * highest)
+        ticks = [0, *(10**power for power in range(math.floor(math.log10(highest)) + 1))]
+        axes.set_yticks(ticks, labels=[f"{tick}" for tick in ticks])
+        axes.yaxis.set_minor_locator(NullLocator())
+        return
+    axes.set_ylim(0.0, 1.12 * highest)
+    axes.yaxis.set_major_locator(MaxNLocator(3, integer=True))
 
 
 def _numbers(panel: Differences, unit: str) -> str:

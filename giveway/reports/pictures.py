@@ -107,8 +107,9 @@ def _histograms(study: Study) -> Iterator[Picture]:
                 caption=(
                     f"{what}, pair by pair, on the same crowds. General: {metric(time).label} of "
                     f"all pairs; stop-and-wait: longest wait where both stopped; non-stop: "
-                    f"{metric(time).label} where neither did. A number with an arrow counts "
-                    "pairs beyond the axis."
+                    f"{metric(time).label} where neither did. Counts are "
+                    "logarithmic where one bin would hide the others. A number with an arrow "
+                    "counts pairs beyond the axis."
                 ),
                 alt=f"Histograms of the differences {what}: {_in_words(part, names)}",
                 figure=differences_figure(columns, part, title=what, source=SOURCE),
