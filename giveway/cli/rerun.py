@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rich.console import Console
+from rich.markup import escape
 
 from giveway.cli import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
@@ -54,6 +55,9 @@ def rerun_command(
     if result.ending is Ending.INTERRUPTED:
         return fail(f"interrupted; rows up to then are in {out}", INTERRUPTED)
     show(console, result, out)
-    if folder.record(run) is not None:
+    record = folder.record(run)
+    if record is not None and record.failed:
+        console.print(f"In the study it {record.ending}: {escape(record.failure)}", highlight=False)
+    elif record is not None:
         console.print("Its numbers are those of the study's row.")
     return 0

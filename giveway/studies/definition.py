@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import tomllib
+from copy import deepcopy
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import tomlkit
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
 from giveway.configfile import anchored
@@ -68,6 +70,7 @@ class StudyDefinition(Section):
     reference: Literal["", "yang2019"] = Field(
         "", description="published numbers that the report shows beside its own"
     )
+    folder: str = Field("", description="of relative file names; none: the study file's own")
     run: dict[str, Any] = Field(
         default_factory=dict, description="settings of every run, as in a run's TOML file"
     )
@@ -79,6 +82,10 @@ class StudyDefinition(Section):
     )
     comparison: Comparison = Comparison()
     precision: Precision | None = None
+
+    def placed(self, settings: dict[str, Any]) -> dict[str, Any]:
+        """``settings`` in which those files that exist in the study's folder have their path."""
+        return anchored(deepcopy(settings), Path(self.folder))
 
     @model_validator(mode="after")
     def _seeds_in_range(self) -> StudyDefinition:
@@ -150,7 +157,7 @@ def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
     except tomllib.TOMLDecodeError as error:
         msg = f"{origin}: not valid TOML: {error}; mend the line named"
         raise ConfigError(msg) from None
-    return _validated(_anchored(values, folder), origin)
+    return _validated(values | _folder_of(values, folder), origin)
 
 
 def changed(definition: StudyDefinition, changes: dict[str, Any], origin: str) -> StudyDefinition:
@@ -169,25 +176,67 @@ def _validated(values: dict[str, Any], origin: str) -> StudyDefinition:
         raise ConfigError(f"{origin}: {_explain(error.errors(include_url=False)[0])}") from None
 
 
-def _anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """``values`` with those files that exist relative to ``folder`` named absolutely."""
-    if isinstance(values.get("run"), dict):
-        anchored(values["run"], folder)
-    factors = values.get("factors")
-    if not isinstance(factors, dict):
-        return values
-    for name, levels in factors.items():
-        if name in {"scenario", "vehicle.fmu", "vehicle.profile"} and isinstance(levels, list):
-            table, _, key = name.rpartition(".")
-            for place, level in enumerate(levels):
-                nested = {table: {key: level}} if table else {key: level}
-                anchored(nested, folder)
-                levels[place] = (nested[table] if table else nested)[key]
-        elif isinstance(levels, dict):
-            for level in levels.values():
-                if isinstance(level, dict):
-                    anchored(level, folder)
-    return values
+def _folder_of(values: dict[str, Any], folder: Path) -> dict[str, str]:
+    """The folder of relative file names, as far as there are any: else it does not matter."""
+    named = values.get("folder", "")
+    varied = (values.get("run"), values.get("factors"))
+    if isinstance(named, str) and (named or any(_holds_file_of(folder, v) for v in varied)):
+        return {"folder": str(folder / named)}
+    return {}
+
+
+def _holds_file_of(folder: Path, values: Any) -> bool:
+    """Whether some text in ``values`` names a file or folder in ``folder``."""
+    if isinstance(values, dict):
+        return any(_holds_file_of(folder, value) for value in values.values())
+    if isinstance(values, list):
+        return any(_holds_file_of(folder, value) for value in values)
+    if not isinstance(values, str):
+        return False
+    try:
+        return bool(anchored({"scenario": values}, folder)["scenario"] != values)
+    except OSError:  # a text too long for a name
+        return False
+
+
+def dump_definition(definition: StudyDefinition) -> str:
+    """The study as TOML, from which :func:`parse_definition` makes the same cells.
+
+    Factors stay in their order, and so do the numbers of the cells: TOML tables would have to
+    stand behind the plain lists. Hence one line per level.
+    """
+    values = definition.model_dump(mode="json", exclude_none=True)
+    document = tomlkit.document()
+    for key, value in values.items():
+        if not isinstance(value, dict):
+            document.append(key, _inline(value))
+    for key, value in values.items():
+        if key == "factors":
+            table = tomlkit.table()
+            for name, levels in value.items():
+                if isinstance(levels, dict):
+                    for label, level in levels.items():
+                        table.append(tomlkit.key([name, label]), _inline(level))
+                else:
+                    table.append(name, _inline(levels))
+            document.append(key, table)
+        elif isinstance(value, dict):
+            document.append(key, tomlkit.item(value))
+    return tomlkit.dumps(document)
+
+
+def _inline(value: Any) -> Any:
+    if isinstance(value, dict):
+        table = tomlkit.inline_table()
+        for key, item in value.items():
+            table.append(key, _inline(item))
+        return table
+    if isinstance(value, list | tuple):
+        array = tomlkit.array()
+        for item in value:
+            array.append(_inline(item))
+        return array
+    return tomlkit.item(value)
 
 
 def _explain(error: Any) -> str:

@@ -32,6 +32,8 @@ _RESERVED = frozenset({"run", "cell", "seed", "ego", "ending", "runs", "failed"}
     for column in columns
 }  # columns of the tables
 
+_NOTHING = "none"  # an empty text or list, as a label
+
 
 @dataclass(frozen=True)
 class Level:
@@ -85,9 +87,9 @@ class Cell:
         """Factor by factor, as in "crowd.pedestrians = 30, controller = mpc"."""
         return ", ".join(f"{name} = {level.label}" for name, level in self.levels.items())
 
-    def layer(self, origin: str, shared: dict[str, Any]) -> Layer:
+    def layer(self, origin: str, definition: StudyDefinition) -> Layer:
         """Its settings on top of those that all cells share."""
-        layers = [Layer(origin, shared)]
+        layers = [Layer(origin, definition.placed(definition.run))]
         layers += [Layer(origin, level.settings) for level in self.levels.values()]
         return Layer(f"{origin}: cell {self.number} ({self.label})", merge(layers))
 
@@ -123,7 +125,8 @@ def design(definition: StudyDefinition, origin: str) -> Design:
     Raises:
         ConfigError: a factor or a cell cannot be used.
     """
-    factors = tuple(_factors(definition.factors, origin))
+    _require_no_seed(definition.run, f"{origin}: [run]")
+    factors = tuple(_factors(definition, origin))
     if definition.cells:
         chosen = [
             _listed(entry, factors, f"{origin}: cells[{number}]")
@@ -142,26 +145,38 @@ def design(definition: StudyDefinition, origin: str) -> Design:
 
 
 def label_of(value: object) -> str:
-    """How a value is written in a label."""
+    """How a value is written in a label; nothing is "none", for tables would lose it."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, list | tuple):
-        return ",".join(label_of(item) for item in value)
-    return f"{value:.12g}" if isinstance(value, float) else str(value)
+        return ",".join(label_of(item) for item in value) or _NOTHING
+    return f"{value:.12g}" if isinstance(value, float) else str(value) or _NOTHING
 
 
-def _factors(tables: dict[str, Any], origin: str) -> list[Factor]:
-    found = []
-    for name, levels in tables.items():
+def _require_no_seed(settings: dict[str, Any], place: str) -> None:
+    """Seeds are what makes pairs; a cell cannot have its own."""
+    if "seed" in settings:
+        msg = (
+            f"{place} seed = {settings['seed']!r}: every cell is run with the same seeds; leave it "
+            "out, and set replications and first_seed"
+        )
+        raise ConfigError(msg)
+
+
+def _factors(definition: StudyDefinition, origin: str) -> list[Factor]:
+    found: list[Factor] = []
+    for name, levels in definition.factors.items():
         place = f"{origin}: [factors] {name}"
         if isinstance(levels, list):
-            found.append(_option_factor(name, levels, place))
-        elif isinstance(levels, dict) and all(isinstance(v, list) for v in levels.values()):
+            found.append(_option_factor(name, levels, place, definition))
+        elif isinstance(levels, dict) and _all_are(list, levels):
             # crowd.pedestrians = [...] without quotes is a table within a table
-            found += [_option_factor(f"{name}.{key}", v, place) for key, v in levels.items()]
-        elif isinstance(levels, dict) and all(isinstance(v, dict) for v in levels.values()):
-            named = [Level(label, label, settings) for label, settings in levels.items()]
-            found.append(_factor(name, named, place))
+            found += [
+                _option_factor(f"{name}.{key}", values, f"{place}.{key}", definition)
+                for key, values in levels.items()
+            ]
+        elif isinstance(levels, dict) and _all_are(dict, levels):
+            found.append(_named_factor(name, levels, place, definition))
         else:
             msg = (
                 f"{place} = {levels!r}: expected a list of values, or a table of named levels like "
@@ -179,7 +194,24 @@ def _factors(tables: dict[str, Any], origin: str) -> list[Factor]:
     return found
 
 
-def _option_factor(name: str, values: list[Any], place: str) -> Factor:
+def _all_are(kind: type, levels: dict[str, Any]) -> bool:
+    return bool(levels) and all(isinstance(value, kind) for value in levels.values())
+
+
+def _named_factor(
+    name: str, levels: dict[str, Any], place: str, definition: StudyDefinition
+) -> Factor:
+    named = []
+    for label, settings in levels.items():
+        _require_no_seed(settings, f"{place}.{label}:")
+        if not label.strip():
+            msg = f"{place}: level {label!r}: expected a name that tables can show"
+            raise ConfigError(msg)
+        named.append(Level(label, label, definition.placed(settings)))
+    return _factor(name, named, place)
+
+
+def _option_factor(name: str, values: list[Any], place: str, definition: StudyDefinition) -> Factor:
     known = {".".join(option.location): option for option in options()}
     if name == "seed":
         msg = f"{place}: seeds are not a factor; set replications and first_seed"
@@ -197,8 +229,8 @@ def _option_factor(name: str, values: list[Any], place: str) -> Factor:
         for table in option.location[:-1]:
             node = node.setdefault(table, {})
         node[option.location[-1]] = value
-        shown = value if isinstance(value, str | bool | int | float) else label_of(value)
-        levels.append(Level(label_of(value), shown, settings))
+        shown = value if isinstance(value, bool | int | float) else label_of(value)
+        levels.append(Level(label_of(value), shown, definition.placed(settings)))
     return _factor(name, levels, place, option.unit)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections import defaultdict
 from functools import cached_property
 from pathlib import Path
@@ -13,9 +14,16 @@ import pandas as pd
 from giveway.errors import ResultsError
 from giveway.studies.definition import StudyDefinition, parse_definition
 from giveway.studies.design import Cell, Design, design
-from giveway.studies.frames import cells_frame, execution_frame, failures_frame, runs_frame
+from giveway.studies.frames import (
+    cells_frame,
+    execution_frame,
+    failures_frame,
+    runs_columns,
+    runs_frame,
+)
 from giveway.studies.identity import run_key
-from giveway.studies.statistics import compare, situations
+from giveway.studies.record import run_id
+from giveway.studies.statistics import COMPARISON_COLUMNS, compare, situations
 from giveway.studies.store import RecordStore
 
 if TYPE_CHECKING:
@@ -23,6 +31,7 @@ if TYPE_CHECKING:
 
 DEFINITION = "study.toml"
 MANIFEST = "manifest.json"
+_RUN = re.compile(r"c([1-9][0-9]*)-s(0|[1-9][0-9]*)")
 
 
 class StudyFolder:
@@ -38,7 +47,7 @@ class StudyFolder:
         manifest: software, input files, the cells' digests.
 
     Raises:
-        ResultsError: there is no study.
+        ResultsError: there is no study, or one that was killed while it began.
     """
 
     path: Path
@@ -53,7 +62,9 @@ class StudyFolder:
         try:
             text = (path / DEFINITION).read_text(encoding="utf-8")
             self.manifest = json.loads((path / MANIFEST).read_text(encoding="utf-8"))
-            self._digests = {cell["cell"]: cell["digest"] for cell in self.manifest["cells"]}
+            cells = self.manifest["cells"]
+            self._digests: dict[int, str] = {cell["cell"]: cell["digest"] for cell in cells}
+            labels: dict[int, str] = {cell["cell"]: cell["label"] for cell in cells}
             self._seeds = int(self.manifest["seeds"])
         except (OSError, ValueError, KeyError, TypeError):
             msg = (
@@ -63,6 +74,12 @@ class StudyFolder:
             raise ResultsError(msg) from None
         self.definition = parse_definition(text, origin, path.absolute())
         self.design = design(self.definition, origin)
+        if labels != {cell.number: cell.label for cell in self.design.cells}:
+            msg = (
+                f"{path}: {MANIFEST} lists other cells than {DEFINITION}, as after a kill in the "
+                "very beginning; go on with giveway study and --resume"
+            )
+            raise ResultsError(msg)
 
     @classmethod
     def open(cls, path: str | Path) -> StudyFolder:
@@ -76,6 +93,11 @@ class StudyFolder:
         return range(first, first + self._seeds)
 
     @property
+    def complete(self) -> bool:
+        """Whether the tables there are those of the whole study."""
+        return bool(self.manifest.get("complete"))
+
+    @property
     def planned(self) -> int:
         """How many runs it has when it is complete."""
         return len(self.seeds) * len(self.design.cells)
@@ -86,7 +108,7 @@ class StudyFolder:
         found = []
         for cell in self.design.cells:
             for seed in self.seeds:
-                record = self._store.get(run_key(self._digests[cell.number], seed))
+                record = self._kept_record(cell, seed)
                 if record is not None:
                     found.append((cell, seed, record))
         return found
@@ -107,7 +129,7 @@ class StudyFolder:
     @cached_property
     def comparison(self) -> pd.DataFrame:
         """Paired differences: one row per context, ego, treatment, situation and metric."""
-        kept = self._kept("comparison")
+        kept = self._kept_comparison()
         if kept is not None:
             return kept
         return compare(self.runs, self.design, self.definition.comparison)
@@ -127,41 +149,50 @@ class StudyFolder:
         """How each run was computed."""
         return execution_frame(record for _, _, record in self.records)
 
-    def cell_of(self, run_id: str) -> tuple[Cell, int]:
+    def cell_of(self, run: str) -> tuple[Cell, int]:
         """The cell and the seed of a run.
 
         Raises:
             ResultsError: this study has no such run.
         """
-        number, _, seed = run_id.removeprefix("c").partition("-s")
-        if number.isdecimal() and seed.isdecimal():
-            cell = next((c for c in self.design.cells if c.number == int(number)), None)
-            if cell is not None and int(seed) in self.seeds:
-                return cell, int(seed)
-        last = f"c{len(self.design.cells)}-s{self.seeds[-1]}"
+        parts = _RUN.fullmatch(run)
+        if parts is not None:
+            number, seed = map(int, parts.groups())
+            cell = next((c for c in self.design.cells if c.number == number), None)
+            if cell is not None and seed in self.seeds:
+                return cell, seed
+        first = run_id(1, self.seeds[0])
+        last = run_id(len(self.design.cells), self.seeds[-1])
         msg = (
-            f"run '{run_id}': not in {self.path}; expected c<cell>-s<seed>, "
-            f"c1-s{self.seeds[0]} to {last}: see runs.csv"
+            f"run '{run}': not in {self.path}; expected c<cell>-s<seed>, "
+            f"{first} to {last}: see runs.csv"
         )
         raise ResultsError(msg)
 
-    def record(self, run_id: str) -> RunRecord | None:
+    def record(self, run: str) -> RunRecord | None:
         """What is kept of a run; None: it has not been made.
 
         Raises:
             ResultsError: this study has no such run.
         """
-        cell, seed = self.cell_of(run_id)
-        return self._store.get(run_key(self._digests[cell.number], seed))
+        return self._kept_record(*self.cell_of(run))
 
-    def _kept(self, name: str) -> pd.DataFrame | None:
-        """A table that takes long to make, as it was written; None: not there."""
-        path = self.path / f"{name}.csv"
-        if not path.is_file():
+    def _kept_record(self, cell: Cell, seed: int) -> RunRecord | None:
+        record = self._store.get(run_key(self._digests[cell.number], seed))
+        return None if record is None else record.called(run_id(cell.number, seed))
+
+    def _kept_comparison(self) -> pd.DataFrame | None:
+        """The table that takes long to make, as it was written; None: not that of all runs."""
+        path = self.path / "comparison.csv"
+        if not self.complete or not path.is_file():
             return None
-        context = [f.name for f in self.design.factors if f.unit is None]
-        texts = dict.fromkeys((*context, "ego", "treatment", "baseline"), str)
+        columns = (*runs_columns(self.design), *COMPARISON_COLUMNS)
+        texts = {column.name for column in columns if column.type == "string"}
         try:
-            return pd.read_csv(path, dtype=texts, keep_default_na=False, na_values=[""])
+            frame = pd.read_csv(
+                path, dtype=dict.fromkeys(texts, str), keep_default_na=False, na_values=[""]
+            )
         except (OSError, ValueError):
             return None
+        empty = dict.fromkeys(texts & set(frame.columns), "")  # an ego has no name, a count no unit
+        return frame.fillna(empty)

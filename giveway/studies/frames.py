@@ -9,7 +9,7 @@ import pandas as pd
 
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.schema import Column
-from giveway.studies.record import CRASHED
+from giveway.studies.record import CRASHED, run_id
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -70,7 +70,7 @@ def runs_frame(records: Iterable[tuple[Cell, int, RunRecord]], design: Design) -
     """
     rows: list[dict[str, Any]] = []
     for cell, seed, record in records:
-        head = {"run": record.run, "cell": cell.number, "seed": seed}
+        head = {"run": run_id(cell.number, seed), "cell": cell.number, "seed": seed}
         head |= {name: level.value for name, level in cell.levels.items()}
         for row in record.rows or ({"ending": record.ending},):
             known = {field.name: row[field.name] for field in SUMMARY_FIELDS if field.name in row}
@@ -83,7 +83,7 @@ def runs_frame(records: Iterable[tuple[Cell, int, RunRecord]], design: Design) -
 
 def _typed(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
     """Numbers are numbers also where some are missing: as floats, with nan for those."""
-    plain = {"integer": "int64", "boolean": "bool"}
+    plain: dict[str, Any] = {"integer": "int64", "boolean": "bool"}
     for column in columns:
         if column.type == "number" or (column.type in plain and frame[column.name].isna().any()):
             frame[column.name] = frame[column.name].astype(float)

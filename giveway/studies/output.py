@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.errors import ResultsError
 from giveway.results import fields_of
 from giveway.schema import Column
 from giveway.studies.frames import EXECUTION_COLUMNS, FAILURE_COLUMNS, runs_columns, written
+from giveway.studies.whole_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     import pandas as pd
 
     from giveway.studies.folder import StudyFolder
 
 TABLES = ("runs", "cells", "comparison", "situations", "execution", "failures")
+PACKAGE = "datapackage.json"
 _LONG = frozenset({"comparison", "situations"})  # these take their time
 _DECIMALS = 6
 _SIGNIFICANT = frozenset({"p_value", "q_value"})  # of these the first six digits count
@@ -41,7 +41,8 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
     columns = {name: _columns(study, name) for name in names}
     for name in names:
         frame = written(getattr(study, name), columns[name])
-        _write(study.path / f"{name}.csv", _rounded(frame).to_csv(index=False, lineterminator="\n"))
+        text = _rounded(frame).to_csv(index=False, lineterminator="\n")
+        write_whole(study.path / f"{name}.csv", text)
     package = {
         "profile": "tabular-data-package",
         "name": f"giveway-study-{study.definition.name}".lower().replace("_", "-"),
@@ -59,9 +60,8 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
             for name in names
         ],
     }
-    _write(
-        study.path / "datapackage.json", json.dumps(package, indent=2, ensure_ascii=False) + "\n"
-    )
+    text = json.dumps(package, indent=2, ensure_ascii=False) + "\n"
+    write_whole(study.path / PACKAGE, text)
 
 
 def _columns(study: StudyFolder, name: str) -> Sequence[Column]:
@@ -104,13 +104,3 @@ def _rounded(frame: pd.DataFrame) -> pd.DataFrame:
         else:
             frame[name] = np.round(values, _DECIMALS) + 0.0
     return frame
-
-
-def _write(path: Path, text: str) -> None:
-    new = path.with_suffix(".new")
-    try:
-        new.write_text(text, encoding="utf-8", newline="")
-        new.replace(path)
-    except OSError as error:
-        msg = f"{path}: cannot be written ({error.strerror}); free the disk and use --resume"
-        raise ResultsError(msg) from error

@@ -11,7 +11,7 @@ from giveway.loading import load
 from giveway.scenario_files import read_scenario
 from giveway.studies.design import design
 from giveway.studies.identity import cell_digest, input_hashes, run_key, software_identity
-from giveway.studies.record import Task
+from giveway.studies.record import Task, run_id
 from giveway.studies.statistics import metric
 from giveway.vehicles import require_vehicles
 from giveway.zone import Zone
@@ -50,8 +50,8 @@ class PlannedRun:
 
     @property
     def id(self) -> str:
-        """Its name within the study: ``c2-s17`` is seed 17 in cell 2."""
-        return f"c{self.planned.cell.number}-s{self.seed}"
+        """Its name within the study."""
+        return run_id(self.planned.cell.number, self.seed)
 
     @property
     def key(self) -> str:
@@ -134,7 +134,7 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
 
 def _planned(cell: Cell, definition: StudyDefinition, origin: str) -> PlannedCell:
     try:
-        config, scenario = load([cell.layer(origin, definition.run)])
+        config, scenario = load([cell.layer(origin, definition)])
         config = config.model_copy(update={"seed": definition.first_seed})
         files = read_scenario(scenario.config_file)
         files.require_inputs()

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 Scalar = str | bool | int | float
 
 CRASHED = "crashed"
 FAILED = "failed"
+
+
+def run_id(cell: int, seed: int) -> str:
+    """What a run is called within its study: ``c2-s17`` is seed 17 in cell 2."""
+    return f"c{cell}-s{seed}"
 
 
 @dataclass(frozen=True)
@@ -75,6 +80,13 @@ class RunRecord:
     def failed(self) -> bool:
         """Whether it has no result."""
         return bool(self.failure)
+
+    def called(self, run: str) -> RunRecord:
+        """The same record under another name: as the study numbers its cells now.
+
+        Cells with equal settings share their records, and a level that is added moves numbers.
+        """
+        return self if self.run == run else replace(self, run=run)
 
     def to_json(self) -> str:
         """The record as one line of JSON; nan, which JSON does not know, becomes null."""

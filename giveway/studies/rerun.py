@@ -9,6 +9,7 @@ from giveway.api import run_layers
 from giveway.configfile import Layer
 from giveway.errors import GivewayError
 from giveway.loading import load
+from giveway.simulation import Ending
 from giveway.studies.performing import rows_of
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from giveway.studies.folder import StudyFolder
     from giveway.studies.record import RunRecord, Scalar
 
+_PERHAPS = "other software or scenario files since then? Compare its manifest.json"
 PREDICTIONS = 0.25  # [s] between two predicted positions that are kept, where they are
 
 
@@ -35,7 +37,7 @@ def config_of(study: StudyFolder, run_id: str) -> RunConfig:
     """
     cell, seed = study.cell_of(run_id)
     origin = str(study.path / "study.toml")
-    config, _ = load([cell.layer(origin, study.definition.run)])
+    config, _ = load([cell.layer(origin, study.definition)])
     return config.model_copy(update={"seed": seed})
 
 
@@ -79,7 +81,7 @@ def rerun(
         journal=journal,
     )
     record = study.record(run_id)
-    if record is not None and not record.failed:
+    if record is not None and not record.failed and result.ending is not Ending.INTERRUPTED:
         require_same_rows(result, record, study)
     return result
 
@@ -90,12 +92,19 @@ def require_same_rows(result: RunResult, record: RunRecord, study: StudyFolder) 
     Raises:
         OtherNumbersError: it does not; the message names the first difference.
     """
-    for ours, theirs in zip(rows_of(result), record.rows, strict=False):
+    rows = rows_of(result)
+    if len(rows) != len(record.rows):
+        msg = (
+            f"run {record.run}: {len(rows)} egos where {study.path} has {len(record.rows)}; "
+            f"{_PERHAPS}"
+        )
+        raise OtherNumbersError(msg)
+    for ours, theirs in zip(rows, record.rows, strict=True):
         for name, value in theirs.items():
             if not _same(ours.get(name), value):
                 msg = (
                     f"run {record.run}: {name} = {ours.get(name)} where {study.path} has {value}; "
-                    "other software or scenario files since then? Compare its manifest.json"
+                    f"{_PERHAPS}"
                 )
                 raise OtherNumbersError(msg)
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING
 
 from giveway.errors import ResultsError
 from giveway.studies.record import RunRecord
+from giveway.studies.whole_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -53,21 +53,7 @@ class RecordStore:
         Raises:
             ResultsError: the disk is full or not writable.
         """
-        path = self._path(record.key)
-        new = path.with_suffix(".new")
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with new.open("w", encoding="utf-8") as file:
-                file.write(record.to_json() + "\n")
-                file.flush()
-                os.fsync(file.fileno())
-            new.replace(path)
-        except OSError as error:
-            msg = (
-                f"{error.filename or path}: cannot be written ({error.strerror}); every run "
-                "finished before is kept: free the disk and go on with --resume"
-            )
-            raise ResultsError(msg) from error
+        write_whole(self._path(record.key), record.to_json() + "\n", durable=True)
 
     def keys(self) -> Iterator[str]:
         """Of every record, also of those that no plan asks for any more."""

@@ -3,28 +3,27 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
-from contextlib import contextmanager
+from collections import defaultdict
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import filelock
-import tomlkit
-
-from giveway.errors import GivewayError, ResultsError
+from giveway.errors import GivewayError
 from giveway.manifest import software_versions
-from giveway.studies.execution import cluster_executor, local_executor
+from giveway.studies.claim import claimed, clear, forget_tables
+from giveway.studies.definition import dump_definition
 from giveway.studies.folder import DEFINITION, MANIFEST, StudyFolder
 from giveway.studies.frames import runs_frame
 from giveway.studies.identity import software_identity
-from giveway.studies.output import TABLES, write_tables
+from giveway.studies.options import StudyOptions, processors
+from giveway.studies.output import write_tables
 from giveway.studies.plan import Plan, plan
-from giveway.studies.statistics import precise_enough
-from giveway.studies.store import RECORDS, RecordStore
+from giveway.studies.statistics import looks, precise_enough
+from giveway.studies.store import RecordStore
+from giveway.studies.whole_files import write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
     from pathlib import Path
 
     from giveway.studies.definition import StudyDefinition
@@ -32,61 +31,20 @@ if TYPE_CHECKING:
     from giveway.studies.plan import PlannedRun
     from giveway.studies.record import RunRecord
 
-HANG_LIMIT = 120.0  # [s] of wall clock without progress, as for a single run
-LOCK = ".lock"
-OURS = frozenset(
-    {
-        DEFINITION,
-        MANIFEST,
-        RECORDS,
-        LOCK,
-        *(f"{name}.csv" for name in TABLES),
-        "datapackage.json",
-        "figures",
-        "report.html",
-        "replays",
-        "reruns",
-    }
-)
+__all__ = [
+    "StudyInterruptedError",
+    "StudyOptions",
+    "StudyProgress",
+    "estimate",
+    "processors",
+    "run_study",
+]
 
 
 class StudyInterruptedError(GivewayError):
     """The user ended a study; every finished run is kept."""
 
     exit_code = 130  # 128 + SIGINT, as shells have it
-
-
-@dataclass(frozen=True)
-class StudyOptions:
-    """How a study is computed, which its results do not depend on.
-
-    Attributes:
-        jobs: worker processes on this machine; None: one per processor that we may use.
-        cluster: address of a Dask scheduler instead, or "local:N".
-        resume: go on with what is in the folder.
-        force: replace what is in the folder.
-        retry_failed: make failed runs again.
-        hang_limit: [s] without progress after which a run's worker is killed.
-        run_limit: [s] of wall clock that one run may take; None: no limit.
-    """
-
-    jobs: int | None = None
-    cluster: str | None = None
-    resume: bool = False
-    force: bool = False
-    retry_failed: bool = False
-    hang_limit: float = HANG_LIMIT
-    run_limit: float | None = None
-
-    def executor(self) -> Executor:
-        """Who computes."""
-        if self.cluster is not None:
-            return cluster_executor(
-                self.cluster, hang_limit=self.hang_limit, run_limit=self.run_limit
-            )
-        return local_executor(
-            jobs=self.jobs or processors(), hang_limit=self.hang_limit, run_limit=self.run_limit
-        )
 
 
 @dataclass(frozen=True)
@@ -103,13 +61,6 @@ class StudyProgress:
     def finished(self) -> int:
         """Runs that are on disk."""
         return self.kept + self.made
-
-
-def processors() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def run_study(
@@ -133,18 +84,17 @@ def run_study(
     """
     options = options or StudyOptions()
     planned = plan(definition, origin)
-    _check_folder(out, options)
-    with _locked(out):
-        if options.force:
-            _clear(out)
+    with claimed(out, definition.name, options):
         session = _Session(planned, out, options, watcher or (lambda _: None))
-        session.begin()
         try:
-            session.compute()
+            with options.executor() as executor:
+                session.begin()
+                session.compute(executor)
+            session.end()
         except KeyboardInterrupt:
-            session.end(whole=False)
+            with suppress(KeyboardInterrupt):  # who asks twice does without the tables
+                session.break_off()
             raise StudyInterruptedError(session.interrupted()) from None
-        session.end(whole=True)
     return StudyFolder(out)
 
 
@@ -166,35 +116,43 @@ class _Session:
         self._records: dict[str, RunRecord] = {}
         self._kept = self._made = self._failed = 0
         self._seeds = planned.seeds
+        self._begun = False
 
     def begin(self) -> None:
-        """Write down what the study is; tables of a former session no longer hold."""
-        for name in TABLES:
-            (self._out / f"{name}.csv").unlink(missing_ok=True)
-        self._write(DEFINITION, dump_definition(self._plan.definition))
-        self._write_manifest()
+        """Write down what the study is; tables and report of a former session no longer hold."""
+        if self._options.force:
+            clear(self._out)
+        forget_tables(self._out)
+        write_whole(self._out / DEFINITION, dump_definition(self._plan.definition), durable=True)
+        self._write_manifest(complete=False)
+        self._begun = True
 
-    def compute(self) -> None:
+    def compute(self, executor: Executor) -> None:
         """Make every run that is missing, in batches if precision decides how many."""
         precision = self._plan.definition.precision
         seeds = self._plan.seeds
-        with self._options.executor() as executor:
-            if precision is None:
-                self._make(executor, seeds)
+        if precision is None:
+            self._make(executor, seeds)
+            return
+        before = 0
+        for count in looks(precision, len(seeds)):
+            self._make(executor, seeds[before:count])
+            before, self._seeds = count, seeds[:count]
+            if count < len(seeds) and self._precise():
                 return
-            count = min(precision.minimum, len(seeds))
-            while True:
-                self._make(executor, seeds[:count])
-                if count == len(seeds) or self._precise(seeds[:count]):
-                    break
-                count = min(count + precision.batch, len(seeds))
-        self._seeds = seeds[:count]
 
-    def end(self, *, whole: bool) -> None:
-        """Write the tables; of an unfinished study those that take no time."""
-        if whole:
-            self._write_manifest()
-        write_tables(StudyFolder(self._out), whole=whole)
+    def end(self) -> None:
+        """Write the tables, then that they are those of the whole study."""
+        self._write_manifest(complete=False)  # precision has decided how many seeds there are
+        write_tables(StudyFolder(self._out), whole=True)
+        self._write_manifest(complete=True)
+
+    def break_off(self) -> None:
+        """Write those tables that take no time."""
+        if self._begun:
+            self._seeds = self._plan.seeds
+            self._write_manifest(complete=False)
+            write_tables(StudyFolder(self._out), whole=False)
 
     def interrupted(self) -> str:
         """What to tell the user."""
@@ -202,51 +160,51 @@ class _Session:
         return f"interrupted; {done} are kept in {self._out}: go on with --resume"
 
     def _make(self, executor: Executor, seeds: range) -> None:
-        missing = [run for run in self._plan.runs(seeds) if not self._known(run)]
-        for record in executor.run(run.task() for run in missing):
+        """Make those runs of ``seeds`` that are not there; cells with equal settings share them."""
+        missing: defaultdict[str, list[PlannedRun]] = defaultdict(list)
+        for run in self._plan.runs(seeds):
+            record = self._store.get(run.key)
+            if record is None or (record.failed and self._options.retry_failed):
+                missing[run.key].append(run)
+            else:
+                self._records[run.key] = record
+                self._kept += 1
+                self._failed += record.failed
+                self._tell(None)
+        for record in executor.run(runs[0].task() for runs in missing.values()):
             self._store.put(record)
             self._records[record.key] = record
-            self._made += 1
-            self._failed += record.failed
+            count = len(missing[record.key])
+            self._made += count
+            self._failed += count * record.failed
             self._tell(record)
-
-    def _known(self, run: PlannedRun) -> bool:
-        """Whether the run is there; the first look finds those of former sessions."""
-        if run.key in self._records:
-            return True
-        record = self._store.get(run.key)
-        if record is None or (record.failed and self._options.retry_failed):
-            return False
-        self._records[run.key] = record
-        self._kept += 1
-        self._failed += record.failed
-        self._tell(None)
-        return True
 
     def _tell(self, record: RunRecord | None) -> None:
         total = len(self._plan)
         self._watcher(StudyProgress(total, self._kept, self._made, self._failed, record))
 
-    def _precise(self, seeds: range) -> bool:
-        definition = self._plan.definition
+    def _precise(self) -> bool:
+        """Whether the seeds so far tell the difference well enough."""
+        definition, design = self._plan.definition, self._plan.design
         assert definition.precision is not None
         made = [
-            (run.planned.cell, run.seed, self._records[run.key]) for run in self._plan.runs(seeds)
+            (run.planned.cell, run.seed, self._records[run.key])
+            for run in self._plan.runs(self._seeds)
         ]
-        frame = runs_frame(made, self._plan.design)
         enough, _ = precise_enough(
-            frame,
-            self._plan.design,
+            runs_frame(made, design),
+            design,
             definition.comparison,
             definition.precision,
-            seeds=len(seeds),
+            seeds=len(self._seeds),
         )
         return enough
 
-    def _write_manifest(self) -> None:
+    def _write_manifest(self, *, complete: bool) -> None:
         content = {
             "study": self._plan.definition.name,
             "seeds": len(self._seeds),
+            "complete": complete,
             "identity": software_identity(),
             "cells": [
                 {
@@ -259,85 +217,8 @@ class _Session:
             ],
             "software": software_versions(),
         }
-        self._write(MANIFEST, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
-
-    def _write(self, name: str, text: str) -> None:
-        path = self._out / name
-        try:
-            new = path.with_suffix(".new")
-            new.write_text(text, encoding="utf-8")
-            new.replace(path)
-        except OSError as error:
-            msg = f"{path}: cannot be written ({error.strerror}); free the disk and use --resume"
-            raise ResultsError(msg) from error
-
-
-def dump_definition(definition: StudyDefinition) -> str:
-    """The study as TOML."""
-    return tomlkit.dumps(definition.model_dump(mode="json", exclude_none=True))
-
-
-def _check_folder(out: Path, options: StudyOptions) -> None:
-    """Make sure that the study may go to ``out``; nothing is changed.
-
-    Raises:
-        ResultsError: it holds a study and neither resume nor force is given, or something else.
-    """
-    if not out.exists():
-        return
-    if not out.is_dir():
-        msg = f"{out}: is a file; expected a folder for the study, name another with --out"
-        raise ResultsError(msg)
-    present = {path.name for path in out.iterdir()} - {LOCK}
-    foreign = sorted(present - OURS)
-    if foreign:
-        msg = (
-            f"{out}: holds '{foreign[0]}', which no study of giveway wrote; name another folder "
-            "with --out"
-        )
-        raise ResultsError(msg)
-    if present and not (options.resume or options.force):
-        msg = (
-            f"{out}: a study is there; go on with it by --resume, replace it by --force, or name "
-            "another folder with --out"
-        )
-        raise ResultsError(msg)
-
-
-def _clear(out: Path) -> None:
-    for name in OURS - {LOCK}:
-        path = out / name
-        try:
-            if path.is_dir():
-                shutil.rmtree(path)
-            else:
-                path.unlink(missing_ok=True)
-        except OSError as error:
-            msg = f"{path}: cannot be removed ({error.strerror}); name another folder with --out"
-            raise ResultsError(msg) from error
-
-
-@contextmanager
-def _locked(out: Path) -> Iterator[None]:
-    """No two processes work on one study; a killed one holds nothing.
-
-    Raises:
-        ResultsError: another does, or the folder cannot be made.
-    """
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        lock = filelock.FileLock(out / LOCK, timeout=0)
-        lock.acquire()
-    except filelock.Timeout:
-        msg = f"{out}: another giveway study is at work there; wait for it, or name another --out"
-        raise ResultsError(msg) from None
-    except OSError as error:
-        msg = f"{out}: cannot be written ({error.strerror}); name another folder with --out"
-        raise ResultsError(msg) from error
-    try:
-        yield
-    finally:
-        lock.release()
+        text = json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+        write_whole(self._out / MANIFEST, text, durable=True)
 
 
 def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, Any]]:

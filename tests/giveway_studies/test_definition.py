@@ -5,6 +5,7 @@ import pytest
 from giveway.errors import ConfigError
 from giveway.studies.definition import (
     bundled_studies,
+    dump_definition,
     find_study,
     parse_definition,
     read_definition,
@@ -75,8 +76,9 @@ def test_named_levels_may_set_several_options():
         [comparison]
         factor = "driver"
     """
-    made = design(parsed(text), "mine.toml")
-    layer = made.cells[1].layer("mine.toml", {"pid": {"integral_gain": 0}})
+    definition = parsed(text + "[run.pid]\nintegral_gain = 0\n")
+    made = design(definition, "mine.toml")
+    layer = made.cells[1].layer("mine.toml", definition)
     assert layer.values == {
         "controller": "pid",
         "pid": {"integral_gain": 0, "proportional_gain": 300},
@@ -104,8 +106,64 @@ def test_files_are_relative_to_the_study_file(tmp_path):
     (tmp_path / "car.fmu").touch()
     text = MINIMAL + '"vehicle.fmu" = ["fmi2", "./car.fmu"]\n[run.vehicle]\nprofile = "./no.toml"\n'
     definition = parsed(text, tmp_path)
-    assert definition.factors["vehicle.fmu"] == ["fmi2", str(tmp_path / "car.fmu")]
-    assert definition.run["vehicle"]["profile"] == "./no.toml"  # there is none: said later
+    here = str(tmp_path / "car.fmu")
+    cell = design(definition, "mine.toml").cells[1]
+    assert cell.label == "controller = mpc, vehicle.fmu = ./car.fmu"  # as it was written
+    vehicle = cell.layer("mine.toml", definition).values["vehicle"]
+    assert vehicle == {"fmu": here, "profile": "./no.toml"}  # there is none: said later
+
+
+@pytest.mark.parametrize("factor", ['"vehicle.fmu" =', "vehicle.fmu ="])
+def test_a_level_that_is_a_file_is_called_as_it_was_written(tmp_path, factor):
+    (tmp_path / "ä car.fmu").touch()
+    text = f"""
+        name = "mine"
+        cells = [{{ {factor} "./ä car.fmu" }}]
+        [factors]
+        {factor} ["fmi2", "./ä car.fmu"]
+        [comparison]
+        factor = "vehicle.fmu"
+        baseline = "./ä car.fmu"
+    """
+    definition = parsed(text, tmp_path)
+    (cell,) = design(definition, "mine.toml").cells
+    assert cell.levels["vehicle.fmu"].value == "./ä car.fmu"
+    settings = cell.layer("mine.toml", definition).values
+    assert settings["vehicle"]["fmu"] == str(tmp_path / "ä car.fmu")
+    copy = parsed(dump_definition(definition), tmp_path / "elsewhere")
+    assert cell.layer("mine.toml", copy).values == settings
+
+
+@pytest.mark.parametrize("name", bundled_studies())
+def test_what_is_written_of_a_study_has_the_same_cells(name):
+    definition = read_definition(find_study(name))
+    copy = parsed(dump_definition(definition))
+    assert copy == definition
+    assert design(copy, name) == design(definition, name)
+
+
+def test_named_levels_before_options_keep_their_place():
+    """In plain TOML tables they would move behind the lists, and the cells' numbers with them."""
+    text = """
+        name = "mine"
+        cells = [{ 'my "driver"' = "a, b", crowd = { pedestrians = 2 }, controller = "pid" }]
+        [factors.'my "driver"']
+        "<ä>" = { pid = { integral_gain = 1e-9 } }
+        "a, b" = {}
+        [factors]
+        crowd.pedestrians = [2, 1]
+        controller = ["mpc", "pid"]
+    """
+    made = design(parsed(text), "mine.toml")
+    assert [f.name for f in made.factors] == ['my "driver"', "crowd.pedestrians", "controller"]
+    assert design(parsed(dump_definition(parsed(text))), "mine.toml") == made
+
+
+def test_nothing_as_a_level_can_be_seen_in_the_tables():
+    text = 'name = "mine"\n[factors]\n"ego.take_over" = [[], ["bus"]]\n"vehicle.profile" = [""]\n'
+    cell = design(parsed(text), "mine.toml").cells[0]
+    assert cell.label == "ego.take_over = none, vehicle.profile = none"
+    assert [level.value for level in cell.levels.values()] == ["none", "none"]
 
 
 @pytest.mark.parametrize(
@@ -129,6 +187,10 @@ def test_files_are_relative_to_the_study_file(tmp_path):
             "first_seed = 2147483647\nreplications = 5\n[factors]\ncontroller = ['mpc']",
             "the last seed would be beyond",
         ),
+        ("[factors.driver]", "driver = {}: expected a list of values"),
+        ("[factors.driver]\n' ' = {}", "driver: level ' ': expected a name"),
+        ("[factors.driver]\na = {seed = 3}", "driver.a: seed = 3: every cell is run with the same"),
+        ("[run]\nseed = 3\n[factors]\ncontroller = ['mpc']", "[run] seed = 3: every cell"),
         ("[precision]\nwidth = 0\n[factors]\ncontroller = ['mpc']", "precision.width = 0"),
         ("[precision]\n[factors]\ncontroller = ['mpc']", "precision.width: missing"),
     ],

@@ -13,7 +13,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from giveway.errors import GivewayError, ResultsError
+from giveway.errors import ConfigError, GivewayError, ResultsError
 from giveway.studies.folder import StudyFolder
 from giveway.studies.performing import perform
 from giveway.studies.plan import plan
@@ -271,7 +271,158 @@ def test_a_rerun_with_other_numbers_says_which(small, study_of, small_text, tmp_
         rerun(StudyFolder.open(study.path), "c1-s1", None)
 
 
-@pytest.mark.parametrize("run", ["c9-s1", "c1-s99", "c1", "17", "", "c1-s-1"])
+def test_the_folder_names_the_cells_as_they_were_run(study_of, tmp_path):
+    """A named factor stands first: the file that keeps the study must not move it."""
+    text = """
+        name = "order"
+        replications = 1
+        [run]
+        time_limit = 0.5
+        [factors.crowd_of]
+        "two" = { crowd = { pedestrians = 2 } }
+        "none" = { crowd = { pedestrians = 0 } }
+        [factors]
+        controller = ["mpc", "pid"]
+    """
+    study = study_of(text, tmp_path / "order")
+    rows = study.runs.set_index("run")
+    for name, crowd, controller in (("c2-s1", "two", "pid"), ("c3-s1", "none", "mpc")):
+        assert (rows["crowd_of"][name], rows["controller"][name]) == (crowd, controller)
+        again = rerun(study, name, None)
+        assert again.config.controller == controller
+        assert again.config.crowd.pedestrians == {"two": 2, "none": 0}[crowd]
+
+
+def test_cells_with_the_same_settings_share_their_records(study_of, tmp_path):
+    text = """
+        name = "twins"
+        replications = 3
+        [run]
+        time_limit = 0.5
+        crowd.pedestrians = 1
+        [factors.gains]
+        "default" = {}
+        "as by default" = { pid = { proportional_gain = 2400.0 } }
+    """
+    from giveway.config import RunConfig
+
+    text = text.replace("2400.0", str(RunConfig().pid.proportional_gain))
+    states = []
+    study = study_of(text, tmp_path / "twins", states.append)
+    assert list(study.runs["run"]) == [f"c{c}-s{s}" for c in (1, 2) for s in (1, 2, 3)]
+    assert list(study.execution["run"]) == list(study.runs["run"])
+    assert len(list(study.path.glob("records/*/*.json"))) == 3
+    assert (states[-1].total, states[-1].made) == (6, 6)
+    study_of(text, study.path, states.append, resume=True)
+    assert (states[-1].kept, states[-1].made) == (6, 0)
+
+
+def test_a_level_that_is_added_in_front_renumbers_the_runs(study_of, small_text, tmp_path):
+    text = small_text.replace("= 5", "= 1").replace("[3, 2]", "[2]")
+    folder = study_of(text, tmp_path / "more").path
+    kept = {path: path.read_bytes() for path in folder.glob("records/*/*.json")}
+    study_of(text.replace("[2]", "[1, 2]"), folder, resume=True)
+    runs = pd.read_csv(folder / "runs.csv")
+    assert list(runs["run"]) == [f"c{cell}-s1" for cell in (1, 2, 3, 4)]
+    assert list(runs["crowd.pedestrians"]) == [1, 1, 2, 2]
+    assert list(pd.read_csv(folder / "execution.csv")["run"]) == list(runs["run"])
+    assert {path: path.read_bytes() for path in kept} == kept
+    assert StudyFolder.open(folder).record("c3-s1").run == "c3-s1"
+
+
+def test_a_comparison_of_half_a_study_is_not_taken_for_the_whole(
+    small, study_of, small_text, tables_of, tmp_path
+):
+    """Somebody has the report written while the study is at work."""
+    from giveway.studies.output import write_tables
+
+    def look(progress):
+        if progress.made == 17:
+            write_tables(StudyFolder.open(tmp_path / "out"), whole=True)
+
+    study = study_of(small_text, tmp_path / "out", look)
+    assert tables_of(study.path) == tables_of(small.path)
+
+
+def test_what_is_read_back_is_what_was_computed(small, tmp_path):
+    import shutil
+
+    folder = shutil.copytree(small.path, tmp_path / "copy")
+    kept = StudyFolder.open(folder).comparison
+    (folder / "comparison.csv").unlink()
+    pd.testing.assert_frame_equal(kept, StudyFolder.open(folder).comparison, check_dtype=False)
+
+
+@pytest.mark.parametrize("name", ["runs.csv", "study.toml", "manifest.json", "datapackage.json"])
+def test_a_kill_while_a_file_is_written_does_not_keep_it_from_going_on(
+    small, study_of, small_text, tables_of, tmp_path, monkeypatch, name
+):
+    import shutil
+
+    class KilledError(BaseException):
+        pass
+
+    def killed(self, target):
+        if target.name == name:
+            raise KilledError
+        return real(self, target)
+
+    folder = shutil.copytree(small.path, tmp_path / "copy")
+    real = Path.replace
+    monkeypatch.setattr(Path, "replace", killed)
+    with pytest.raises(KilledError):
+        study_of(small_text, folder, resume=True)
+    monkeypatch.undo()
+    study_of(small_text, folder, resume=True)
+    assert tables_of(folder) == tables_of(small.path)
+
+
+def test_definition_and_manifest_of_two_studies_are_not_mixed(
+    study_of, small_text, tmp_path, monkeypatch
+):
+    folder = study_of(small_text.replace("= 5", "= 1"), tmp_path / "mixed").path
+    text = (folder / "study.toml").read_text(encoding="utf-8")
+    (folder / "study.toml").write_text(text.replace("[3, 2]", "[2, 3]"), encoding="utf-8")
+    with pytest.raises(ResultsError, match=r"other cells than study\.toml.*--resume"):
+        StudyFolder.open(folder)
+
+
+def test_another_study_does_not_go_on_in_this_folder(study_of, small_text, small):
+    other = small_text.replace('"small"', '"other"')
+    with pytest.raises(ResultsError, match="holds the study 'small'; expected 'other'"):
+        study_of(other, small.path, resume=True)
+
+
+def test_a_note_beside_a_study_does_no_harm(small, study_of, small_text, tmp_path):
+    import shutil
+
+    folder = shutil.copytree(small.path, tmp_path / "noted")
+    (folder / "note.txt").touch()
+    study_of(small_text, folder, resume=True)
+    with pytest.raises(ResultsError, match=r"holds 'note\.txt'"):
+        study_of(small_text, folder, force=True)
+    assert (folder / "note.txt").is_file()
+
+
+def test_what_contradicts_itself_is_refused():
+    with pytest.raises(ConfigError, match="--resume and --force"):
+        StudyOptions(resume=True, force=True)
+    with pytest.raises(ConfigError, match="--jobs and --cluster"):
+        StudyOptions(jobs=2, cluster="local:2")
+
+
+def test_a_cluster_that_is_not_there_costs_nothing(small, study_of, small_text, tmp_path):
+    import shutil
+
+    folder = shutil.copytree(small.path, tmp_path / "kept")
+    before = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    with pytest.raises(GivewayError, match="cannot be reached"):
+        study_of(small_text, folder, resume=True, jobs=None, cluster="tcp://127.0.0.1:1")
+    after = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    assert before == after
+
+
+@pytest.mark.parametrize("run", ["c9-s1", "c01-s1", "1-s1", "c1-s99", "c1", "17", "", "c1-s-1"])
 def test_a_run_that_is_not_in_the_study(small, run):
     with pytest.raises(ResultsError, match="expected c<cell>-s<seed>, c1-s1 to c4-s5"):
         rerun(small, run, None)

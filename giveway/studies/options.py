@@ -1,0 +1,70 @@
+"""How a study is computed, which its results do not depend on."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from giveway.errors import ConfigError
+from giveway.studies.execution import HANG_LIMIT, cluster_executor, local_executor
+
+if TYPE_CHECKING:
+    from giveway.studies.execution import Executor
+
+
+@dataclass(frozen=True)
+class StudyOptions:
+    """What a user asks for beside the study itself.
+
+    Attributes:
+        jobs: worker processes on this machine; None: one per processor that we may use.
+        cluster: address of a Dask scheduler instead, or "local:N".
+        resume: go on with what is in the folder.
+        force: replace what is in the folder.
+        retry_failed: make failed runs again.
+        hang_limit: [s] without progress after which a run's worker is killed.
+        run_limit: [s] of wall clock that one run may take; None: no limit.
+
+    Raises:
+        ConfigError: two of them contradict each other.
+    """
+
+    jobs: int | None = None
+    cluster: str | None = None
+    resume: bool = False
+    force: bool = False
+    retry_failed: bool = False
+    hang_limit: float = HANG_LIMIT
+    run_limit: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.resume and self.force:
+            msg = "--resume and --force: contradict each other; expected one: keep the study, or "
+            msg += "replace it"
+            raise ConfigError(msg)
+        if self.cluster is not None and self.jobs is not None:
+            msg = (
+                "--jobs and --cluster: contradict each other; expected one: a cluster's workers "
+                "are counted by its threads"
+            )
+            raise ConfigError(msg)
+
+    def executor(self) -> Executor:
+        """Who computes.
+
+        Raises:
+            WorkerError: a number or an address cannot be used.
+        """
+        hang, run = self.hang_limit, self.run_limit
+        if self.cluster is not None:
+            return cluster_executor(self.cluster, hang_limit=hang, run_limit=run)
+        jobs = processors() if self.jobs is None else self.jobs
+        return local_executor(jobs=jobs, hang_limit=hang, run_limit=run)
+
+
+def processors() -> int:
+    """How many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
