@@ -61,10 +61,11 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
         return 0
     began = time.monotonic()
     with study_progress(console, definition.name) as watcher:
-        study = run_study(definition, request.study, out, options, watcher)
+        tally = _Tally(watcher)
+        study = run_study(definition, request.study, out, options, tally)
     elapsed = time.monotonic() - began
-    workers = options.jobs or processors()
-    print_summary(console, study, elapsed, None if options.cluster else workers)
+    workers = None if options.cluster else options.jobs or processors()
+    print_summary(console, study, made=tally.made, elapsed=elapsed, workers=workers)
     if request.report:
         from giveway.cli.report import write_all
 
@@ -88,6 +89,19 @@ def study_progress(console: Console, name: str) -> Iterator[Callable[[StudyProgr
             yield _Bar(bar, name)
     else:
         yield _Lines(console, name)
+
+
+class _Tally:
+    """Counts the runs that are made, and tells ``watcher`` of them."""
+
+    def __init__(self, watcher: Callable[[StudyProgress], None] | None) -> None:
+        self._watcher = watcher
+        self.made = 0
+
+    def __call__(self, state: StudyProgress) -> None:
+        self.made = state.made
+        if self._watcher is not None:
+            self._watcher(state)
 
 
 class _Rate:

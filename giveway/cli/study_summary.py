@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from rich import box
 from rich.markup import escape
+from rich.padding import Padding
 from rich.table import Table
 
+from giveway.studies.design import label_of
+from giveway.studies.statistics import metric, precise_enough
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     import pandas as pd
@@ -26,6 +31,7 @@ _SHOWN = (
     ("minimum_clearance", "general"),
     ("overlaps", "general"),
 )
+_MOST_ROWS = 40  # about a screen; comparison.csv has them all
 _BYTES_PER_RUN = 4096  # a file's block on most disks
 
 
@@ -34,10 +40,12 @@ def print_plan(
 ) -> None:
     """The cells, and what running them will take."""
     definition = planned.definition
-    table = Table(title=escape(f"Study {definition.name}: {definition.description}"))
+    title = f"Study {definition.name}"
+    title += f": {definition.description}" if definition.description else ""
+    table = Table(title=escape(title))
     table.add_column("cell", justify="right")
     for factor in planned.design.factors:
-        table.add_column(escape(factor.name), justify="right")
+        table.add_column(escape(factor.name), justify="right", overflow="fold")
     table.add_column("s per run", justify="right")
     for entry in planned.cells:
         labels = [escape(level.label) for level in entry.cell.levels.values()]
@@ -46,67 +54,143 @@ def print_plan(
     console.print(table)
     most = "at most " if definition.precision is not None else ""
     first, last = planned.seeds[0], planned.seeds[-1]
+    seeds = f"seed {first}" if first == last else f"seeds {first} to {last}"
     console.print(
-        f"{most}{len(planned):,} runs: {len(planned.cells)} cells with seeds {first} to {last}; "
-        f"about {_duration(seconds)} and {len(planned) * _BYTES_PER_RUN / 1e6:.0f} MB in "
+        f"{most}{_count(len(planned), 'run')}: {_count(len(planned.cells), 'cell')} with {seeds}; "
+        f"about {_duration(seconds)} and {len(planned) * _BYTES_PER_RUN / 1e6:.1f} MB in "
         f"{escape(str(out))}",
         highlight=False,
     )
 
 
 def print_summary(
-    console: Console, study: StudyFolder, elapsed: float, workers: int | None
+    console: Console, study: StudyFolder, *, made: int, elapsed: float, workers: int | None
 ) -> None:
-    """The comparison's main rows, failures, and where everything is."""
-    comparison = study.comparison
+    """The comparison's main rows, failures, and where everything is.
+
+    Args:
+        console: to print on.
+        study: that has been run.
+        made: runs of this session; the others were there.
+        elapsed: [s] that these took.
+        workers: that made them; None: a cluster.
+    """
     if study.definition.reference:
         _print_reference(console, study)
-    elif len(comparison):
-        console.print(comparison_table(study, comparison))
-    by = "" if workers is None else f" on {workers} worker(s)"
+    else:
+        print_comparison(console, study)
+    _print_precision(console, study)
+    by = "" if workers is None else f" on {_count(workers, 'worker')}"
+    there = len(study.records)
+    new = "" if made == there else f", {made:,} of them made now"
     console.print(
-        f"{len(study.records):,} runs in {_duration(elapsed)}{by}; tables in "
+        f"{_count(there, 'run')}{new}, in {_duration(elapsed)}{by}; tables in "
         f"[bold]{escape(str(study.path))}[/bold]",
         highlight=False,
     )
     failures = study.failures
     if len(failures):
         first = failures.iloc[0]
+        cells = list(dict.fromkeys(str(cell) for cell in failures["cell"]))
+        where = f"cell{'s'[: len(cells) > 1]} {', '.join(cells[:8])}{' ...' * (len(cells) > 8)}"
         console.print(
-            f"[yellow]{len(failures)} run(s) have no result[/yellow], see failures.csv; the first: "
+            f"[yellow]{len(failures):,} of {_count(there, 'run')} have no result[/yellow] "
+            f"({where}), see failures.csv; the first, "
             f"{escape(str(first['run']))}: {escape(str(first['cause']))}",
             highlight=False,
         )
 
 
-def comparison_table(study: StudyFolder, comparison: pd.DataFrame) -> Table:
-    """Mean differences with their intervals, a row per context, treatment and metric."""
-    compared = study.definition.comparison.factor
-    context = [factor.name for factor in study.design.factors if factor.name != compared]
-    baseline = comparison["baseline"].iloc[0]
-    table = Table(title=escape(f"{compared}: difference to {baseline}, per pair"))
-    for name in (*context, compared):
-        table.add_column(escape(name))
-    for heading in ("situation", "metric", "mean difference", "95 % interval", "n", ""):
-        table.add_column(heading, justify="right" if "i" in heading else "left")
-    for metric, situation in _SHOWN:
-        chosen = comparison[
-            (comparison["metric"] == metric) & (comparison["situation"] == situation)
-        ]
-        for row in chosen.to_dict("records"):
-            labels = [escape(str(row[name])) for name in context]
-            table.add_row(*labels, escape(str(row["treatment"])), *_cells(row))
+def print_comparison(console: Console, study: StudyFolder) -> None:
+    """Mean differences with their intervals: a table per metric, a row per context and level."""
+    comparison = study.comparison
+    if comparison.empty:
+        return
+    wanted = study.definition.comparison
+    treatments = comparison["treatment"].unique()
+    what = f"{treatments[0]} minus" if len(treatments) == 1 else "difference to"
+    console.print(
+        f"{escape(f'{wanted.factor}: {what} {wanted.baseline}')}, pair by pair: better, worse, or "
+        "= no difference shown",
+        style="bold",
+        highlight=False,
+    )
+    missing, left = [], _MOST_ROWS
+    for name, situation in _SHOWN:
+        chosen = comparison[(comparison["metric"] == name) & (comparison["situation"] == situation)]
+        if (chosen["verdict"] == "N.A.").all():
+            missing.append(f"{metric(name).label} ({situation})")
+        elif left > 0:
+            known = metric(name)
+            unit = f" [{known.unit}]" if known.unit else ""
+            title = f"{known.label}{unit}, {situation}: {known.better} is better"
+            console.print(f"\n {escape(title)}", highlight=False)
+            table = _metric_table(study, chosen.head(left))
+            console.print(Padding(table, (0, 0, 0, 1)))
+            left -= len(chosen)
+    if missing:
+        few = f"N.A., fewer than {wanted.minimum_pairs} pairs with a number on both sides"
+        console.print(f"{few}: {', '.join(missing)}", highlight=False)
+    console.print("All metrics, situations and contexts: comparison.csv", highlight=False)
+
+
+def _metric_table(study: StudyFolder, chosen: pd.DataFrame) -> Table:
+    wanted = study.definition.comparison
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
+    names = [factor.name for factor in study.design.factors if factor.name != wanted.factor]
+    names += ["ego"] if study.comparison["ego"].nunique() > 1 else []
+    names += ["treatment"] if study.comparison["treatment"].nunique() > 1 else []
+    for heading in _short([wanted.factor if name == "treatment" else name for name in names]):
+        table.add_column(escape(heading), overflow="fold")
+    for heading in ("mean", f"{100 * wanted.confidence:g} % interval", "n"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("", no_wrap=True)
+    for row in chosen.to_dict("records"):
+        table.add_row(*(escape(_label(row[name])) for name in names), *_cells(row))
     return table
 
 
+def _label(value: object) -> str:
+    """A level as the study file writes it: a switch is true or false, also from a CSV file."""
+    text = label_of(value)
+    return text.lower() if text in {"True", "False"} else text
+
+
+def _short(names: Sequence[str]) -> Iterator[str]:
+    """The last part of each factor's name, where that tells them apart."""
+    last = [name.rpartition(".")[2] for name in names]
+    for name, short in zip(names, last, strict=True):
+        yield short if short and last.count(short) == 1 else name
+
+
 def _cells(row: Mapping[Any, Any]) -> tuple[str, ...]:
-    unit = "" if not isinstance(row["unit"], str) else f" {row['unit']}"
     if math.isnan(row["mean_difference"]):
-        mean, interval = "N.A.", ""
+        return "N.A.", "", f"{row['n']:,}", ""
+    interval = f"{row['ci_low']:+.3f} ... {row['ci_high']:+.3f}"
+    verdict = row["verdict"] if row["verdict"] in {"better", "worse"} else "="
+    return f"{row['mean_difference']:+.3f}", interval, f"{row['n']:,}", verdict
+
+
+def _print_precision(console: Console, study: StudyFolder) -> None:
+    """Whether the seeds were enough, where the study asks for that."""
+    wanted = study.definition.precision
+    if wanted is None:
+        return
+    seeds, most = len(study.seeds), study.definition.replications
+    enough = seeds < most
+    if not enough:
+        compared = study.definition.comparison
+        enough, _ = precise_enough(study.runs, study.design, compared, wanted, seeds=seeds)
+    known = metric(wanted.metric)
+    what = f"{known.label} ({wanted.situation}) to {wanted.width:g} {known.unit}".rstrip()
+    if enough:
+        console.print(f"Precise enough, {what}, with {_count(seeds, 'seed')}", highlight=False)
     else:
-        mean = f"{row['mean_difference']:+.3f}{unit}"
-        interval = f"{row['ci_low']:+.3f} ... {row['ci_high']:+.3f}"
-    return row["situation"], row["metric"], mean, interval, f"{row['n']:,}", row["verdict"]
+        console.print(
+            f"[yellow]Not precise enough[/yellow], {what}, with all {_count(seeds, 'seed')}: "
+            "allow more by --runs and --resume",
+            highlight=False,
+        )
 
 
 def _print_reference(console: Console, study: StudyFolder) -> None:
@@ -114,7 +198,7 @@ def _print_reference(console: Console, study: StudyFolder) -> None:
 
     frame = table2(study.comparison)
     if frame.empty:
-        console.print(comparison_table(study, study.comparison))
+        print_comparison(console, study)
         return
     others = list(frame.columns[: list(frame.columns).index("ego")])
     situations = list(dict.fromkeys(situation for _, situation in PUBLISHED))
@@ -142,6 +226,10 @@ def _beside(row: Mapping[Any, Any]) -> str:
         interval = f"{row['ci_low']:+.2f} ... {row['ci_high']:+.2f}"
         ours = f"[bold]{row['mean_difference']:+.2f}[/bold]\n{interval}"
     return f"{ours}\nn = {row['n']:,}\npaper {published}"
+
+
+def _count(n: int, noun: str) -> str:
+    return f"{n:,} {noun}" if n == 1 else f"{n:,} {noun}s"
 
 
 def _duration(seconds: float) -> str:

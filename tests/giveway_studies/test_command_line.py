@@ -44,7 +44,7 @@ def test_a_study_from_start_to_replay(giveway, small_text, tmp_path):
     done = giveway("study", "small.toml", "--jobs", "2")
     assert done.returncode == 0, done.stderr
     assert "20 runs in" in done.stdout
-    assert "controller: difference to pid" in done.stdout
+    assert "controller: mpc minus pid" in done.stdout
     study = tmp_path / "results" / "study_small"
     page = (study / "report.html").read_text(encoding="utf-8")
     links = set(re.findall(r'href="(replays/[^"#]+)', page))
