@@ -1,7 +1,7 @@
 """Histograms of paired differences: the three of Yang & Özgüner 2019, section 5, per context.
 
 A picture has a row per context and a column per situation. Bars on the side where the treatment
-is better are blue, the others orange.
+is better are blue, those on the other orange; pairs without any difference stand at zero, in grey.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 BINS = 48
 TAIL = 2.5  # [%] of the differences at either end that need not be within the picture
 SPIKE = 30.0  # times the median bin, beyond which a bin hides the others
+EQUAL = 5e-7  # differences count to six decimals
 DASHES = (0, (4, 2))
 
 
@@ -139,7 +140,8 @@ def _draw(
         axes.set_yticks([])
         axes.axvline(0.0, color=GREY, linewidth=0.8)
         return
-    counts, _ = np.histogram(panel.values, edges)
+    equal = np.abs(panel.values) < EQUAL
+    counts, _ = np.histogram(panel.values[~equal], edges)
     centres = (edges[:-1] + edges[1:]) / 2
     good, bad = (
         (centres < 0, centres > 0) if column.better == "lower" else (centres > 0, centres < 0)
@@ -149,6 +151,8 @@ def _draw(
             centres[side], counts[side], width=0.9 * np.diff(edges)[side], color=colour, alpha=0.75,
             linewidth=0,
         )  # fmt: skip
+    if equal.any():
+        axes.bar(0.0, equal.sum(), width=0.8 * np.diff(edges)[0], color=GREY, linewidth=0)
     axes.axvline(0.0, color=BLACK, linewidth=0.8, label="zero")
     if math.isfinite(panel.low) and math.isfinite(panel.high):
         axes.axvspan(
@@ -160,7 +164,7 @@ def _draw(
         axes.axvline(
             panel.published, color=PUBLISHED, linewidth=1.6, linestyle=DASHES, label="published"
         )  # fmt: skip
-    _count_axis(axes, counts)
+    _count_axis(axes, np.append(counts, equal.sum()))
     _count_beyond(axes, panel.values, edges)
 
 
@@ -210,8 +214,10 @@ def _legend(panels: Sequence[Differences], source: str) -> list[Artist]:
     handles: list[Artist] = [
         Patch(color=BLUE, alpha=0.75, linewidth=0, label="treatment better"),
         Patch(color=ORANGE, alpha=0.75, linewidth=0, label="baseline better"),
-        Line2D([], [], color=BLACK, linewidth=0.8, label="no difference"),
+        Line2D([], [], color=BLACK, linewidth=0.8, label="zero"),
     ]
+    if any((np.abs(panel.values) < EQUAL).any() for panel in panels):
+        handles.insert(2, Patch(color=GREY, linewidth=0, label="no difference"))
     if any(math.isfinite(panel.mean) for panel in panels):
         handles.append(Line2D([], [], color=BLACK, linewidth=1.6, label="mean"))
         handles.append(Patch(color=BLACK, alpha=0.18, linewidth=0, label="its interval"))

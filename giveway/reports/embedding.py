@@ -21,6 +21,7 @@ _COLOURS = {
     "#0072b2": "var(--blue)",
     "#ffffff": "var(--paper)",
 }
+_TAG = re.compile(r"<[^>]+>")
 _DIGITS = re.compile(r"-?\d+\.\d{3,}")
 
 
@@ -37,11 +38,17 @@ def inline_svg(figure: Figure, prefix: str) -> str:
     text = stream.getvalue().decode("utf-8")
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
-    text = re.sub(r'\bid="', f'id="{prefix}-', text)
-    text = re.sub(r"url\(#", f"url(#{prefix}-", text)
-    text = re.sub(r'xlink:href="#', f'href="#{prefix}-', text)
-    text = re.sub(r'\s(?:xmlns(?::xlink)?|version)="[^"]*"', "", text, count=3)
-    for colour, name in _COLOURS.items():
-        text = text.replace(colour, name)
-    text = _DIGITS.sub(lambda found: f"{float(found[0]):.2f}", text)
+    text = _TAG.sub(lambda tag: _for_page(tag[0], prefix), text)
     return re.sub(r"<svg ", '<svg aria-hidden="true" focusable="false" ', text, count=1).strip()
+
+
+def _for_page(tag: str, prefix: str) -> str:
+    """A tag with ids, colours and coordinates for the page; what stands between tags is text."""
+    tag = re.sub(r'\bid="', f'id="{prefix}-', tag)
+    tag = re.sub(r"url\(#", f"url(#{prefix}-", tag)
+    tag = re.sub(r'xlink:href="#', f'href="#{prefix}-', tag)
+    if tag.startswith("<svg"):
+        tag = re.sub(r'\s(?:xmlns(?::xlink)?|version)="[^"]*"', "", tag)
+    for colour, name in _COLOURS.items():
+        tag = tag.replace(colour, name)
+    return _DIGITS.sub(lambda found: f"{float(found[0]):.2f}", tag)

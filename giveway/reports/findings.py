@@ -39,13 +39,15 @@ def lead(study: Study) -> str:
     where = len(contexts(study))
     levels = _listed([_named(label) for label in treatment_labels(study)])
     compares = f"The study compares {levels} with the baseline {_named(baseline_label(study))}"
+    if not levels:
+        compares = f"The study has one level only, {_named(baseline_label(study))}"
     if not made:
         return f"{compares} ({compared}); there is no run yet."
-    return (
-        f"{compares} ({compared}) in {_count(where, 'context')}: {made:,} runs on "
-        f"{_count(len(seeds), 'crowd')} per cell (seeds {seeds[0]} to {seeds[-1]}). All levels "
-        "met the same crowds, so that differences are taken pair by pair."
-    )
+    among = f" in {_count(where, 'context')}" if where > 1 else ""
+    which = f"seeds {seeds[0]} to {seeds[-1]}" if len(seeds) > 1 else f"seed {seeds[0]}"
+    size = f"{_count(made, 'run')} on {_count(len(seeds), 'crowd')} per cell ({which})"
+    paired = "All levels met the same crowds, so that differences are taken pair by pair."
+    return f"{compares} ({compared}){among}: {size}.{f' {paired}' if levels else ''}"
 
 
 def facts(study: Study) -> list[tuple[str, str]]:
@@ -81,14 +83,33 @@ def cautions(study: Study) -> list[str]:
     incomplete = int(frame["incomplete"].sum()) if len(frame) else 0
     if incomplete:
         pairs = int(frame["pairs"].sum())
-        said.append(
-            f"In {incomplete:,} of {pairs:,} pairs one side did not reach its goal: they have no "
-            "completion time, which favours a level that gets stuck."
+        result = (
+            "nothing can be said on the completion time; a longer time_limit may help."
+            if incomplete == pairs - int(frame["lost"].sum())
+            else "they have no completion time, which favours a level that gets stuck."
         )
+        said.append(
+            f"In {incomplete:,} of {_count(pairs, 'pair')} a side did not reach its goal: {result}"
+        )
+    said.append(_too_few(study))
     published = published_frame(study)
     if published is not None:
         said.append(agreement(published))
     return [sentence for sentence in said if sentence]
+
+
+def _too_few(study: Study) -> str:
+    """Where so few pairs were compared that no difference could have been shown; or nothing."""
+    frame = study.comparison[study.comparison["verdict"] != "N.A."]
+    level = 1.0 - study.definition.comparison.confidence
+    most = int(frame["n"].max()) if len(frame) else 0
+    smallest = 2.0 ** (1 - most)  # p where all differences have one sign
+    if not most or smallest <= level or frame["verdict"].isin(["better", "worse"]).any():
+        return ""
+    return (
+        f"With {most} pairs the signed-rank test cannot show any difference, however large: its "
+        f"smallest p-value is {smallest:.3g}, and {level:.3g} is asked for. Take more seeds."
+    )
 
 
 def _of_metric(study: Study, name: str) -> list[str]:
@@ -148,11 +169,12 @@ def _where(study: Study, rows: Sequence[Mapping[Any, Any]]) -> str:
 
 
 def _counted(name: str, verdicts: list[str]) -> str:
-    counts = [(word, verdicts.count(word)) for word in ("better", "worse", "N.A.")]
-    rest = len(verdicts) - sum(count for _, count in counts)
-    parts = [f"{word} in {count}" for word, count in counts[:2]]
-    parts += [f"no difference shown in {rest}"]
-    parts += [f"N.A. in {counts[2][1]}"] if counts[2][1] else []
+    shown = [word for word in ("better", "worse") if word in verdicts]
+    parts = [f"{word} in {verdicts.count(word)}" for word in shown]
+    missing = verdicts.count("N.A.")
+    rest = len(verdicts) - missing - sum(verdicts.count(word) for word in shown)
+    parts += [f"no difference shown in {rest}"] if rest else []
+    parts += [f"N.A. in {missing}"] if missing else []
     label = metric(name).label
     label = label[0].upper() + label[1:]
     return f"{label}: {', '.join(parts)} of {len(verdicts)} comparisons with the baseline."
@@ -171,7 +193,8 @@ def _overlaps(study: Study) -> list[str]:
     for label in compared_labels(study):
         here = numbers[level == label].dropna()
         if len(here):
-            parts.append(f"{share(float((here > 0).mean()))} of the runs with {_named(label)}")
+            count = f"{int((here > 0).sum()):,} of {_count(len(here), 'run')}"
+            parts.append(f"{share(float((here > 0).mean()))} ({count}) with {_named(label)}")
     return [f"A pedestrian's circle overlapped the vehicle's rectangle in {_listed(parts)}."]
 
 

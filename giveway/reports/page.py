@@ -175,6 +175,7 @@ def _content(study: Study, extremes: Sequence[WorstRun], replays: dict[str, str]
     definition = study.definition
     published = published_frame(study)
     some = not study.comparison.empty
+    glance = tables.glance_table(study) if some else None
     return {
         "name": definition.name,
         "title": definition.description or definition.name,
@@ -183,7 +184,7 @@ def _content(study: Study, extremes: Sequence[WorstRun], replays: dict[str, str]
         "findings": findings.findings(study) if some else [],
         "cautions": findings.cautions(study),
         "published": None if published is None else published_table(published),
-        "glance": tables.glance_table(study) if some else None,
+        "glance": glance if glance is not None and glance.rows else None,
         "comparison": tables.comparison_table(study) if some else None,
         "situations": tables.situations_table(study) if len(study.situations) else None,
         "cells": tables.cells_table(study),

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_rgb
+from matplotlib.colors import to_hex, to_rgb
 
 from giveway.figures.study_differences import (
     DifferenceColumn,
@@ -62,6 +62,15 @@ class TestDifferences:
         for bar in axes.patches:
             colour = left if bar.get_x() < 0 else ({BLUE, ORANGE} - {left}).pop()
             assert bar.get_facecolor()[:3] == to_rgb(colour)
+
+    def test_pairs_without_a_difference_are_on_neither_side(self):
+        figure = self.draw(panel([-1.0, -1.0, 0.0, 0.0, -1e-9, 2.0, 2.0]))
+        bars = {to_hex(bar.get_facecolor()): 0.0 for bar in figure.axes[0].patches}
+        for bar in figure.axes[0].patches:
+            bars[to_hex(bar.get_facecolor())] += bar.get_height()
+        assert bars == {BLUE.lower(): 2.0, ORANGE.lower(): 2.0, GREY.lower(): 3.0}
+        assert "no difference" in legend(figure)
+        assert "no difference" not in legend(self.draw(panel([-1.0, 2.0])))
 
     def test_zero_mean_interval_and_published_mean_stand_where_they_are(self):
         one = panel(self.values, mean=-1.1, low=-1.4, high=-0.8, published=-2.5)

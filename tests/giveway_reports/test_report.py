@@ -9,9 +9,12 @@ from itertools import pairwise
 
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 from giveway.errors import GivewayError, ResultsError
 from giveway.reports import example_pairs, shown_runs, worst_runs, write_report
+from giveway.reports.embedding import inline_svg
+from giveway.reports.findings import cautions
 from giveway.reports.wording import digits_for, number
 from giveway.studies.statistics import METRICS, PUBLISHED
 
@@ -198,7 +201,38 @@ def test_a_study_that_never_reaches_a_goal_is_compared_by_its_waits(changed, par
     study = changed(stuck)
     assert {pair.metric for pair in example_pairs(study)} <= {"total_wait", "longest_wait"}
     text = parsed(write_report(study)).text
-    assert "one side did not reach its goal" in text
+    assert "nothing can be said on the completion time" in text
+
+
+def test_a_study_of_which_everything_failed_shows_no_empty_table(changed, parsed):
+    study = changed(lambda record: replace(record, ending="failed", rows=(), failure="no net"))
+    page = parsed(write_report(study))
+    assert "glance-table" not in page.tables
+    assert "36 runs have no result" in page.text
+    assert all(len(rows) > 1 for rows in page.tables.values())
+
+
+def test_so_few_pairs_that_nothing_can_be_shown_are_told(study):
+    rows = study.comparison.assign(n=4, verdict="no difference shown")
+
+    class Few:
+        path, definition, design, manifest = (
+            study.path, study.definition, study.design, study.manifest,
+        )  # fmt: skip
+        runs, situations, failures = study.runs, study.situations, study.failures
+        execution, comparison = study.execution, rows
+
+    assert any("With 4 pairs the signed-rank test cannot" in said for said in cautions(Few()))
+    Few.comparison = rows.assign(n=6)
+    assert not any("signed-rank" in said for said in cautions(Few()))
+
+
+def test_text_in_a_picture_keeps_its_digits_and_colours():
+    figure = Figure()
+    figure.text(0.1, 0.5, "gain = 0.12345, #000000")
+    svg = inline_svg(figure, "a")
+    assert "gain = 0.12345, #000000" in svg
+    assert not re.search(r'="[^"]*\d\.\d{3}', svg)
 
 
 def test_a_disk_that_refuses_is_one_line(study, tmp_path):
