@@ -30,8 +30,9 @@ class Phase(enum.IntEnum):
     VEHICLE = 3
     CROWD = 4
     SUMO = 5
-    WRITING = 6
-    DONE = 7
+    MEASURING = 6
+    WRITING = 7
+    DONE = 8
 
 
 LOOP = frozenset({Phase.CONTROLLING, Phase.VEHICLE, Phase.CROWD, Phase.SUMO})
@@ -42,6 +43,7 @@ _PLACES = {
     Phase.VEHICLE: "in the vehicle FMU's step from {time:.2f} s (step {step})",
     Phase.CROWD: "in the crowd's step from {time:.2f} s (step {step})",
     Phase.SUMO: "inside SUMO's step from {time:.2f} s (step {step})",
+    Phase.MEASURING: "while the run's numbers were being worked out",
     Phase.WRITING: "while the results were being written",
     Phase.DONE: "after everything had been done",
 }

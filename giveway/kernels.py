@@ -26,18 +26,21 @@ _KEPT = 30 * 86400.0  # [s] since the last run
 _MESSAGE = "Compiling the numerical kernels (once after installation, about half a minute) ..."
 
 
-def compile_kernels_once(console: Console) -> None:
+def compile_kernels_once(console: Console | None = None) -> None:
     """Compile and cache every kernel of a run, with a message, unless that has been done.
 
     A tiny run touches them all; numba keeps the machine code in the user's cache folder.
+
+    Args:
+        console: for the message; None: without a word.
     """
     marker = kernel_cache() / f"{_MARKER}{numba.__version__}"
     if marker.exists():
         with contextlib.suppress(OSError):
             marker.touch()  # still in use
         return
-    with console.status(_MESSAGE):
-        if not console.is_terminal:
+    with contextlib.nullcontext() if console is None else console.status(_MESSAGE):
+        if console is not None and not console.is_terminal:
             console.print(_MESSAGE)
         _tiny_run()
     try:

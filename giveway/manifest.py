@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from giveway.config import RunConfig
     from sumo_scenarios import Scenario
 
-_PACKAGES = ("fmpy", "libsumo", "numba", "numpy", "osqp", "pandas")
+_PACKAGES = ("daqp", "fmpy", "libsumo", "numba", "numpy", "osqp", "pandas", "shapely")
 
 
 def sha256(content: bytes) -> str:

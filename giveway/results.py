@@ -227,6 +227,7 @@ def data_package(result: RunResult) -> dict[str, Any]:
 
 
 def fields_of(columns: Sequence[Column]) -> list[dict[str, str]]:
+    """The columns as the schema of a data package has them."""
     fields = []
     for column in columns:
         field = {"name": column.name, "type": column.type}

@@ -29,13 +29,13 @@ def report_command(study: Path, *, replays: bool, quiet: bool) -> int:
 
 
 def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> None:
-    """Write tables if there are none, figures, replays and the report."""
+    """Write the tables, unless those of the whole study are there, figures, replays, the report."""
     from giveway.kernels import compile_kernels_once
     from giveway.studies.output import write_tables
     from giveway.studies.reporting import write_report_of
 
     compile_kernels_once(console)
-    if not (study.path / "comparison.csv").is_file():
+    if not (study.complete and (study.path / "comparison.csv").is_file()):
         write_tables(study, whole=True)
     with console.status("Drawing ...") as status:
         page = write_report_of(study, replays=replays, tell=status.update)

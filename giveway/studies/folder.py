@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 from collections import defaultdict
 from functools import cached_property
 from pathlib import Path
@@ -142,7 +143,7 @@ class StudyFolder:
     @cached_property
     def failures(self) -> pd.DataFrame:
         """The runs without a result."""
-        return failures_frame(self.records, f"giveway rerun {self.path}")
+        return failures_frame(self.records, f"giveway rerun {shlex.quote(str(self.path))}")
 
     @cached_property
     def execution(self) -> pd.DataFrame:

@@ -17,6 +17,7 @@ from giveway._environment import ROOMS
 from giveway.config import RunConfig
 from giveway.errors import ConfigError
 from giveway.manifest import scenario_hashes, scenario_inputs, sha256, software_versions
+from giveway.scenario_files.extra_options import parse_options
 from giveway.vehicles import fmu_path
 from sumo_scenarios import find
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 _NOT_NUMBERS = ("cli", "doctor", "figures", "replays", "reports", "studies")
 """Parts of giveway that look at results only: a change there leaves every record valid."""
+_ROWS = frozenset({"studies/performing.py", "studies/record.py"})  # but for what makes them
 _NO_MATTER = frozenset({"platform", "machine", "pandas", "python"})
 
 
@@ -37,7 +39,8 @@ def software_identity() -> str:
     for room in ("giveway", *ROOMS):
         for path in sorted((house / room).rglob("*.py")):
             place = path.relative_to(house / room)
-            if room != "giveway" or place.parts[0] not in _NOT_NUMBERS:
+            aside = room == "giveway" and place.parts[0] in _NOT_NUMBERS
+            if not aside or place.as_posix() in _ROWS:
                 digest.update(str(place.as_posix()).encode() + path.read_bytes())
     versions = {k: v for k, v in software_versions().items() if k not in _NO_MATTER}
     versions["python"] = ".".join(platform.python_version_tuple()[:2])
@@ -48,7 +51,7 @@ def software_identity() -> str:
 def input_hashes(config: RunConfig, scenario: Scenario) -> dict[str, str]:
     """SHA-256 of every file that the run reads: the scenario's, FMUs and their profiles."""
     hashes = {f"scenario {name}": hash_ for name, hash_ in scenario_hashes(scenario).items()}
-    return hashes | {name: _hash(file) for name, file in _vehicle_files(config)}
+    return hashes | {name: _hash(file) for name, file in _own_files(config)}
 
 
 def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str:
@@ -76,7 +79,7 @@ def run_key(digest: str, seed: int) -> str:
 
 
 def require_same(task: Task) -> None:
-    """Make sure that this process would compute what was planned, perhaps on another machine.
+    """Make sure that this process would compute what was planned: elsewhere, or much later.
 
     Raises:
         ConfigError: another version of giveway or a library runs here, or a file differs.
@@ -85,27 +88,54 @@ def require_same(task: Task) -> None:
     if task.software != software_identity():
         msg = (
             f"worker on {here}: its giveway or libraries differ from those that planned run "
-            f"{task.run}; install the same versions on every machine"
+            f"{task.run}; install the same versions on every machine; if they were changed "
+            "meanwhile, go on with --resume"
         )
         raise ConfigError(msg)
     config = RunConfig.model_validate_json(task.config)
-    files = {name: Path(file) for name, file in _scenario_files(config.scenario)}
-    files |= dict(_vehicle_files(config))
+    files = {f"scenario {name}": file for name, file in _scenario_files(find(config.scenario))}
+    files |= dict(_own_files(config))
     found = {name: _hash(file) for name, file in files.items() if file.is_file()}
     for name, expected in task.inputs.items():
         if found.get(name) != expected:
             what = "another content" if name in found else "nothing"
             msg = (
                 f"worker on {here}: {name}: found {what} where run {task.run} was planned with "
-                "this file; put the study's files under the same path on every machine"
+                "this file; put the study's files under the same path on every machine; if it was "
+                "changed meanwhile, go on with --resume"
             )
             raise ConfigError(msg)
 
 
+def _scenario_files(scenario: Scenario) -> tuple[tuple[str, Path], ...]:
+    """The scenario's inputs by name; read again only when what names them has changed."""
+    naming = (scenario.config_file, scenario.settings_file)
+    return _scenario_files_of(scenario, tuple(_stamp(file) for file in naming if file))
+
+
 @functools.lru_cache(maxsize=64)
-def _scenario_files(scenario: str) -> tuple[tuple[str, str], ...]:
-    files = scenario_inputs(find(scenario))
-    return tuple((f"scenario {name}", str(path)) for name, path in files.items())
+def _scenario_files_of(scenario: Scenario, _stamps: object) -> tuple[tuple[str, Path], ...]:
+    return tuple(scenario_inputs(scenario).items())
+
+
+def _own_files(config: RunConfig) -> list[tuple[str, Path]]:
+    """What a run reads beside its scenario."""
+    return [*_vehicle_files(config), *_option_files(config)]
+
+
+def _option_files(config: RunConfig) -> list[tuple[str, Path]]:
+    """What ``sumo.options`` name, such as additional files."""
+    named = [
+        (option, Path(piece.strip()))
+        for option, value in parse_options(config.sumo.options).items()
+        for piece in value.split(",")
+        if piece.strip()
+    ]
+    return [
+        (f"SUMO's {option} {number}: {file.name}", file)
+        for number, (option, file) in enumerate(named, start=1)
+        if file.is_file()
+    ]
 
 
 def _vehicle_files(config: RunConfig) -> list[tuple[str, Path]]:
@@ -119,10 +149,15 @@ def _vehicle_files(config: RunConfig) -> list[tuple[str, Path]]:
 
 def _hash(file: Path) -> str:
     """Its SHA-256; it is read again only when it has changed."""
+    return _hash_of(str(file.absolute()), _stamp(file))
+
+
+def _stamp(file: Path) -> tuple[int, int]:
+    """Changes with the file."""
     status = file.stat()
-    return _hash_of(str(file), status.st_mtime_ns, status.st_size)
+    return status.st_mtime_ns, status.st_size
 
 
 @functools.lru_cache(maxsize=1024)
-def _hash_of(file: str, _changed: int, _size: int) -> str:
+def _hash_of(file: str, _stamp: tuple[int, int]) -> str:
     return sha256(Path(file).read_bytes())

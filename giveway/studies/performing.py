@@ -2,41 +2,52 @@
 
 from __future__ import annotations
 
+import math
 import os
 import socket
+from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from fmus.text import printable
 from giveway.api import simulate
 from giveway.config import RunConfig
 from giveway.errors import GivewayError
+from giveway.heartbeat import Phase
+from giveway.journal import Journal
 from giveway.results import rounded_row
 from giveway.studies.record import FAILED, Computing, RunRecord, Scalar, Task
 from sumo_scenarios import find
 
 if TYPE_CHECKING:
-    from giveway.journal import Journal
     from giveway.run_result import RunResult
 
 
-def perform(task: Task, journal: Journal | None = None) -> RunRecord:
+_LONGEST_FAILURE = 2000  # characters
+_STATM = Path("/proc/self/statm")
+
+
+def perform(
+    task: Task, journal: Journal | None = None, native_log: Path | None = None
+) -> RunRecord:
     """Make the run and keep its summary; an error on the way is part of the record.
 
     Args:
         task: what to run.
         journal: whose heartbeat tells another process where the run stands.
+        native_log: file for what SUMO prints, for whoever finds this process dead.
     """
     began = perf_counter()
+    journal = journal or Journal(None)
     config = RunConfig.model_validate_json(task.config)
     try:
-        result = simulate(config, find(config.scenario), journal=journal)
+        result = simulate(config, find(config.scenario), journal=journal, native_log=native_log)
         if result.error is not None:
             raise result.error
     except GivewayError as error:
-        failure = " ".join(str(error).split())
+        failure = printable(error, _LONGEST_FAILURE)
         return RunRecord(task.run, task.key, FAILED, failure=failure, computing=_since(began))
+    journal.heartbeat.beat(Phase.MEASURING)
     rows = rows_of(result)
     return RunRecord(
         run=task.run,
@@ -65,8 +76,7 @@ def _since(began: float) -> Computing:
 def resident_memory() -> float:
     """The memory [MB] that this process holds; nan where the system does not tell."""
     try:
-        with open("/proc/self/statm", encoding="ascii") as file:  # noqa: PTH123 - not a file
-            pages = int(file.read().split()[1])
+        pages = int(_STATM.read_text(encoding="ascii").split()[1])
     except (OSError, ValueError, IndexError):
-        return float(np.nan)
+        return math.nan
     return round(pages * os.sysconf("SC_PAGE_SIZE") / 1e6, 1)

@@ -140,9 +140,9 @@ def _planned(cell: Cell, definition: StudyDefinition, origin: str) -> PlannedCel
         files.require_inputs()
         Zone(config.crowd.zone, config.crowd.zone_margin)
         require_vehicles(config.each_ego(), control_step(config, files))
+        inputs = input_hashes(config, scenario)
     except GivewayError as error:
         where = f"{origin}: cell {cell.number} ({cell.label})"
         error.args = (str(error) if origin in str(error) else f"{where}: {error}",)
         raise
-    inputs = input_hashes(config, scenario)
     return PlannedCell(cell, config, inputs, cell_digest(config, inputs, software_identity()))

@@ -14,6 +14,8 @@ import pandas as pd
 import pytest
 
 from giveway.errors import ConfigError, GivewayError, ResultsError
+from giveway.heartbeat import Phase
+from giveway.journal import Journal
 from giveway.studies.folder import StudyFolder
 from giveway.studies.performing import perform
 from giveway.studies.plan import plan
@@ -471,7 +473,9 @@ def test_a_task_survives_json(small):
     from giveway.config import RunConfig
 
     assert RunConfig.model_validate_json(run.task().config) == run.config
-    record = perform(run.task())
+    journal = Journal(None)
+    record = perform(run.task(), journal)
+    assert journal.heartbeat.read().phase is Phase.MEASURING  # the last thing that may crash
     kept = small.record("c1-s1")
     assert kept is not None
     assert repr(record.rows) == repr(kept.rows)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import sys
 from collections import Counter
 
 import pytest
@@ -61,3 +63,16 @@ def test_a_worker_that_has_grown_is_replaced(faulty, task):
     assert grown.memory > small.memory + 256.0
     assert grown.worker == small.worker
     assert fresh.worker == last.worker != grown.worker
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no named pipes to wait at")
+def test_what_sumo_said_last_is_told(task, tmp_path):
+    """SUMO waits for ever to read a pipe, after a word about an option."""
+    pipe = tmp_path / "nobody.add.xml"
+    os.mkfifo(pipe)
+    options = ["--ignore-accidents", "true", "--additional-files", str(pipe)]
+    with local_executor(jobs=1, run_limit=2.0) as executor:
+        silent, spoken = executor.run([task("a"), task("b", sumo={"options": options})])
+    assert not silent.failed
+    assert re.match(r"not finished within .* while the run was being set up", spoken.failure)
+    assert "after printing 'Warning: The option 'ignore-accidents' is dep" in spoken.failure

@@ -7,12 +7,16 @@ import signal
 import subprocess
 import sys
 import textwrap
+from dataclasses import replace
 from pathlib import Path
 
 import psutil
 import pytest
 
+from giveway.config import RunConfig
 from giveway.studies.execution import WorkerError, local_executor
+from giveway.studies.identity import input_hashes, software_identity
+from sumo_scenarios import find
 
 SCRIPT = """
 import sys
@@ -20,7 +24,8 @@ from pathlib import Path
 from giveway.studies.execution import local_executor
 from giveway.studies.record import Task
 
-tasks = [Task(str(n), str(n), Path(sys.argv[1]).read_text(), {{}}, "") for n in range(100000)]
+config, code = Path(sys.argv[1]).read_text(), sys.argv[2]
+tasks = [Task(str(n), str(n), config, {{}}, code) for n in range(100000)]
 {body}
 """
 
@@ -35,7 +40,7 @@ def script(tmp_path, task):
         program.write_text(SCRIPT.format(body=textwrap.dedent(body)))
         config.write_text(task("x").config)
         process = subprocess.Popen(
-            [sys.executable, str(program), str(config)],
+            [sys.executable, str(program), str(config), software_identity()],
             env=os.environ | {"TMPDIR": str(tmp_path)},
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -178,3 +183,41 @@ def test_short_of_memory_the_system_takes_a_worker_first(task, worker_of):
 def test_numbers_that_cannot_be_used(options, named, refused):
     with refused(WorkerError, named, "expected"):
         local_executor(**options)
+
+
+def test_a_file_that_changes_while_the_study_is_at_work_ends_it(
+    tmp_path, task, refused, left_behind
+):
+    """Else the record would stand under the hash of a file that the run has not read."""
+    more = tmp_path / "more.add.xml"
+    more.write_text("<additional/>\n", encoding="utf-8")
+    options = ["--additional-files", str(more)]
+    config = task("x", sumo={"options": options}).config
+    settings = RunConfig.model_validate_json(config)
+    tasks = [
+        replace(
+            task(f"c1-s{n}", n, sumo={"options": options}),
+            inputs=input_hashes(settings, find(settings.scenario)),
+        )
+        for n in range(1, 9)
+    ]
+    assert any("more.add.xml" in name for name in tasks[0].inputs)
+    made = []
+    with (
+        refused(WorkerError, "more.add.xml", "another content", "--resume"),
+        local_executor(jobs=1) as executor,
+    ):
+        for record in executor.run(tasks):
+            assert not record.failed, record.failure
+            made.append(record)
+            more.write_text("<additional><!-- other --></additional>\n", encoding="utf-8")
+    assert 1 <= len(made) < 4
+
+
+def test_other_software_than_the_plans_makes_no_run(task, refused, left_behind):
+    stranger = replace(task("a"), software="another")
+    with (
+        local_executor(jobs=1) as executor,
+        refused(WorkerError, "differ from those that planned run a", "same versions", "--resume"),
+    ):
+        list(executor.run([stranger]))

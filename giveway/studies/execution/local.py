@@ -86,6 +86,9 @@ class LocalExecutor:
             except OSError as error:
                 msg = f"{error}: the workers' temporary folder; free the disk or set TMPDIR"
                 raise WorkerError(msg) from error
+            except RuntimeError as error:  # no more threads
+                msg = f"{self._jobs} workers: {error}; free memory or lower --jobs"
+                raise WorkerError(msg) from error
         return self._pool
 
     def _close(self) -> None:

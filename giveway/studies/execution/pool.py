@@ -158,6 +158,9 @@ class Pool:
                 worker = None
                 self._note_vain(str(error))
                 continue
+            except WorkerError:
+                self._let_go(worker)
+                raise
             except (RunDiedError, RunRaisedError) as error:
                 self._let_go(worker)
                 worker = None

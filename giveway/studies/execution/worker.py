@@ -13,12 +13,14 @@ import traceback
 from pathlib import Path
 from typing import Final
 
+from giveway.errors import GivewayError
 from giveway.heartbeat import Heartbeat, Phase
 from giveway.journal import Journal
-from giveway.studies.execution.wire import ERROR, READY, RECORD, Line
+from giveway.studies.execution.wire import ERROR, READY, RECORD, REFUSED, Line
 from giveway.studies.record import Task
 from giveway.supervised import TRACEBACK_FILE, die_with
 
+SUMO_FILE: Final = "sumo"  # what SUMO has printed during the run
 _HIGH: Final = 200  # FMUs that close or write to files that are not theirs try low numbers
 _OOM_SCORE: Final = "500"  # short of memory, the system is to take a worker and not the study
 
@@ -40,23 +42,35 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
     with (Path(folder) / TRACEBACK_FILE).open("w", encoding="utf-8") as file:
         faulthandler.enable(file)
         heartbeat = Heartbeat(Path(folder))
-        from giveway.studies import performing
+        from giveway.kernels import compile_kernels_once
+        from giveway.studies import identity, performing  # noqa: F401 - no run is to wait for it
         from giveway.sumo import import_libsumo
 
         import_libsumo()  # what every run would find missing is no run's failure
+        compile_kernels_once()  # nor is half a minute of compiling a run's hang
         line.send(READY)
         with contextlib.suppress(EOFError):
             while message := line.receive():
                 task = Task(**json.loads(message[1]))
                 heartbeat.step(0, 0.0)
                 heartbeat.beat(Phase.LOADING)
-                try:
-                    record = performing.perform(task, Journal(None, heartbeat))
-                except Exception as error:  # whatever it is, the study goes on
-                    line.send(ERROR, _one_line(error).encode())
-                else:
-                    line.send(RECORD, record.to_json().encode())
+                line.send(*_answer(task, heartbeat, Path(folder)))
     os._exit(0)  # destructors of native code have nothing left to save
+
+
+def _answer(task: Task, heartbeat: Heartbeat, folder: Path) -> tuple[bytes, bytes]:
+    """Make the run, and say so: a message's kind and payload."""
+    from giveway.studies import identity, performing
+
+    try:
+        identity.require_same(task)
+    except GivewayError as error:
+        return REFUSED, str(error).encode("utf-8", "replace")
+    try:
+        record = performing.perform(task, Journal(None, heartbeat), folder / SUMO_FILE)
+        return RECORD, record.to_json().encode()
+    except Exception as error:  # whatever it is, the study goes on
+        return ERROR, _one_line(error).encode("utf-8", "replace")
 
 
 def _one_line(error: Exception) -> str:

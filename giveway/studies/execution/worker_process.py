@@ -17,8 +17,18 @@ from typing import TYPE_CHECKING, Final
 from fmus.text import printable
 from giveway.heartbeat import LOOP, Heartbeat, Phase, Stillness
 from giveway.process_ends import cause_of_end, stood_still, text_in
+from giveway.studies.execution.errors import WorkerError
 from giveway.studies.execution.starting import START_LIMIT, start
-from giveway.studies.execution.wire import ERROR, READY, RECORD, TASK, GarbledError, Line
+from giveway.studies.execution.wire import (
+    ERROR,
+    READY,
+    RECORD,
+    REFUSED,
+    TASK,
+    GarbledError,
+    Line,
+)
+from giveway.studies.execution.worker import SUMO_FILE
 from giveway.studies.record import RunRecord
 from giveway.supervised import STDERR_FILE, TRACEBACK_FILE
 
@@ -68,10 +78,12 @@ class WorkerProcess:
         self._poll = min(_POLL, limits.hang / 4, limits.run / 4)
         self._first_memory: float | None = None
         self._grown = False
+        self._buried = False
         temporary = folder / "tmp"
         temporary.mkdir(parents=True)
         self._heartbeat = Heartbeat.supervised_by(os.getpid(), folder)
         self._printed = folder / STDERR_FILE
+        self._printed_by_sumo = folder / SUMO_FILE
         # Appended to, so that it may be emptied while it is open.
         with self._printed.open("ab") as printed:
             self._process, connection = start(folder, temporary, printed)
@@ -105,13 +117,17 @@ class WorkerProcess:
             IdleDeathError: the worker is dead, and the run had not begun.
             RunDiedError: the worker is dead, and the run is why.
             RunRaisedError: the worker lives, but should not be trusted any more.
+            WorkerError: the worker would not make the run that was planned.
         """
         self._heartbeat.beat(Phase.STARTING)
-        with suppress(OSError):
-            os.truncate(self._printed, 0)
+        for printed in (self._printed, self._printed_by_sumo):
+            with suppress(OSError):
+                os.truncate(printed, 0)
         try:
             self._line.send(TASK, json.dumps(asdict(task)).encode())
             kind, payload = self._answer()
+            if kind == REFUSED:
+                raise WorkerError(payload.decode("utf-8", "replace"))
             if kind == ERROR:
                 raise RunRaisedError(printable(payload.decode("utf-8", "replace")))
             if kind != RECORD:
@@ -136,6 +152,8 @@ class WorkerProcess:
 
     def end(self) -> None:
         """Kill it, and its process group where there are groups; any number of times."""
+        if self._buried:
+            return  # its number may be somebody else's by now
         with suppress(OSError):
             if sys.platform == "win32":
                 self._process.kill()
@@ -146,6 +164,7 @@ class WorkerProcess:
         """End it, and remove what it has left; in its own thread."""
         self.end()
         self._process.wait()
+        self._buried = True
         self._line.close()
         shutil.rmtree(self._folder, ignore_errors=True)
 
@@ -198,6 +217,8 @@ class WorkerProcess:
         pulse = self._heartbeat.read()
         place = "" if pulse.phase in LOOP else self._python_place()
         words = self._last_words()
+        if not words and pulse.phase in {Phase.LOADING, Phase.SUMO}:
+            words = self._last_words(self._printed_by_sumo)
         said = f", after printing '{words}'" if words else ""
         return f"{cause} {pulse.place}{place}{said}"
 
@@ -209,11 +230,12 @@ class WorkerProcess:
         file, line, function = found.groups()
         return f" (Python was in {function}, {Path(file).name} line {line})"
 
-    def _last_words(self) -> str:
+    def _last_words(self, printed: Path | None = None) -> str:
         """The last line that it printed."""
+        printed = printed or self._printed
         try:
-            with self._printed.open("rb") as file:
-                file.seek(max(0, self._printed.stat().st_size - _TAIL))
+            with printed.open("rb") as file:
+                file.seek(max(0, printed.stat().st_size - _TAIL))
                 text = file.read().decode("utf-8", "replace")
         except OSError:
             return ""
