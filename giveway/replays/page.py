@@ -151,9 +151,22 @@ def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: 
     with_mpc = any(one.controller == "mpc" for one in run.egos.values())
     if predictions is None and with_mpc:
         notes.append(remark or _MADE_WITHOUT)
+    zone = run.config.crowd.zone
+    if _come_and_go(run) and zone != "everywhere":
+        notes.append(
+            f"The scenario's own walkers are on record in the zone alone (--zone {zone}); outside, "
+            "SUMO walks them unseen. '--zone everywhere' shows all."
+        )
     if not run.scene.road:
         notes.append("No road outlines: this results folder keeps none.")
     return notes + [str(text) for text in run.manifest.get("remarks") or ()]
+
+
+def _come_and_go(run: RunFolder) -> bool:
+    """Whether SUMO walks people whom nobody sees: those handed back; all, without an ego."""
+    people = run.manifest.get("pedestrians")
+    handed_back = isinstance(people, dict) and bool(people.get("handed_back"))
+    return handed_back or not (run.egos or run.config.crowd.pedestrians)
 
 
 def _road(run: RunFolder, frame: Frame) -> dict[str, Any]:

@@ -51,7 +51,7 @@ def events(rows: pd.DataFrame, people: pd.DataFrame, config: RunConfig) -> list[
         config: of this ego.
 
     Returns:
-        For each event its ``kind``, ``from`` and ``to`` [s], and a ``text``.
+        For each event its ``kind``, ``from`` and ``to`` [s], a ``text``, and ``who`` was met.
     """
     time = rows["time"].to_numpy(dtype=np.float64)
     found = []
@@ -79,14 +79,14 @@ def _encounters(people: pd.DataFrame) -> Iterator[dict[str, Any]]:
         clearance, at = float(row["minimum_clearance"]), float(row["time_of_minimum_clearance"])
         if clearance < 0.0:
             text = f"overlaps with {row['id']} by {-clearance:.2f} m"
-            yield _event("overlap", at, at, text)
+            yield _event("overlap", at, at, text, str(row["id"]))
         elif index == closest:
             text = f"closest approach: {clearance:.2f} m to {row['id']}"
-            yield _event("closest", at, at, text)
+            yield _event("closest", at, at, text, str(row["id"]))
 
 
-def _event(kind: str, start: float, end: float, text: str) -> dict[str, Any]:
-    return {"kind": kind, "from": round(start, 6), "to": round(end, 6), "text": text}
+def _event(kind: str, start: float, end: float, text: str, who: str = "") -> dict[str, Any]:
+    return {"kind": kind, "from": round(start, 6), "to": round(end, 6), "text": text, "who": who}
 
 
 def _phases(active: NDArray[np.bool_], time: NDArray[np.float64]) -> Iterator[tuple[float, float]]:

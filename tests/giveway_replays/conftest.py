@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -53,6 +54,14 @@ class Watched:
         """Wait for two frames: what was asked for before is on the canvas then."""
         frames = "new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => r())))"
         self.tab.evaluate(frames)
+
+    def until(self, condition: str) -> None:
+        """Wait for a condition in JavaScript; the page's policy forbids Playwright's own way."""
+        self.tab.evaluate(f"""new Promise((come, fail) => {{
+          const look = () => (({condition}) ? come() : setTimeout(look, 20));
+          setTimeout(() => fail(new Error("never: " + {json.dumps(condition)})), 5000);
+          look();
+        }})""")
 
     def place(self, x: float, y: float) -> tuple[float, float]:
         """Where a place [m] of the network is on the stage [px]."""

@@ -151,10 +151,50 @@ def test_the_charts_cursor_is_at_the_time(watched: Any) -> None:
 def test_the_address_points_at_an_instant(watch: Callable[..., Any], page: Path) -> None:
     watched = watch(page, at="#t=3.2")
     assert watched.time == pytest.approx(3.2)
+    watched.seek(4.4)
     watched.seek(4.5)
-    assert watched.tab.evaluate("location.hash") == "#t=4.5"
+    watched.until("location.hash === '#t=4.5'")
     watched.tab.evaluate("location.hash = '#t=2'")
-    watched.tab.wait_for_function("replay.time === 2")
+    watched.until("replay.time === 2")
+
+
+@pytest.mark.parametrize("address", ["#t=3.2.1", "#t=x", "#t=", "#t=-9"])
+def test_an_address_that_is_no_instant_opens_the_beginning(
+    watch: Callable[..., Any], page: Path, address: str
+) -> None:
+    assert watch(page, at=address).time == 0.0
+
+
+def test_the_address_can_follow_the_ego(
+    watch: Callable[..., Any], page: Path, ego: pd.DataFrame
+) -> None:
+    watched = watch(page, at="#t=3.2&follow")
+    box = watched.tab.locator("#stage").bounding_box()
+    x, y = watched.place(*at(ego, 3.2)[["x", "y"]])
+    lead = 3.0 * watched.tab.evaluate("replay.scale")
+    assert (x, y) == pytest.approx((box["width"] / 2 - lead, box["height"] / 2), abs=1.0)
+    watched.seek(4.0)
+    watched.until("location.hash === '#t=4&follow'")
+
+
+def test_a_window_of_another_size_shows_the_same_unless_hands_have_moved_it(
+    watch: Callable[..., Any], page: Path
+) -> None:
+    watched = watch(page)
+    whole = watched.tab.evaluate("EXTENT.map((x, i) => x + RUN.origin[i % 2])")
+    for size in ((700, 900), (1500, 700)):
+        watched.tab.set_viewport_size(dict(zip(("width", "height"), size, strict=True)))
+        watched.settle()
+        box = watched.tab.locator("#stage").bounding_box()
+        left, bottom = watched.place(*whole[:2])
+        right, top = watched.place(*whole[2:])
+        margins = min(left, box["width"] - right), min(top, box["height"] - bottom)
+        assert min(margins) == pytest.approx(0.0, abs=1.0)
+    watched.tab.keyboard.press("+")
+    scale = watched.tab.evaluate("replay.scale")
+    watched.tab.set_viewport_size({"width": 900, "height": 900})
+    watched.settle()
+    assert watched.tab.evaluate("replay.scale") == scale
 
 
 def test_wheel_keys_and_drag_change_the_view_and_follow_keeps_the_ego_in_it(
@@ -165,7 +205,7 @@ def test_wheel_keys_and_drag_change_the_view_and_follow_keeps_the_ego_in_it(
     x, y = box["x"] + 300, box["y"] + 200
     watched.tab.mouse.move(x, y)
     watched.tab.mouse.wheel(0, -200)
-    watched.tab.wait_for_function("scale => replay.scale > 1.2 * scale", arg=scale)
+    watched.until(f"replay.scale > {1.2 * scale}")
     watched.tab.keyboard.press("-")
     before = watched.place(20.0, 0.0)
     watched.tab.mouse.down()
@@ -222,6 +262,16 @@ def test_an_event_leads_to_its_instant(watched: Any, ego: pd.DataFrame) -> None:
     watched.tab.locator("#events button", has_text="PID").first.click()
     assert watched.time == pytest.approx(ego["time"].iloc[first])
     assert "QP infeasible" in watched.tab.inner_text(".wheel")
+
+
+def test_the_closest_approach_leads_to_whom_it_was(watched: Any, recorded: Path) -> None:
+    people = pd.read_csv(recorded / "pedestrians.csv", dtype={"id": str})
+    closest = people.loc[people["minimum_clearance"].idxmin()]
+    watched.tab.locator("#events button", has_text=closest["id"]).first.click()
+    watched.settle()
+    assert watched.tab.inner_text("#person-id") == closest["id"]
+    distance = float(watched.tab.inner_text("#person-distance").split()[0].replace("−", "-"))
+    assert distance == pytest.approx(closest["minimum_clearance"], abs=0.011)
 
 
 def test_it_complains_about_nothing_and_asks_nobody(watched: Any) -> None:

@@ -99,6 +99,16 @@ def test_a_crashed_run_plays_and_says_so(
     assert watched.tab.inner_text("#ending") == "crashed"
 
 
+def test_walkers_who_come_and_go_with_the_zone_are_explained(folder: Path, tmp_path: Path) -> None:
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert not any(
+        "--zone" in note for note in content(write_replay(folder, tmp_path / "a"))["notes"]
+    )
+    manifest["pedestrians"]["handed_back"] = 3
+    (folder / "manifest.json").write_text(json.dumps(manifest))
+    assert any("--zone" in note for note in content(write_replay(folder, tmp_path / "b"))["notes"])
+
+
 def test_a_folder_that_is_no_run_is_one_clear_line(
     folder: Path, tmp_path: Path, refused: Any
 ) -> None:

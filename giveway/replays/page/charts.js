@@ -6,7 +6,8 @@ const backdrop = document.createElement("canvas"); // all but the cursor
 const MARGIN = { left: 46, right: 14 };
 const EVENT_STRIP = 18; // [px] above the charts
 const AXIS = 16; // [px] below them
-const OTHERS_SHOWN = 40; // [m] of the distance to a vehicle or a light, as in state.png
+const FARTHEST = 40; // [m] of the gaps: what is beyond does not matter yet
+const TICK_ROOM = 15; // [px]
 
 let charted = null; // what the backdrop shows
 
@@ -74,13 +75,13 @@ function fastest(ego) {
 }
 
 function gaps(ego) {
-  const far = greatest(ego.gap, 1.5 * ego.safe);
+  const far = Math.min(greatest(ego.gap, 0), FARTHEST);
   const others = ego.vehicle_gap.some(Number.isFinite) || ego.stop_gap.some(Number.isFinite);
   const least = ego.gap.reduce((a, b) => (b < a ? b : a), 0);
-  return [least, 1.05 * (others ? Math.max(far, OTHERS_SHOWN) : far)];
+  return [least, 1.05 * Math.max(others ? FARTHEST : far, 1.5 * ego.safe)];
 }
 
-/** An empty chart: its frame's heights, its name, two ticks; and how values become pixels. */
+/** An empty chart: its frame's heights, its name, round ticks; and how values become pixels. */
 function plot(g, name, top, bottom, least, most) {
   const y = (value) => bottom - ((value - least) / (most - least)) * (bottom - top);
   g.fillStyle = colours.quiet;
@@ -89,9 +90,9 @@ function plot(g, name, top, bottom, least, most) {
   g.font = "11px system-ui, sans-serif";
   g.textAlign = "right";
   g.textBaseline = "middle";
-  const round = most - least > 12 ? 10 : most - least > 5 ? 4 : most - least > 2 ? 2 : 1;
+  const room = (TICK_ROOM * (most - least)) / Math.max(bottom - top, 1);
+  const round = [1, 2, 4, 5, 10, 20, 50, 100].find((step) => step >= room) ?? most;
   for (let value = 0; value <= most; value += round) {
-    if (bottom - top < 34 && value > 0 && value + round <= most) continue;
     const py = Math.round(y(value)) + 0.5;
     g.beginPath();
     g.moveTo(MARGIN.left, py);

@@ -69,7 +69,10 @@ function writeEgo() {
       element("span", `${event.from.toFixed(2)} s`, "when"),
       element("span", event.text, "what"),
     );
-    button.addEventListener("click", () => player.seek(event.from));
+    button.addEventListener("click", () => {
+      if (event.who) selected.person = PEOPLE.names.indexOf(event.who);
+      player.seek(event.from);
+    });
     const item = element("li");
     item.append(button);
     events.append(item);

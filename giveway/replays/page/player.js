@@ -50,20 +50,31 @@ const player = {
   },
 };
 
-// --- the address: #t=3.2 points at an instant ---------------------------------------------------
+// --- the address: #t=3.2 points at an instant, #t=3.2&follow at the ego's surroundings then -----
 
+const ADDRESS_REST = 400; // [ms] browsers refuse an address that changes 100 times in 30 s
+const FOLLOW = "&follow";
 let written = "";
+let resting = false;
 
 function noteTime() {
-  if (player.playing) return;
-  written = `#t=${Number(player.time.toFixed(3))}`;
-  if (location.hash !== written) history.replaceState(null, "", written);
+  if (resting || player.playing) return;
+  const address = `#t=${Number(player.time.toFixed(3))}${view.follow ? FOLLOW : ""}`;
+  if (address === written) return;
+  written = address;
+  history.replaceState(null, "", written);
+  resting = true;
+  setTimeout(() => {
+    resting = false;
+    noteTime();
+  }, ADDRESS_REST);
 }
 
 function readTime() {
-  const found = /^#t=(-?[\d.]+)$/.exec(location.hash);
+  const found = /^#t=(-?\d+(?:\.\d*)?|-?\.\d+)(&follow)?$/.exec(location.hash);
   if (!found || location.hash === written) return;
   player.play(false);
+  if (found[2] && !view.follow) setFollow(true);
   player.seek(Number(found[1]));
 }
 
@@ -232,6 +243,7 @@ function wire() {
   window.addEventListener("hashchange", readTime);
   new ResizeObserver(() => {
     measureStage();
+    refit();
     player.redraw();
   }).observe(stage);
   new ResizeObserver(() => player.redraw()).observe(chart);

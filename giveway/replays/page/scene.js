@@ -80,11 +80,15 @@ function drawScene(t) {
 
 function drawRoad() {
   toScene();
-  pen.fillStyle = colours.road;
-  pen.fill(ROAD, "nonzero");
   pen.strokeStyle = colours.kerb;
+  pen.lineWidth = 3 / view.scale;
+  pen.stroke(ROAD);
+  pen.fillStyle = colours.road;
+  pen.fill(ROAD, "nonzero"); // of the kerbs, what is inside the road is gone
+  pen.globalAlpha = 0.45; // lanes cross on a junction
   pen.lineWidth = 1 / view.scale;
   pen.stroke(ROAD);
+  pen.globalAlpha = 1;
 }
 
 /** The corridor ahead; its first part is the distance to keep. */
@@ -194,7 +198,7 @@ function drawPeople(t, present) {
   }));
   const bodies = kindOf.map(() => new Path2D());
   const ticks = new Path2D();
-  const radius = Math.max(RUN.radius * view.scale, 1.6);
+  const radius = Math.max(RUN.radius * view.scale, 2);
   let found = null;
   PEOPLE.each(t, (at) => {
     if (at.who === selected.person) found = { ...at };
@@ -207,7 +211,7 @@ function drawPeople(t, present) {
     }
     bodies[kind].moveTo(px + radius, py);
     bodies[kind].arc(px, py, radius, 0, 2 * Math.PI);
-    if (radius > 2.5) {
+    if (radius > 3.5) { // smaller ones would be hidden by them
       ticks.moveTo(px, py);
       ticks.lineTo(px + 1.7 * radius * Math.cos(at.heading), py - 1.7 * radius * Math.sin(at.heading));
     }
@@ -218,9 +222,10 @@ function drawPeople(t, present) {
   pen.strokeStyle = colours.ink;
   pen.stroke(ticks);
   kindOf.forEach((name, kind) => {
+    pen.lineWidth = Math.min(0.6 * radius, 2); // half of it is under the body
+    if (kind && radius > 2.5) pen.stroke(bodies[kind]);
     pen.fillStyle = colours[name];
     pen.fill(bodies[kind]);
-    if (kind && radius > 2.5) pen.stroke(bodies[kind]);
   });
   return found;
 }

@@ -3,7 +3,16 @@
 const stage = document.getElementById("stage");
 const pen = stage.getContext("2d");
 
-const view = { x: 0, y: 0, scale: 10, follow: false, width: 0, height: 0, ratio: 1 };
+const view = {
+  x: 0,
+  y: 0,
+  scale: 10,
+  follow: false,
+  chosen: false, // by hand: not to be fitted to another size
+  width: 0,
+  height: 0,
+  ratio: 1,
+};
 
 const toScreenX = (x) => view.width / 2 + (x - view.x) * view.scale;
 const toScreenY = (y) => view.height / 2 - (y - view.y) * view.scale;
@@ -43,7 +52,7 @@ const EXTENT = (() => {
 
 function showAll() {
   const [left, bottom, right, top] = EXTENT;
-  view.follow = false;
+  view.follow = view.chosen = false;
   view.x = (left + right) / 2;
   view.y = (bottom + top) / 2;
   view.scale = clamp(Math.min(view.width / (right - left), view.height / (top - bottom)), 0.05, 60);
@@ -60,10 +69,19 @@ function follow(on) {
   }
 }
 
+/** The same in a window of another size. */
+function refit() {
+  if (view.chosen) return;
+  const followed = view.follow;
+  showAll();
+  if (followed) follow(true);
+}
+
 /** Magnifies about a point of the canvas; the ego stays where it is while it is followed. */
 function zoom(factor, px = view.width / 2, py = view.height / 2) {
   const [x, y] = [toSceneX(px), toSceneY(py)];
   view.scale = clamp(view.scale * factor, 0.05, 300);
+  view.chosen = true;
   if (view.follow) return;
   view.x += x - toSceneX(px);
   view.y += y - toSceneY(py);
@@ -71,6 +89,7 @@ function zoom(factor, px = view.width / 2, py = view.height / 2) {
 
 function pan(dx, dy) {
   view.follow = false;
+  view.chosen = true;
   view.x -= dx / view.scale;
   view.y += dy / view.scale;
 }
