@@ -98,6 +98,38 @@ def test_an_interrupted_study_goes_on_where_it_was(
     assert tables_of(whole.path) == tables_of(small.path)
 
 
+def test_ctrl_c_twice_while_the_tables_are_made_is_still_one_line(
+    small, study_of, small_text, tables_of, tmp_path, monkeypatch
+):
+    import shutil
+
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    folder = shutil.copytree(small.path, tmp_path / "copy")
+    monkeypatch.setattr("giveway.studies.study.write_tables", interrupted)
+    with pytest.raises(StudyInterruptedError, match="20 of 20 runs are kept"):
+        study_of(small_text, folder, resume=True)
+    monkeypatch.undo()
+    assert not StudyFolder.open(folder).complete
+    study_of(small_text, folder, resume=True)
+    assert tables_of(folder) == tables_of(small.path)
+
+
+def test_a_folder_that_has_become_read_only_is_said_in_one_line(
+    small, study_of, small_text, tmp_path, monkeypatch
+):
+    import shutil
+
+    def read_only(self, missing_ok=False):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(self))
+
+    folder = shutil.copytree(small.path, tmp_path / "copy")
+    monkeypatch.setattr(Path, "unlink", read_only)
+    with pytest.raises(ResultsError, match=r"cannot be removed \(Read-only file system\)"):
+        study_of(small_text, folder, resume=True)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
 def test_a_killed_study_goes_on_where_it_was(small, small_text, tables_of, tmp_path):
     file = tmp_path / "small.toml"

@@ -16,7 +16,7 @@ from typing import IO, TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-START_LIMIT: Final = 300.0  # [s] from its start until it has imported everything, on a busy disk
+START_LIMIT: Final = 600.0  # [s] to import everything and compile the kernels, on a busy machine
 _BOOT: Final = (
     "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
     "from giveway.studies.execution.worker import main; main(*arguments)"
