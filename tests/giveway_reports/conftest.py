@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from dataclasses import replace
 from functools import cache
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from giveway.studies.definition import parse_definition
+from giveway.studies.design import design
 from giveway.studies.folder import StudyFolder
 from giveway.studies.output import write_tables
 from giveway.studies.performing import perform
@@ -90,6 +92,11 @@ def changed(study: StudyFolder, tmp_path: Path) -> Callable[..., StudyFolder]:
             store.put(edit(record))
         path = folder / "study.toml"
         path.write_text(toml(path.read_text("utf-8")), encoding="utf-8")
+        cells = design(parse_definition(path.read_text("utf-8"), "study.toml", folder), "").cells
+        manifest = json.loads((folder / "manifest.json").read_text("utf-8"))
+        for entry, cell in zip(manifest["cells"], cells, strict=True):
+            entry["label"] = cell.label
+        (folder / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
         for name in ("comparison", "situations"):
             (folder / f"{name}.csv").unlink()
         found = StudyFolder.open(folder)
