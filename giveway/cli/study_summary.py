@@ -106,6 +106,9 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
     comparison = study.comparison
     if comparison.empty:
         return
+    if study.runs["mean_speed"].isna().all() and study.failures.empty:
+        console.print("The runs have no ego: every metric is an ego's, nothing can be compared")
+        return
     wanted = study.definition.comparison
     treatments = comparison["treatment"].unique()
     what = f"{treatments[0]} minus" if len(treatments) == 1 else "difference to"
@@ -158,8 +161,8 @@ def _label(value: object) -> str:
 
 def _short(names: Sequence[str]) -> Iterator[str]:
     """The last part of each factor's name, where that tells them apart."""
-    last = [name.rpartition(".")[2] for name in names]
-    for name, short in zip(names, last, strict=True):
+    last = [*(name.rpartition(".")[2] for name in names), "seed"]  # the crowd's
+    for name, short in zip(names, last, strict=False):
         yield short if short and last.count(short) == 1 else name
 
 

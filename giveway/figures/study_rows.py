@@ -56,7 +56,7 @@ def wrapped(label: str, width: int = LABEL_WIDTH) -> str:
 def row_places(rows: Sequence[Row]) -> tuple[list[float], list[tuple[float, str]], float]:
     """Where rows and headings stand, from the top (0) downwards.
 
-    Rows whose headings are all different need none: the heading is their label.
+    Rows whose headings are all different need none: the heading stands in their label.
 
     Returns:
         A place per row, places and texts of headings, and the height of it all.
@@ -83,11 +83,22 @@ def _grouped(rows: Sequence[Row]) -> bool:
     return len(set(headings)) < len(headings) and any(headings)
 
 
+def _names(rows: Sequence[Row]) -> list[str]:
+    """What stands beside each row: its label under a heading, or the heading in its place.
+
+    Where no two rows share a heading, but their labels differ, both are told.
+    """
+    if _grouped(rows):
+        return [row.label for row in rows]
+    if len({row.label for row in rows}) > 1:
+        return [f"{row.heading}: {row.label}" if row.heading else row.label for row in rows]
+    return [row.heading or row.label for row in rows]
+
+
 def label_rows(axes: Axes, rows: Sequence[Row]) -> list[float]:
     """Name the rows beside the axis, headings in bold; their places, for the caller to draw at."""
     places, headings, height = row_places(rows)
-    alone = not _grouped(rows)
-    names = [row.heading if alone and row.heading else row.label for row in rows]
+    names = _names(rows)
     ticks = sorted(
         [(y, name, False) for y, name in zip(places, names, strict=True)]
         + [(y, heading, True) for y, heading in headings]
@@ -103,8 +114,7 @@ def label_rows(axes: Axes, rows: Sequence[Row]) -> list[float]:
 def rows_height(rows: Sequence[Row]) -> float:
     """The height [in] that rows and their broken labels need."""
     _, _, height = row_places(rows)
-    alone = not _grouped(rows)
-    names = [row.heading if alone and row.heading else row.label for row in rows]
+    names = _names(rows)
     tallest = max((wrapped(name).count("\n") + 1 for name in names), default=1)
     return height * max(ROW_HEIGHT, 0.05 + 0.14 * tallest)
 

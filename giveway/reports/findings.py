@@ -107,8 +107,8 @@ def _too_few(study: Study) -> str:
     if not most or smallest <= level or frame["verdict"].isin(["better", "worse"]).any():
         return ""
     return (
-        f"With {most} pairs the signed-rank test cannot show any difference, however large: its "
-        f"smallest p-value is {smallest:.3g}, and {level:.3g} is asked for. Take more seeds."
+        f"The signed-rank test of {most} different differences has a p-value of {smallest:.3g} or "
+        f"more, however large they are, and {level:.3g} is asked for: take more seeds."
     )
 
 
@@ -201,6 +201,8 @@ def _overlaps(study: Study) -> list[str]:
 def _in_all(study: Study) -> list[str]:
     verdicts = study.comparison["verdict"].astype(str)
     enough = int((verdicts != "N.A.").sum())
+    if not enough and not drives(study):
+        return ["The runs have no ego: every metric is an ego's, so there is nothing to compare."]
     if not enough:
         return ["No situation has enough pairs for a comparison: every difference is N.A."]
     better, worse = int((verdicts == "better").sum()), int((verdicts == "worse").sum())
@@ -211,6 +213,11 @@ def _in_all(study: Study) -> list[str]:
         f"A difference counts as shown where its interval leaves out zero and the signed-rank "
         f"test agrees, at a false discovery rate of {number(rate, 0)} % over the whole study."
     ]
+
+
+def drives(study: Study) -> bool:
+    """Whether the runs drive an ego, as far as can be told from those with a result."""
+    return bool(study.runs["mean_speed"].notna().any()) or bool(len(study.failures))
 
 
 def _count(n: int, noun: str) -> str:

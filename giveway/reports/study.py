@@ -116,9 +116,13 @@ def treatment_labels(study: Study) -> list[str]:
 
 
 def short_name(factor: str) -> str:
-    """An option's name without its table's: "pedestrians" of "crowd.pedestrians"."""
+    """An option's name without its table's: "pedestrians" of "crowd.pedestrians".
+
+    SUMO's seed keeps its table's name: "seed" is that of the crowd.
+    """
     table, dot, key = factor.partition(".")
-    return key if dot and table.isidentifier() and key.isidentifier() else factor
+    plain = dot and table.isidentifier() and key.isidentifier() and key != "seed"
+    return key if plain else factor
 
 
 def level_label(value: object) -> str:

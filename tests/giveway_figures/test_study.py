@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex, to_rgb
@@ -17,7 +18,14 @@ from giveway.figures.study_differences import (
 from giveway.figures.study_distributions import DistributionColumn, distributions_figure
 from giveway.figures.study_forest import Estimate, ForestColumn, forest_figure
 from giveway.figures.study_pairs import PairSide, pair_figure
-from giveway.figures.study_rows import Row, digits_for, level_colours, number, row_places
+from giveway.figures.study_rows import (
+    Row,
+    digits_for,
+    label_rows,
+    level_colours,
+    number,
+    row_places,
+)
 from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
 from giveway.figures.style import BLUE, GREY, ORANGE
 
@@ -147,6 +155,16 @@ class TestForest:
     def test_not_available_is_said(self):
         figure = self.draw({(2, "non-stop"): Estimate(NAN, NAN, NAN)})
         assert [text.get_text() for text in figure.axes[0].texts] == ["N.A."]
+
+    def test_rows_of_different_contexts_and_levels_name_both(self):
+        def names(*rows):
+            figure, axes = plt.subplots()
+            label_rows(axes, rows)
+            plt.close(figure)
+            return [label.get_text() for label in axes.get_yticklabels()]
+
+        assert names(Row("mpc", "dense"), Row("slow", "thin")) == ["dense: mpc", "thin: slow"]
+        assert names(Row("mpc", "dense"), Row("mpc", "thin")) == ["dense", "thin"]
 
     def test_the_better_side_is_named(self):
         figure = self.draw({(0, "general"): Estimate(-1, -2, 0)})

@@ -8,6 +8,7 @@ import pytest
 from rich.console import Console
 
 from giveway.cli.study_summary import print_summary
+from giveway.reports.findings import findings
 
 
 @pytest.fixture
@@ -68,3 +69,10 @@ def test_seeds_that_are_not_precise_enough_are_told(study_of, small_text, printe
     assert "Precise enough, minimum clearance (general) to 9 m, with 10 seeds" in printed(
         narrow, width=200
     )
+
+
+def test_without_an_ego_there_is_nothing_to_compare(study_of, small_text, printed, tmp_path):
+    text = small_text.replace("time_limit = 2.0", "time_limit = 2.0\nego.none = true")
+    study = study_of(text.replace("replications = 5", "replications = 4"), tmp_path / "study")
+    assert "The runs have no ego" in printed(study)
+    assert "every metric is an ego's" in findings(study)[0]
