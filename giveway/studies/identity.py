@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING
 
 from giveway._environment import ROOMS
 from giveway.config import RunConfig
-from giveway.errors import ConfigError
+from giveway.errors import ConfigError, GivewayError
 from giveway.manifest import scenario_hashes, scenario_inputs, sha256, software_versions
 from giveway.scenario_files.extra_options import parse_options
 from giveway.vehicles import fmu_path
-from sumo_scenarios import find
+from sumo_scenarios import ScenarioError, find
 
 if TYPE_CHECKING:
     from giveway.studies.record import Task
@@ -93,8 +93,11 @@ def require_same(task: Task) -> None:
         )
         raise ConfigError(msg)
     config = RunConfig.model_validate_json(task.config)
-    files = {f"scenario {name}": file for name, file in _scenario_files(find(config.scenario))}
-    files |= dict(_own_files(config))
+    try:
+        files = {f"scenario {name}": file for name, file in _scenario_files(find(config.scenario))}
+        files |= dict(_own_files(config))
+    except (ScenarioError, GivewayError):  # what names the files is not here
+        files = {}
     found = {name: _hash(file) for name, file in files.items() if file.is_file()}
     for name, expected in task.inputs.items():
         if found.get(name) != expected:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -212,6 +213,22 @@ def test_a_file_that_changes_while_the_study_is_at_work_ends_it(
             made.append(record)
             more.write_text("<additional><!-- other --></additional>\n", encoding="utf-8")
     assert 1 <= len(made) < 4
+
+
+def test_a_scenario_that_is_not_on_the_workers_machine_is_no_runs_failure(
+    tmp_path, task, refused, left_behind
+):
+    there = tmp_path / "theirs"
+    shutil.copytree(find("shared_space").config_file.parent, there)
+    planned = task("a", scenario=str(there))
+    settings = RunConfig.model_validate_json(planned.config)
+    planned = replace(planned, inputs=input_hashes(settings, find(settings.scenario)))
+    shutil.rmtree(there)
+    with (
+        local_executor(jobs=1) as executor,
+        refused(WorkerError, "shared_space.", "found nothing", "the same path on every machine"),
+    ):
+        list(executor.run([planned]))
 
 
 def test_other_software_than_the_plans_makes_no_run(task, refused, left_behind):
