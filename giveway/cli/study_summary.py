@@ -82,9 +82,9 @@ def print_summary(
     _print_precision(console, study)
     by = "" if workers is None else f" on {_count(workers, 'worker')}"
     there = len(study.records)
-    new = "" if made == there else f", {made:,} of them made now"
+    new = "" if made == there else f", {made:,} of them made now,"
     console.print(
-        f"{_count(there, 'run')}{new}, in {_duration(elapsed)}{by}; tables in "
+        f"{_count(there, 'run')}{new} in {_duration(elapsed)}{by}; tables in "
         f"[bold]{escape(str(study.path))}[/bold]",
         highlight=False,
     )
@@ -93,8 +93,9 @@ def print_summary(
         first = failures.iloc[0]
         cells = list(dict.fromkeys(str(cell) for cell in failures["cell"]))
         where = f"cell{'s'[: len(cells) > 1]} {', '.join(cells[:8])}{' ...' * (len(cells) > 8)}"
+        verb = "has" if len(failures) == 1 else "have"
         console.print(
-            f"[yellow]{len(failures):,} of {_count(there, 'run')} have no result[/yellow] "
+            f"[yellow]{len(failures):,} of {_count(there, 'run')} {verb} no result[/yellow] "
             f"({where}), see failures.csv; the first, "
             f"{escape(str(first['run']))}: {escape(str(first['cause']))}",
             highlight=False,

@@ -116,7 +116,7 @@ def test_runs_that_fail_make_the_exit_code_1(giveway, tmp_path):
     )
     done = giveway("study", "f.toml", "--no-report")
     assert done.returncode == 1
-    assert "1 run(s) have no result" in done.stdout
+    assert "1 of 2 runs has no result (cell 2), see failures.csv" in done.stdout
     assert "nobody" in done.stdout
     again = giveway("rerun", "results/study_f", "c2-s1")
     assert "nobody" in one_line(again, again.returncode)

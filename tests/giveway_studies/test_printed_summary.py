@@ -54,7 +54,7 @@ def test_what_has_too_few_pairs_is_one_line(small, printed):
 
 
 def test_a_resumed_study_says_how_many_runs_are_new(small, printed):
-    assert "20 runs, in 3 s on 2 workers" in printed(small, width=200)
+    assert "20 runs in 3 s on 2 workers" in printed(small, width=200)
     assert "20 runs, 3 of them made now, in 3 s on 2 workers" in printed(small, width=200, made=3)
 
 
