@@ -50,7 +50,7 @@ def print_plan(
     for entry in planned.cells:
         labels = [escape(level.label) for level in entry.cell.levels.values()]
         number = str(entry.cell.number)
-        table.add_row(number, *labels, f"{by_cell[number]:.3f}")
+        table.add_row(number, *labels, _trial(by_cell[number]))
     console.print(table)
     most = "at most " if definition.precision is not None else ""
     first, last = planned.seeds[0], planned.seeds[-1]
@@ -61,6 +61,10 @@ def print_plan(
         f"{escape(str(out))}",
         highlight=False,
     )
+
+
+def _trial(seconds: float) -> str:
+    return "failed" if math.isnan(seconds) else f"{seconds:.3f}"
 
 
 def print_summary(

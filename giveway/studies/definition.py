@@ -19,7 +19,7 @@ Situation = Literal["general", "stop-and-wait", "non-stop"]
 
 BUNDLED = "bundled"
 _MOST_SEEDS = 1_000_000
-_NAME = r"^[\w.-]+$"
+_NAME = r"^[\w.-]*\w[\w.-]*$"
 
 
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
@@ -250,6 +250,8 @@ def _explain(error: Any) -> str:
     if error["type"] == "value_error":
         return f"{key}: {error['ctx']['error']}"
     expected = str(error["msg"]).removeprefix("Input ")
+    if error["type"] == "string_pattern_mismatch":
+        expected = "expected letters, digits, '_', '-' and '.'"
     return f"{key} = {error['input']!r}: {expected} ({_meaning(place)})"
 
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import math
 from collections import defaultdict
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from giveway.errors import GivewayError
 from giveway.manifest import software_versions
@@ -222,11 +225,11 @@ class _Session:
 
 
 def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, Any]]:
-    """How long a study will take [s], from one run of each cell; nothing is kept.
+    """How long a study will take [s], from two runs of each cell; nothing is kept.
 
     Returns:
         The whole time on the workers that ``options`` ask for, and the seconds of one run by the
-        number of its cell.
+        number of its cell; nan where it failed, which the whole time leaves out.
     """
     seeds = planned.seeds
     tasks = [run.task() for seed in seeds[:2] for run in planned.runs(range(seed, seed + 1))]
@@ -235,8 +238,6 @@ def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, Any
         workers = executor.workers
         for record in executor.run(iter(tasks)):
             cell = record.run.partition("-")[0].removeprefix("c")
-            if record.failed:
-                raise GivewayError(f"run {record.run}: {record.failure}")
-            known = seconds.get(cell, record.computing.seconds)
-            seconds[cell] = min(known, record.computing.seconds)  # the first run warms up
-    return sum(seconds.values()) * len(seeds) / workers, seconds
+            taken = math.nan if record.failed else record.computing.seconds
+            seconds[cell] = float(np.fmin(seconds.get(cell, math.nan), taken))  # the first warms up
+    return float(np.nansum(list(seconds.values()))) * len(seeds) / workers, seconds

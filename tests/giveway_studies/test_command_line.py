@@ -76,6 +76,18 @@ def test_a_dry_run_tells_the_plan_and_leaves_nothing(giveway, small_text, tmp_pa
     assert not (tmp_path / "results").exists()
 
 
+def test_a_dry_run_tells_which_cells_fail(giveway, tmp_path):
+    (tmp_path / "f.toml").write_text(
+        'name = "f"\n[run]\ntime_limit = 0.5\n[factors.ego_of]\n'
+        '"ours" = {}\n"nobody" = { ego = { take_over = ["nobody"] } }\n',
+        encoding="utf-8",
+    )
+    done = giveway("study", "f.toml", "--dry-run", "--jobs", "1")
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"nobody │ +failed", done.stdout)
+    assert re.search(r"ours │ +0\.\d\d\d", done.stdout)
+
+
 def test_the_bundled_studies_are_listed(giveway):
     done = giveway("studies")
     assert done.stdout.split()[0] == "paper"

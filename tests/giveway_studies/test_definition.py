@@ -171,6 +171,8 @@ def test_nothing_as_a_level_can_be_seen_in_the_tables():
     [
         ("", "factors: missing"),
         ("[factors]", "expected at least one factor"),
+        ("name = 'a b'\n[factors]\ncontroller = ['mpc']", "name = 'a b': expected letters"),
+        ("name = '..'\n[factors]\ncontroller = ['mpc']", "name = '..': expected letters"),
         ("replicatons = 3\n[factors]\ncontroller = ['mpc']", "replicatons: unknown key"),
         ("replications = 0\n[factors]\ncontroller = ['mpc']", "replications = 0"),
         ("[factors]\ncontroler = ['mpc']", "did you mean 'controller'?"),
@@ -196,8 +198,9 @@ def test_nothing_as_a_level_can_be_seen_in_the_tables():
     ],
 )
 def test_what_cannot_be_a_study_is_refused_in_one_line(change, said):
+    named = "" if change.startswith("name") else 'name = "mine"\n'
     with pytest.raises(ConfigError) as refused:
-        design(parsed('name = "mine"\n' + change), "mine.toml")
+        design(parsed(named + change), "mine.toml")
     assert said in str(refused.value)
     assert str(refused.value).startswith("mine.toml")
     assert "\n" not in str(refused.value)
