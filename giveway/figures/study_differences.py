@@ -87,11 +87,16 @@ def differences_figure(
     height = 1.35 * len(rows) + 1.35
     figure = Figure(figsize=(3.15 * len(columns) + 0.3, height), layout="constrained")
     grid = figure.subplots(len(rows), len(columns), sharex="col", squeeze=False)
+    logarithmic = any(
+        _has_a_spike(panel, bin_edges([panels[place] for _, panels in rows]))
+        for _, panels_of_row in rows
+        for place, panel in enumerate(panels_of_row)
+    )
     for place, column in enumerate(columns):
         panels = [panels[place] for _, panels in rows]
         edges = bin_edges(panels)
         for axes, panel in zip(grid[:, place], panels, strict=True):
-            _draw(axes, panel, column, edges)
+            _draw(axes, panel, column, edges, logarithmic=logarithmic)
         grid[0, place].annotate(
             column.title, (0.0, 1.0), (0, 20), xycoords="axes fraction",
             textcoords="offset points", fontsize=10, fontweight="bold",
@@ -127,8 +132,23 @@ def _round_up(width: float) -> float:
     return power * next(step for step in (1.0, 2.0, 2.5, 5.0, 10.0) if step * power >= width)
 
 
+def _has_a_spike(panel: Differences, edges: NDArray[np.float64]) -> bool:
+    """Whether one bin would hide all others.
+
+    Most pairs may differ by next to nothing and a few by a lot, and these make the mean.
+    """
+    counts, _ = np.histogram(panel.values, edges)
+    filled = counts[counts > 0]
+    return bool(filled.size and filled.max() > SPIKE * np.median(filled))
+
+
 def _draw(
-    axes: Axes, panel: Differences, column: DifferenceColumn, edges: NDArray[np.float64]
+    axes: Axes,
+    panel: Differences,
+    column: DifferenceColumn,
+    edges: NDArray[np.float64],
+    *,
+    logarithmic: bool,
 ) -> None:
     quiet_grid(axes)
     axes.grid(visible=False, axis="x")
@@ -164,17 +184,14 @@ def _draw(
         axes.axvline(
             panel.published, color=PUBLISHED, linewidth=1.6, linestyle=DASHES, label="published"
         )  # fmt: skip
-    _count_axis(axes, np.append(counts, equal.sum()))
+    _count_axis(axes, np.append(counts, equal.sum()), logarithmic=logarithmic)
     _count_beyond(axes, panel.values, edges)
 
 
-def _count_axis(axes: Axes, counts: NDArray[np.intp]) -> None:
-    """Counts from zero on; logarithmic where one bin would hide all others.
-
-    Most pairs may differ by next to nothing and a few by a lot, and these make the mean.
-    """
+def _count_axis(axes: Axes, counts: NDArray[np.intp], *, logarithmic: bool) -> None:
+    """Counts from zero on."""
     highest = max(float(counts.max()), 1.0)
-    if highest > SPIKE * max(float(np.median(counts[counts > 0])) if counts.any() else 0.0, 1.0):
+    if logarithmic:
         axes.set_yscale("symlog", linthresh=1.0, linscale=0.5)
         axes.set_ylim(0.0, 2.0 * highest)
         ticks = [0, *(10**power for power in range(math.floor(math.log10(highest)) + 1))]

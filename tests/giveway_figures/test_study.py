@@ -71,6 +71,16 @@ class TestDifferences:
             colour = left if bar.get_x() < 0 else ({BLUE, ORANGE} - {left}).pop()
             assert bar.get_facecolor()[:3] == to_rgb(colour)
 
+    def test_one_tall_bin_does_not_hide_the_tail(self):
+        """Then all panels count logarithmically, so that they can be compared."""
+        spike = np.append(np.full(2000, -0.39), np.linspace(-15.0, -1.0, 60))
+        axes = self.draw(panel(spike), panel(self.values)).axes
+        assert {each.get_yscale() for each in axes} == {"symlog"}
+        assert [text.get_text() for text in axes[0].get_yticklabels()] == [
+            "0", "1", "10", "100", "1000"
+        ]  # fmt: skip
+        assert self.draw(panel(self.values)).axes[0].get_yscale() == "linear"
+
     def test_pairs_without_a_difference_are_on_neither_side(self):
         figure = self.draw(panel([-1.0, -1.0, 0.0, 0.0, -1e-9, 2.0, 2.0]))
         bars = {to_hex(bar.get_facecolor()): 0.0 for bar in figure.axes[0].patches}
