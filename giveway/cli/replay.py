@@ -8,6 +8,7 @@ import webbrowser
 from typing import TYPE_CHECKING
 
 from rich.console import Console
+from rich.markup import escape
 
 from giveway.replays.page import write_replay
 from giveway.replays.predicting import Predicted, predicted_again
@@ -45,7 +46,8 @@ def replay_command(
             if predicted.remark:
                 sys.stderr.write(f"note: {predicted.remark}\n")
         write_replay(run, target, predictions=predicted.file, remark=predicted.remark)
-    console.print(f"Replay in [bold]{target}[/bold]", highlight=False)
+    # a path is not broken into lines: it is to be copied
+    console.print(f"Replay in [bold]{escape(str(target))}[/bold]", highlight=False, soft_wrap=True)
     if show:
         webbrowser.open(target.absolute().as_uri())
     return 0

@@ -39,4 +39,5 @@ def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> 
         write_tables(study, whole=True)
     with console.status("Drawing ...") as status:
         page = write_report_of(study, replays=replays, tell=status.update)
-    console.print(f"Report in [bold]{escape(str(page))}[/bold]", highlight=False)
+    where = f"Report in [bold]{escape(str(page))}[/bold]"
+    console.print(where, highlight=False, soft_wrap=True)

@@ -114,9 +114,9 @@ class Watched:
         return tuple(int(text[i : i + 2], 16) for i in (0, 2, 4))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
-    """A browser, once."""
+    """A browser; it does not stay for other tests, which send signals to whoever is near."""
     api = pytest.importorskip("playwright.sync_api", reason="playwright: giveway[dev] has it")
     program = next(
         filter(None, map(shutil.which, ("chromium", "chromium-browser", "chrome"))), None
@@ -139,7 +139,7 @@ def chromium() -> Iterator[Any]:
         browser.close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def watch(chromium: Any) -> Iterator[Callable[..., Watched]]:
     """Opens a page from the disk; no request to anywhere else gets through."""
     contexts: list[Any] = []
