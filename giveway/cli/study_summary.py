@@ -91,7 +91,6 @@ def print_summary(
         f"{_count(there, 'run')}{new} in {_duration(elapsed)}{by}; tables in "
         f"[bold]{escape(str(study.path))}[/bold]",
         highlight=False,
-        soft_wrap=True,
     )
     failures = study.failures
     if len(failures):
