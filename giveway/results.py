@@ -14,7 +14,7 @@ from giveway.errors import ResultsError
 from giveway.scene import SCENE_FILE, scene_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     import pandas as pd
@@ -206,27 +206,40 @@ def require_parquet() -> None:
 
 
 def data_package(result: RunResult) -> dict[str, Any]:
-    """The Frictionless description of the CSV files: each column's type, unit and meaning."""
+    """The Frictionless description of a run's CSV files."""
+    name = f"giveway-{result.scenario.name}-{result.config.seed}"
+    title = f"giveway run of {result.scenario.name}, seed {result.config.seed}"
+    return package_of(name, title, result.schemas)
+
+
+def package_of(name: str, title: str, schemas: Mapping[str, Sequence[Column]]) -> dict[str, Any]:
+    """The Frictionless description of CSV files: each column's type, unit and meaning.
+
+    Args:
+        name: of the package.
+        title: for people.
+        schemas: the columns of each file, by its name without the suffix.
+    """
     return {
         "profile": "tabular-data-package",
-        "name": f"giveway-{result.scenario.name}-{result.config.seed}".lower().replace("_", "-"),
-        "title": f"giveway run of {result.scenario.name}, seed {result.config.seed}",
+        "name": name.lower().replace("_", "-"),
+        "title": title,
         "resources": [
             {
                 "profile": "tabular-data-resource",
-                "name": name,
-                "path": f"{name}.csv",
+                "name": table,
+                "path": f"{table}.csv",
                 "format": "csv",
                 "mediatype": "text/csv",
                 "encoding": "utf-8",
-                "schema": {"fields": fields_of(columns), "missingValues": [""]},
+                "schema": {"fields": _fields(columns), "missingValues": [""]},
             }
-            for name, columns in result.schemas.items()
+            for table, columns in schemas.items()
         ],
     }
 
 
-def fields_of(columns: Sequence[Column]) -> list[dict[str, str]]:
+def _fields(columns: Sequence[Column]) -> list[dict[str, str]]:
     """The columns as the schema of a data package has them."""
     fields = []
     for column in columns:

@@ -8,10 +8,8 @@ from typing import Annotated
 
 import typer
 
-from giveway.cli import INTERRUPTED, fail
 from giveway.cli.fmu import build_export, build_fmu
 from giveway.cli.studies import add_studies
-from giveway.errors import GivewayError
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
 
@@ -102,25 +100,16 @@ def _run(
     ] = True,
 ) -> None:
     """Drive the ego through a crowd once: summary, CSVs, pictures."""
-    from giveway.supervised import Supervised, take_journal_folder
+    from giveway.cli.isolated import run_isolated, supervised
+    from giveway.supervised import take_journal_folder
 
     journal = take_journal_folder()
     if isolate and journal is None:
-        from giveway.cli.isolated import run_isolated
-
         raise typer.Exit(run_isolated())
     from giveway.cli.run import Outputs, run_command
 
     outputs = Outputs(out, force=force, parquet=parquet, pictures=pictures, quiet=quiet)
-    with Supervised(journal) as supervised:
-        try:
-            supervised.listen()
-            code = run_command(scenario, config, settings, outputs, journal)
-        except KeyboardInterrupt:  # typer would end without a word
-            code = fail("interrupted before the run began", INTERRUPTED)
-        except GivewayError as error:
-            code = fail(str(error), error.exit_code)
-        raise SystemExit(code)  # in here: a failed run that dies on its way out is no success
+    supervised(journal, lambda: run_command(scenario, config, settings, outputs, journal))
 
 
 def _config(

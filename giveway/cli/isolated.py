@@ -2,8 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from giveway.cli import INTERRUPTED, fail
+from giveway.errors import GivewayError
+from giveway.supervised import Supervised
 from giveway.supervisor import journal_folder, own_command, supervise
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
 
 
 def run_isolated() -> int:
@@ -22,3 +30,24 @@ def run_isolated() -> int:
         from giveway.recovery import recover
 
         return fail(str(recover(journal, verdict)), INTERRUPTED if verdict.interrupted else 1)
+
+
+def supervised(journal: Path | None, command: Callable[[], int]) -> None:
+    """The child's half: make the run, and end with its exit code.
+
+    Args:
+        journal: the folder that the supervisor has named; None: there is no supervisor.
+        command: makes the run and tells the exit code; may raise a ``GivewayError``.
+
+    Raises:
+        SystemExit: always.
+    """
+    with Supervised(journal) as child:
+        try:
+            child.listen()
+            code = command()
+        except KeyboardInterrupt:  # typer would end without a word
+            code = fail("interrupted before the run began", INTERRUPTED)
+        except GivewayError as error:
+            code = fail(str(error), error.exit_code)
+        raise SystemExit(code)  # in here: a failed run that dies on its way out is no success

@@ -7,9 +7,6 @@ from typing import Annotated
 
 import typer
 
-from giveway.cli import INTERRUPTED, fail
-from giveway.errors import GivewayError
-
 _Folder = Annotated[Path, typer.Argument(help="The study's folder.")]
 
 
@@ -102,26 +99,20 @@ def _rerun(
     ] = False,
 ) -> None:
     """Make one run of a study again, with all trajectories; its numbers must be the study's."""
-    from giveway.supervised import Supervised, take_journal_folder
+    from giveway.cli.isolated import run_isolated, supervised
+    from giveway.supervised import take_journal_folder
 
     journal = take_journal_folder()
     if journal is None:
-        from giveway.cli.isolated import run_isolated
-
         raise typer.Exit(run_isolated())
     from giveway.cli.rerun import rerun_command
     from giveway.cli.run import Outputs
 
     outputs = Outputs(out, force=force, parquet=False, pictures=pictures, quiet=quiet)
-    with Supervised(journal) as supervised:
-        try:
-            supervised.listen()
-            code = rerun_command(study, run, outputs, predictions=predictions, journal=journal)
-        except KeyboardInterrupt:  # typer would end without a word
-            code = fail("interrupted before the run began", INTERRUPTED)
-        except GivewayError as error:
-            code = fail(str(error), error.exit_code)
-        raise SystemExit(code)  # in here: a failed run that dies on its way out is no success
+    supervised(
+        journal,
+        lambda: rerun_command(study, run, outputs, predictions=predictions, journal=journal),
+    )
 
 
 def _report(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.results import fields_of
+from giveway.results import package_of
 from giveway.schema import Column
 from giveway.studies.frames import EXECUTION_COLUMNS, FAILURE_COLUMNS, runs_columns, written
 from giveway.studies.whole_files import write_whole
@@ -43,23 +43,9 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
         frame = written(getattr(study, name), columns[name])
         text = _rounded(frame).to_csv(index=False, lineterminator="\n")
         write_whole(study.path / f"{name}.csv", text)
-    package = {
-        "profile": "tabular-data-package",
-        "name": f"giveway-study-{study.definition.name}".lower().replace("_", "-"),
-        "title": study.definition.description or f"giveway study {study.definition.name}",
-        "resources": [
-            {
-                "profile": "tabular-data-resource",
-                "name": name,
-                "path": f"{name}.csv",
-                "format": "csv",
-                "mediatype": "text/csv",
-                "encoding": "utf-8",
-                "schema": {"fields": fields_of(columns[name]), "missingValues": [""]},
-            }
-            for name in names
-        ],
-    }
+    name = f"giveway-study-{study.definition.name}"
+    title = study.definition.description or f"giveway study {study.definition.name}"
+    package = package_of(name, title, columns)
     text = json.dumps(package, indent=2, ensure_ascii=False) + "\n"
     write_whole(study.path / PACKAGE, text)
 

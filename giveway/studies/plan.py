@@ -105,6 +105,7 @@ def plan(definition: StudyDefinition, origin: str) -> Plan:
     """
     designed = design(definition, origin)
     definition = _with_comparison(definition, designed, origin)
+    _require_metric(definition, origin)
     cells = tuple(_planned(cell, definition, origin) for cell in designed.cells)
     return Plan(definition, designed, cells)
 
@@ -123,13 +124,18 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
         known = ", ".join(level.label for level in factor.levels)
         msg = f"{origin}: [comparison] baseline = {wanted.baseline!r}: expected one of {known}"
         raise ConfigError(msg)
-    if definition.precision is not None:
-        try:
-            metric(definition.precision.metric)
-        except ConfigError as error:
-            raise ConfigError(f"{origin}: [precision] {error}") from None
     complete = wanted.model_copy(update={"factor": factor.name, "baseline": baseline.label})
     return definition.model_copy(update={"comparison": complete})
+
+
+def _require_metric(definition: StudyDefinition, origin: str) -> None:
+    """Make sure that what is to be known precisely is something that is compared."""
+    if definition.precision is None:
+        return
+    try:
+        metric(definition.precision.metric)
+    except ConfigError as error:
+        raise ConfigError(f"{origin}: [precision] {error}") from None
 
 
 def _planned(cell: Cell, definition: StudyDefinition, origin: str) -> PlannedCell:

@@ -7,7 +7,7 @@ import math
 from collections import defaultdict
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -224,7 +224,7 @@ class _Session:
         write_whole(self._out / MANIFEST, text, durable=True)
 
 
-def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, Any]]:
+def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, float]]:
     """How long a study will take [s], from two runs of each cell; nothing is kept.
 
     Returns:
@@ -233,11 +233,11 @@ def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, Any
     """
     seeds = planned.seeds
     tasks = [run.task() for seed in seeds[:2] for run in planned.runs(range(seed, seed + 1))]
-    seconds: dict[str, Any] = {}
+    seconds: dict[str, float] = {}
     with options.executor() as executor:
         workers = executor.workers
         for record in executor.run(iter(tasks)):
             cell = record.run.partition("-")[0].removeprefix("c")
             taken = math.nan if record.failed else record.computing.seconds
             seconds[cell] = float(np.fmin(seconds.get(cell, math.nan), taken))  # the first warms up
-    return float(np.nansum(list(seconds.values()))) * len(seeds) / workers, seconds
+    return float(np.nansum([*seconds.values()])) * len(seeds) / workers, seconds
