@@ -92,7 +92,7 @@ def main() -> None:
             lambda judged=judged: post_encroachment_time(*judged),
             lambda judged=judged: pedestrian_metrics(*judged),
             lambda ego=ego, table=table: summarise(
-                ego, table, goal=40.0, safe_distance=8.0, controller="mpc"
+                ego, table, goal=40.0, safe_distance=8.0, controller="mpc-paper"
             ),
         )
         times = " ".join(f"{milliseconds(call, repetitions):8.3f}" for call in calls)

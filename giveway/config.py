@@ -5,17 +5,23 @@ The TOML file, the command line's flags and the Python API are all derived from 
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
+from giveway.control_sections import (
+    MpcConfig,
+    PerceptionConfig,
+    PidConfig,
+    PlannerConfig,
+    RegulationConfig,
+    SafetyConfig,
+    TunedPidConfig,
+)
 from giveway.sections import (
     CrowdConfig,
     EgoConfig,
-    MpcConfig,
-    PidConfig,
     RecordConfig,
-    RegulationConfig,
     Section,
     SumoConfig,
     TrafficConfig,
@@ -23,9 +29,28 @@ from giveway.sections import (
     option,
 )
 
-ControllerName = Literal["mpc", "pid"]
 
-EGO_TABLES = ("controller", "ego", "vehicle", "regulation", "mpc", "pid")
+def _full_name(value: Any) -> Any:
+    """``pid`` was the paper's before there was another one."""
+    return "pid-paper" if value == "pid" else value
+
+
+ControllerName = Annotated[
+    Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"], BeforeValidator(_full_name)
+]
+
+EGO_TABLES = (
+    "controller",
+    "ego",
+    "vehicle",
+    "regulation",
+    "mpc",
+    "pid",
+    "tuned_pid",
+    "planner",
+    "safety",
+    "perception",
+)
 """What may differ from ego to ego."""
 
 
@@ -34,7 +59,11 @@ class RunConfig(Section):
 
     scenario: str = option("shared_space", None, "bundled name, folder or .sumocfg", min_length=1)
     seed: int = option(1, None, "seed of the crowd that giveway adds", ge=0, le=2**31 - 1)
-    controller: ControllerName = option("mpc", None, "who drives: mpc (PID as fallback) or pid")
+    controller: ControllerName = option(
+        "mpc-paper",
+        None,
+        "who drives: mpc (plans ahead), pid-tuned, or the paper's: mpc-paper, pid-paper",
+    )
     time_step: float | None = option(
         None,
         "s",
@@ -56,6 +85,10 @@ class RunConfig(Section):
     regulation: RegulationConfig = RegulationConfig()
     mpc: MpcConfig = MpcConfig()
     pid: PidConfig = PidConfig()
+    tuned_pid: TunedPidConfig = TunedPidConfig()
+    planner: PlannerConfig = PlannerConfig()
+    safety: SafetyConfig = SafetyConfig()
+    perception: PerceptionConfig = PerceptionConfig()
     traffic: TrafficConfig = TrafficConfig()
     sumo: SumoConfig = SumoConfig()
     record: RecordConfig = RecordConfig()
@@ -117,6 +150,17 @@ class RunConfig(Section):
         return self.ego.take_over[0] if self.ego.take_over else self.ego.id
 
     @property
+    def optimises(self) -> bool:
+        """Whether a model predictive controller drives: it has a model and a horizon."""
+        return self.controller in {"mpc", "mpc-paper"}
+
+    @property
+    def safety_layer(self) -> bool:
+        """Whether the safety layer watches over the controller."""
+        enabled = self.safety.enabled
+        return not self.controller.endswith("-paper") if enabled is None else enabled
+
+    @property
     def corridor_margin(self) -> float:
         """What the corridor is wider than half the vehicle, on each side [m]."""
         return 0.25
@@ -132,7 +176,7 @@ class RunConfig(Section):
             ("[regulation] reference_speed", self.regulation.reference_speed),
             ("[ego] initial_speed", self.ego.initial_speed),
         ):
-            if self.controller == "mpc" and speed is not None and not low <= speed <= high:
+            if self.optimises and speed is not None and not low <= speed <= high:
                 msg = f"{key} = {speed:g}: expected within [mpc] speed_min and speed_max"
                 msg += f", {low:g} to {high:g} [m/s]"
                 raise ValueError(msg)

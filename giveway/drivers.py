@@ -49,7 +49,7 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator:
             ),
             time_step,
         )
-        if config.controller == "pid":
+        if not config.optimises:
             return Regulator(None, pid)
         model = LongitudinalModel(
             mass=config.vehicle.mass,
@@ -94,6 +94,6 @@ def make_driver(
     except FmuError as error:
         raise VehicleError(str(error)) from error
     predictor = None
-    if config.controller == "mpc":
+    if config.optimises:
         predictor = Predictor(parameters, time_step, config.mpc.horizon)
     return Driver(config, vehicle, description, regulator, predictor, parameters.max_speed)

@@ -75,7 +75,7 @@ class Driver:
     @property
     def horizon(self) -> int:
         """Steps that the controller looks ahead."""
-        return self.config.mpc.horizon if self.config.controller == "mpc" else 1
+        return self.config.mpc.horizon if self.config.optimises else 1
 
 
 class Seen(NamedTuple):

@@ -74,7 +74,7 @@ def _tiny_run() -> None:
     for settings in (
         {"time_limit": 0.2, "crowd": {"pedestrians": 0}},
         {"time_limit": 0.2, "crowd": people},
-        {"time_limit": 1.2, "scenario": "street", "controller": "pid"},
+        {"time_limit": 1.2, "scenario": "street", "controller": "pid-paper"},
         {"time_limit": 0.3, "scenario": "junction", "crowd": {"walls": True}},
     ):
         result = run(settings)

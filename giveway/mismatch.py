@@ -27,7 +27,7 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
         margin: the error that its controller allows for [m].
     """
     config = ego.config
-    if config.controller != "mpc" or not len(ego.track.time):
+    if not config.optimises or not len(ego.track.time):
         return ""  # the PID has no model
     mass, friction = config.vehicle.mass, config.vehicle.friction
     trace = _trace(ego.track, time_step)

@@ -193,7 +193,7 @@ def model_remark(config: RunConfig, time_step: float) -> str:
     )
     if (settings.mass, settings.friction) != (model.mass, model.friction):
         text += f", overruled by M = {settings.mass:g} kg, alpha = {settings.friction:g} N.s/m"
-    if config.controller == "mpc":
+    if config.optimises:
         margin = model_margin(config, time_step)
         text += f"; the MPC keeps {margin:.2g} m more than the safe distance for its errors"
     if abs(model.time_step - time_step) > _SAME_STEP * time_step:

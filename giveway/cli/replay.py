@@ -58,4 +58,4 @@ def _worth_it(run: Path) -> bool:
     folder = RunFolder.read(run)
     if (run / PREDICTIONS).is_file() or folder.manifest.get("ending") == "crashed":
         return False
-    return any(config.controller == "mpc" for config in folder.egos.values())
+    return any(config.optimises for config in folder.egos.values())

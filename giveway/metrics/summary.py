@@ -99,7 +99,7 @@ def summarise(
             between control instants.
         safe_distance: d_safe [m].
         stop_speed: the ego stands below it [m/s].
-        controller: "mpc" (with its fallback) or "pid".
+        controller: its name; one that begins with "mpc" optimises.
 
     Raises:
         ValueError: the ego's track is empty.
@@ -125,7 +125,7 @@ def summarise(
         rms_jerk=float(np.sqrt(np.mean(jerk**2))) if jerk.size else np.nan,
         peak_jerk=float(np.abs(jerk).max()) if jerk.size else np.nan,
         mpc_feasibility_rate=(
-            float(np.mean(ego.acting == "mpc")) if controller != "pid" else np.nan
+            float(np.mean(ego.acting == "mpc")) if controller.startswith("mpc") else np.nan
         ),
         minimum_gap=_extreme(ego.gap, np.min),
         share_below_safe_distance=float(np.mean(ego.gap < safe_distance)),

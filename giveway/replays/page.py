@@ -148,7 +148,7 @@ def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: 
         notes.append(
             f"A crowd of this size is thinned: one position in {thin:g} s, a straight line between."
         )
-    with_mpc = any(one.controller == "mpc" for one in run.egos.values())
+    with_mpc = any(one.optimises for one in run.egos.values())
     if predictions is None and with_mpc:
         notes.append(remark or _MADE_WITHOUT)
     zone = run.config.crowd.zone

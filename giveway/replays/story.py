@@ -57,7 +57,7 @@ def events(rows: pd.DataFrame, people: pd.DataFrame, config: RunConfig) -> list[
     found = []
     for start, end in _phases(rows["speed"].to_numpy() < config.record.stop_speed, time):
         found.append(_event("stop", start, end, f"stands for {end - start:.1f} s"))
-    if config.controller == "mpc":
+    if config.optimises:
         acting = rows["controller"].to_numpy() == "pid"
         for start, end in _phases(acting, time):
             at = int(np.searchsorted(time, start))

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 SOURCE = "Yang & Özgüner 2019"
 DENSITY = "crowd.pedestrians"
-TREATMENT, BASELINE = "mpc", "pid"
+TREATMENT, BASELINE = "mpc-paper", "pid-paper"
 
 Key = tuple[tuple[str, ...], str, str, str]
 """Context, treatment, situation, metric."""

@@ -24,7 +24,7 @@ _NAME = r"^[\w.-]*\w[\w.-]*$"
 
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
     if not value:
-        msg = "expected at least one factor, like controller = ['mpc', 'pid']"
+        msg = "expected at least one factor, like controller = ['mpc', 'pid-tuned']"
         raise ValueError(msg)
     return value
 

@@ -38,8 +38,8 @@ def table2(
     comparison: pd.DataFrame,
     factor_column: str = "crowd.pedestrians",
     *,
-    treatment: str = "mpc",
-    baseline: str = "pid",
+    treatment: str = "mpc-paper",
+    baseline: str = "pid-paper",
 ) -> pd.DataFrame:
     """The nine numbers of Table 2, each beside ours.
 

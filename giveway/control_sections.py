@@ -1,0 +1,90 @@
+"""The tables of the configuration about who drives: controllers, safety, perception."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from giveway.sections import Section, option
+
+
+class RegulationConfig(Section):
+    """What both controllers aim at, and who counts as being in front."""
+
+    reference_speed: float = option(4.0, "m/s", "desired speed v_r", gt=0, le=60)
+    safe_distance: float = option(
+        8.0, "m", "distance d_safe to keep to who is in front", ge=0, le=1e4
+    )
+    corridor_half_width: float | None = option(
+        None,
+        "m",
+        "in front: the body centre is this close to the ego's path; none: half its width + 0.25",
+        gt=0,
+        le=20,
+    )
+    gap_from: Literal["bumper", "centre"] = option(
+        "bumper", None, "where the distance to who is in front starts"
+    )
+    vehicles: bool = option(
+        True, None, "vehicles in front are obstacles too", flag="--respect-vehicles"
+    )
+    traffic_lights: bool = option(True, None, "the ego stops at red lights", flag="--obey-lights")
+    comfortable_deceleration: float = option(
+        2.0, "m/s^2", "of the approach to a red light or a slower vehicle", gt=0, le=10
+    )
+
+
+class MpcConfig(Section):
+    """The model predictive controller (Yang & Özgüner 2019, section 3, table 1)."""
+
+    horizon: int = option(15, "steps", "prediction horizon N", ge=2, le=200)
+    force_limit: float = option(8000.0, "N", "u_max, of the PID's output too", gt=0, le=1e6)
+    force_rate_limit: float = option(1000.0, "N/step", "du_max", gt=0, le=1e6)
+    speed_min: float = option(0.0, "m/s", "v_min", ge=0, le=60)
+    speed_max: float = option(20.0, "m/s", "v_max", gt=0, le=100)
+    solver: Literal["osqp", "daqp"] = option("osqp", None, "QP solver")
+
+
+class PidConfig(Section):
+    """The PID controller, fallback and rival (Yang & Özgüner 2019, section 3.4, table 1)."""
+
+    proportional_gain: float = option(
+        2400.0, "N.s/m", "K_p; the printed 300 contradicts the printed error", ge=0, le=1e6
+    )
+    integral_gain: float = option(10.0, "N/m", "K_i", ge=0, le=1e6)
+    derivative_gain: float = option(100.0, "N.s^2/m", "K_d", ge=0, le=1e6)
+    buffer_distance: float = option(
+        10.0, "m", "d_buffer over which the reference speed rises to v_r", gt=0, le=1e4
+    )
+
+
+class TunedPidConfig(Section):
+    """The well-tuned PID, the fair rival (controller = "pid-tuned"); docs/controllers.md."""
+
+    profile: Literal["braking-curve", "linear"] = option(
+        "braking-curve", None, "how the reference speed falls towards who is in front"
+    )
+
+
+class PlannerConfig(Section):
+    """The planning MPC (controller = "mpc"); every ingredient is a switch, docs/controllers.md."""
+
+    horizon: float = option(4.0, "s", "how far it plans", gt=0.3, le=10)
+
+
+class SafetyConfig(Section):
+    """The safety layer below every controller: a stop stays possible; docs/safety.md."""
+
+    enabled: bool | None = option(
+        None,
+        None,
+        "brakes where the controller would not; none: yes, but not for the paper's controllers",
+        flag="--safety",
+    )
+
+
+class PerceptionConfig(Section):
+    """What the controllers know of the pedestrians, as far as it is not the truth."""
+
+    position_noise: float = option(
+        0.0, "m", "standard deviation of the perceived positions", ge=0, le=5
+    )
