@@ -13,6 +13,7 @@ from giveway.drivers import make_driver, make_regulator
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.exchange import Exchange
 from giveway.population import Population
+from giveway.presets import parameters_of
 from giveway.scenario_files import StartOptions, free_prefix, read_scenario
 from giveway.spawn import PREFIX, Spawned, spawn
 from giveway.sumo import SumoSession
@@ -24,7 +25,6 @@ from giveway.yielding import Yielding
 from giveway.zone import Zone
 from pedestrian_model import (
     OPEN_GROUND,
-    PRESETS,
     Crowd,
     CrowdModel,
     PedestrianModelError,
@@ -162,7 +162,7 @@ def assemble(
         drivers=drivers,
         departures=departures,
         population=population,
-        crowd_model=CrowdModel(PRESETS[config.crowd.preset], time_step),
+        crowd_model=CrowdModel(parameters_of(config.crowd.preset), time_step),
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
         yielding=yielding,

@@ -116,11 +116,12 @@ def read_toml_text(text: str, origin: str) -> Layer:
 
 def anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
     """``values`` with those files that exist relative to ``folder`` named absolutely."""
-    vehicles = [values.get("vehicle")]
+    tables = [values]
     if isinstance(values.get("egos"), list):
-        vehicles += [ego.get("vehicle") for ego in values["egos"] if isinstance(ego, dict)]
-    places: list[tuple[Any, str]] = [(values, "scenario")]
-    places += [(vehicle, key) for vehicle in vehicles for key in ("fmu", "profile")]
+        tables += [ego for ego in values["egos"] if isinstance(ego, dict)]
+    places: list[tuple[Any, str]] = [(values, "scenario"), (values.get("crowd"), "preset")]
+    places += [(table.get("perception"), "preset") for table in tables]
+    places += [(table.get("vehicle"), key) for table in tables for key in ("fmu", "profile")]
     for table, key in places:
         if isinstance(table, dict) and isinstance(table.get(key), str):
             named = Path(table[key])

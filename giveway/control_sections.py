@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from giveway.sections import Section, option
+from giveway.sections import Preset, Section, option
 
 
 class RegulationConfig(Section):
@@ -87,4 +87,7 @@ class PerceptionConfig(Section):
 
     position_noise: float = option(
         0.0, "m", "standard deviation of the perceived positions", ge=0, le=5
+    )
+    preset: Preset = option(
+        "", None, "parameters the pedestrians are predicted with, as [crowd] preset; none: the same"
     )

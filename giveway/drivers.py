@@ -16,8 +16,9 @@ from controller import (
 from fmus import FmuError
 from giveway.ego import Driver
 from giveway.errors import ControlError, VehicleError
+from giveway.presets import parameters_of
 from giveway.vehicles import model_margin, open_for
-from pedestrian_model import PRESETS, Predictor
+from pedestrian_model import Predictor
 
 if TYPE_CHECKING:
     from contextlib import ExitStack
@@ -88,12 +89,14 @@ def make_driver(
     Raises:
         VehicleError: the FMU cannot be loaded.
     """
-    parameters = PRESETS[config.crowd.preset]
+    crowd = parameters_of(config.crowd.preset)
+    expected = parameters_of(config.perception.preset or config.crowd.preset)
     try:
         vehicle, description = open_for(config, time_step, stack)
     except FmuError as error:
         raise VehicleError(str(error)) from error
     predictor = None
     if config.optimises:
-        predictor = Predictor(parameters, time_step, config.mpc.horizon)
-    return Driver(config, vehicle, description, regulator, predictor, parameters.max_speed)
+        predictor = Predictor(expected, time_step, config.mpc.horizon)
+    fastest = max(crowd.max_speed, expected.max_speed)
+    return Driver(config, vehicle, description, regulator, predictor, fastest)

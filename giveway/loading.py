@@ -10,6 +10,7 @@ from fmus import FmuError, read_profile
 from giveway.config import RunConfig
 from giveway.configfile import Layer, build_config, merge, read_toml
 from giveway.errors import ConfigError, ScenarioError, VehicleError
+from giveway.presets import parameters_of
 from sumo_scenarios import ScenarioError as UnknownScenario
 from sumo_scenarios import available, find
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
     from sumo_scenarios import Scenario
 
+_FILES = ("fmu", "profile", "preset")  # keys that may name a file
+_WITH_FILES = ("vehicle", "crowd", "perception")  # tables that have such keys
 _KINDS_OF_EGO = ("take_over", "route", "none")
 
 
@@ -129,20 +132,44 @@ def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
     """``config`` with absolute paths, so that it means the same from any folder."""
     if config.scenario not in available():
         config = config.model_copy(update={"scenario": str(scenario.config_file)})
-    vehicle = config.vehicle.model_copy(update=_absolute(config.vehicle.model_dump()))
-    egos = [
-        {**ego, "vehicle": {**ego["vehicle"], **_absolute(ego["vehicle"])}}
-        if isinstance(ego.get("vehicle"), Mapping)
-        else ego
-        for ego in config.egos
-    ]
-    return config.model_copy(update={"vehicle": vehicle, "egos": tuple(egos)})
+    placed: dict[str, Any] = {
+        name: section.model_copy(update=_absolute(section.model_dump()))
+        for name, section in config
+        if name in _WITH_FILES
+    }
+    placed["egos"] = tuple(
+        {name: _table_placed(name, table) for name, table in ego.items()} for ego in config.egos
+    )
+    return _presets_read(config.model_copy(update=placed))
 
 
-def _absolute(vehicle: Mapping[str, Any]) -> dict[str, str]:
-    """The files that a vehicle's settings name, as far as there are such files."""
-    named = {key: Path(str(vehicle[key])) for key in ("fmu", "profile") if vehicle.get(key)}
+def _table_placed(name: str, table: Any) -> Any:
+    is_table = name in _WITH_FILES and isinstance(table, Mapping)
+    return {**table, **_absolute(table)} if is_table else table
+
+
+def _absolute(table: Mapping[str, Any]) -> dict[str, str]:
+    """The files that a table's settings name, as far as there are such files."""
+    named = {key: Path(str(table[key])) for key in _FILES if table.get(key)}
     return {key: str(path.absolute()) for key, path in named.items() if path.is_file()}
+
+
+def _presets_read(config: RunConfig) -> RunConfig:
+    """``config``, whose preset files can be used.
+
+    Raises:
+        ConfigError: one cannot.
+    """
+    named = {config.crowd.preset: "[crowd] preset"}
+    named |= {ego.perception.preset: "[perception] preset" for ego in config.each_ego()}
+    for preset, key in named.items():
+        if preset:
+            try:
+                parameters_of(preset)
+            except ConfigError as error:
+                msg = f"{key}: {error}"
+                raise ConfigError(msg) from error
+    return config
 
 
 def as_layer(config: RunConfig | dict[str, Any] | str | Path) -> Layer:

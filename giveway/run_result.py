@@ -10,6 +10,7 @@ import pandas as pd
 
 from giveway.configfile import dump_toml
 from giveway.metrics import PEDESTRIAN_FIELDS, SUMMARY_FIELDS, pedestrian_metrics, summarise
+from giveway.presets import parameters_of
 from giveway.schema import (
     EGO_COLUMNS,
     PREDICTION_COLUMNS,
@@ -28,7 +29,6 @@ from giveway.tracks import (
     Timings,
     VehicleShape,
 )
-from pedestrian_model import PRESETS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -72,7 +72,7 @@ class EgoResult:
     @property
     def body_radius(self) -> float:
         """The pedestrians' body radius [m]."""
-        return float(PRESETS[self.config.crowd.preset].body_radius)
+        return float(parameters_of(self.config.crowd.preset).body_radius)
 
     @cached_property
     def pedestrians(self) -> pd.DataFrame:
@@ -158,7 +158,7 @@ class RunResult:
     @property
     def body_radius(self) -> float:
         """The pedestrians' body radius [m]."""
-        return float(PRESETS[self.config.crowd.preset].body_radius)
+        return float(parameters_of(self.config.crowd.preset).body_radius)
 
     @cached_property
     def ego(self) -> pd.DataFrame:

@@ -10,6 +10,7 @@ import shlex
 from typing import Annotated, Any, Literal
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
@@ -50,6 +51,14 @@ def _text(value: Any) -> Any:
     return f"{value:.12g}" if is_number else value
 
 
+def _preset(value: str) -> str:
+    """A name or a file of the model's parameters; the file itself is read when it is needed."""
+    if value in {"", "SIM", "TABLE2"} or value.endswith(".toml"):
+        return value
+    msg = "expected SIM, TABLE2 or a preset file (.toml; giveway calibrate writes one)"
+    raise PydanticCustomError("preset", "{expected}", {"expected": msg})
+
+
 def _seed(value: Any) -> Any:
     return int(value) if isinstance(value, str) and value.isdecimal() else value
 
@@ -58,6 +67,7 @@ Rectangle = Annotated[tuple[float, float, float, float], BeforeValidator(_split)
 Displacement = Annotated[tuple[float, float], BeforeValidator(_split)]
 NameList = Annotated[tuple[str, ...], BeforeValidator(_split)]
 TextOrNumber = Annotated[str, BeforeValidator(_text)]
+Preset = Annotated[str, AfterValidator(_preset)]
 OptionList = Annotated[tuple[str, ...], BeforeValidator(_words)]
 SumoSeed = Annotated[
     Annotated[int, Field(ge=0, le=2**31 - 1)] | Literal["scenario", "run"], BeforeValidator(_seed)
@@ -171,7 +181,12 @@ class CrowdConfig(Section):
     host_edge: str = option(
         "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"
     )
-    preset: Literal["SIM", "TABLE2"] = option("SIM", None, "parameter set of the VCI model")
+    preset: Preset = option(
+        "SIM",
+        None,
+        "parameters of the VCI model: SIM, TABLE2, or a preset file (TOML)",
+        min_length=1,
+    )
     zone: TextOrNumber = option(
         "50",
         None,

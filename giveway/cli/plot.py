@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from typing import TYPE_CHECKING
 
@@ -11,8 +10,8 @@ from rich.console import Console
 from giveway.errors import ConfigError, ResultsError
 from giveway.figures import save_figure
 from giveway.pictures import influence_picture
+from giveway.presets import parameters_of
 from giveway.tracks import VehicleShape
-from pedestrian_model import PRESETS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,11 +26,7 @@ def influence_command(out: Path, speeds: str, *, preset: str, length: float, wid
         ConfigError: a value cannot be used.
         ResultsError: the picture cannot be written.
     """
-    if preset not in PRESETS:
-        close = difflib.get_close_matches(preset.upper(), PRESETS, n=1)
-        hint = f"; did you mean '{close[0]}'?" if close else ""
-        msg = f"--preset '{preset}': expected one of {', '.join(PRESETS)}{hint}"
-        raise ConfigError(msg)
+    parameters = parameters_of(preset)
     for flag, value in (("--length", length), ("--width", width)):
         if not (math.isfinite(value) and 0.0 < value <= 50.0):
             msg = f"{flag} {value}: expected a number between 0 and 50 [m]"
@@ -39,7 +34,8 @@ def influence_command(out: Path, speeds: str, *, preset: str, length: float, wid
     if out.suffix.lower() not in _SUFFIXES:
         msg = f"--out {out}: expected a name that ends with {', '.join(_SUFFIXES)}"
         raise ConfigError(msg)
-    figure = influence_picture(_speeds(speeds), VehicleShape(length, width), PRESETS[preset])
+    shape = VehicleShape(length, width)
+    figure = influence_picture(_speeds(speeds), shape, parameters)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
         save_figure(figure, out)

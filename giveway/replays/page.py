@@ -14,6 +14,7 @@ from shapely import LineString
 
 from giveway.errors import ResultsError
 from giveway.metrics import SUMMARY_FIELDS
+from giveway.presets import parameters_of
 from giveway.replays.contours import influence_contours
 from giveway.replays.packing import (
     Frame,
@@ -25,7 +26,6 @@ from giveway.replays.packing import (
 )
 from giveway.replays.run_folder import PREDICTIONS, RunFolder, read_predictions
 from giveway.replays.story import events, why
-from pedestrian_model import PRESETS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -122,7 +122,7 @@ def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> d
         "origin": [frame.x, frame.y],
         "time": packed(frame.time, np.float64),
         "step": run.step,
-        "radius": float(PRESETS[run.config.crowd.preset].body_radius),
+        "radius": float(parameters_of(run.config.crowd.preset).body_radius),
         "road": _road(run, frame),
         "tracks": tracks,
         "egos": egos,
@@ -189,7 +189,7 @@ def _egos(
         fastest = float(run.ego.loc[run.ego["id"] == name, "speed"].max())
         kinds[kind] = max(kinds.get(kind, 0.0), fastest)
     contours = [
-        influence_contours(body, fastest, PRESETS[preset])
+        influence_contours(body, fastest, parameters_of(preset))
         for (body, preset), fastest in kinds.items()
     ]
     egos = []

@@ -17,6 +17,7 @@ from giveway._environment import ROOMS
 from giveway.config import RunConfig
 from giveway.errors import ConfigError, GivewayError
 from giveway.manifest import scenario_hashes, scenario_inputs, sha256, software_versions
+from giveway.presets import is_preset_file
 from giveway.scenario_files.extra_options import parse_options
 from giveway.vehicles import fmu_path
 from sumo_scenarios import ScenarioError, find
@@ -25,8 +26,14 @@ if TYPE_CHECKING:
     from giveway.studies.record import Task
     from sumo_scenarios import Scenario
 
-_NOT_NUMBERS = ("cli", "doctor", "figures", "replays", "reports", "studies")
+_NOT_NUMBERS = ("cli", "doctor", "figures", "replays", "reports", "studies", "validation")
 """Parts of giveway that look at results only: a change there leaves every record valid."""
+_NAMING_FILES = (
+    ("vehicle", "fmu"),
+    ("vehicle", "profile"),
+    ("crowd", "preset"),
+    ("perception", "preset"),
+)
 _ROWS = frozenset({"studies/performing.py", "studies/record.py"})  # but for what makes them
 _NO_MATTER = frozenset({"platform", "machine", "pandas", "python"})
 
@@ -49,7 +56,7 @@ def software_identity() -> str:
 
 
 def input_hashes(config: RunConfig, scenario: Scenario) -> dict[str, str]:
-    """SHA-256 of every file that the run reads: the scenario's, FMUs and their profiles."""
+    """SHA-256 of every file that the run reads: the scenario's, FMUs, profiles, presets."""
     hashes = {f"scenario {name}": hash_ for name, hash_ in scenario_hashes(scenario).items()}
     return hashes | {name: _hash(file) for name, file in _own_files(config)}
 
@@ -64,10 +71,10 @@ def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str
     """
     values = config.model_dump(mode="json", exclude={"seed"})
     for table in (values, *values["egos"]):
-        vehicle = table.get("vehicle", {})
-        for key in ("fmu", "profile"):
-            if key in vehicle:
-                vehicle[key] = Path(vehicle[key]).name
+        for section, key in _NAMING_FILES:
+            settings = table.get(section, {})
+            if key in settings:
+                settings[key] = Path(settings[key]).name
     values["scenario"] = Path(values["scenario"]).name
     content = {"settings": values, "inputs": inputs, "software": software}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -123,7 +130,17 @@ def _scenario_files_of(scenario: Scenario, _stamps: object) -> tuple[tuple[str, 
 
 def _own_files(config: RunConfig) -> list[tuple[str, Path]]:
     """What a run reads beside its scenario."""
-    return [*_vehicle_files(config), *_option_files(config)]
+    return [*_vehicle_files(config), *_preset_files(config), *_option_files(config)]
+
+
+def _preset_files(config: RunConfig) -> list[tuple[str, Path]]:
+    """The pedestrian model's parameters: of the crowd, and as each ego expects it."""
+    named = [("preset of the crowd", config.crowd.preset)]
+    named += [
+        (f"preset that {ego.ego_id} predicts with", ego.perception.preset)
+        for ego in config.each_ego()
+    ]
+    return [(who, Path(preset)) for who, preset in named if is_preset_file(preset)]
 
 
 def _option_files(config: RunConfig) -> list[tuple[str, Path]]:

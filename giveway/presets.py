@@ -1,0 +1,139 @@
+"""The numbers of the pedestrian model by name, or from a preset file (TOML) of your own."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import tomllib
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import tomlkit
+
+from giveway.errors import ConfigError
+from pedestrian_model import PRESETS, ParameterError, VciParameters
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+SUFFIX = ".toml"
+NAMES = tuple(field.name for field in fields(VciParameters))
+"""The parameters of the model, in the order of their declaration."""
+
+_TABLES = frozenset({"name", "base", "parameters", "provenance"})
+
+
+def parameters_of(preset: str) -> VciParameters:
+    """The parameters of a preset: one that is built in, or a preset file.
+
+    Args:
+        preset: a name (SIM, TABLE2) or the path of a ``.toml`` file.
+
+    Raises:
+        ConfigError: naming the preset or the file, the key, the value and what was expected.
+    """
+    if preset in PRESETS:
+        return PRESETS[preset]
+    require_preset_name(preset)
+    path = Path(preset)
+    try:
+        status = path.stat()
+    except OSError as error:
+        msg = f"{path}: no preset file can be read there ({error.strerror}); see giveway calibrate"
+        raise ConfigError(msg) from error
+    return _read(path, (status.st_mtime_ns, status.st_size))
+
+
+def require_preset_name(preset: str) -> None:
+    """Make sure that ``preset`` may name a preset; whether its file is there is not looked at.
+
+    Raises:
+        ConfigError: it cannot.
+    """
+    if preset in PRESETS or preset.endswith(SUFFIX):
+        return
+    close = difflib.get_close_matches(preset.upper(), PRESETS, n=1)
+    hint = f"; did you mean '{close[0]}'?" if close else ""
+    expected = ", ".join(PRESETS)
+    msg = f"preset '{preset}': expected one of {expected}, or a preset file ({SUFFIX}){hint}"
+    raise ConfigError(msg)
+
+
+def is_preset_file(preset: str) -> bool:
+    """Whether ``preset`` names a file, not a preset that is built in."""
+    return preset not in PRESETS and preset.endswith(SUFFIX)
+
+
+def preset_text(name: str, parameters: VciParameters, provenance: Mapping[str, Any]) -> str:
+    """A preset file: every parameter, and where the numbers come from.
+
+    Args:
+        name: of the preset.
+        parameters: all of them are written, to the last digit.
+        provenance: what was fitted, on what, how well: text, numbers, lists of them.
+    """
+    document = tomlkit.document()
+    document.add(tomlkit.comment("Parameters of the VCI pedestrian model; giveway's docs tell"))
+    document.add(tomlkit.comment("their meaning: [crowd] preset and [perception] preset take it."))
+    document["name"] = name
+    document["parameters"] = asdict(parameters)
+    document["provenance"] = dict(provenance)
+    return tomlkit.dumps(document)
+
+
+@functools.lru_cache(maxsize=64)
+def _read(path: Path, _stamp: object) -> VciParameters:
+    values = _toml(path)
+    unknown = sorted(set(values) - _TABLES)
+    if unknown:
+        msg = f"{path}: unknown key '{unknown[0]}'; expected {', '.join(sorted(_TABLES))}"
+        raise ConfigError(msg)
+    given = values.get("parameters", {})
+    if not isinstance(given, dict):
+        msg = f"{path}: parameters = {given!r}: expected a table [parameters]"
+        raise ConfigError(msg)
+    known = {**_base(path, values.get("base")), **given}
+    _require_names(path, known)
+    try:
+        return VciParameters(**known)
+    except ParameterError as error:
+        msg = f"{path}: [parameters] {error}"
+        raise ConfigError(msg) from error
+
+
+def _toml(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except tomllib.TOMLDecodeError as error:
+        msg = f"{path}: not valid TOML: {error}; mend the line named"
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
+        msg = f"{path}: cannot be read ({reason}); expected a preset file (TOML)"
+    raise ConfigError(msg)
+
+
+def _base(path: Path, base: object) -> dict[str, float]:
+    """What a file that names a ``base`` need not repeat."""
+    if base is None:
+        return {}
+    if not isinstance(base, str) or base not in PRESETS:
+        msg = f"{path}: base = {base!r}: expected one of {', '.join(PRESETS)}, or no such key"
+        raise ConfigError(msg)
+    return asdict(PRESETS[base])
+
+
+def _require_names(path: Path, given: Mapping[str, object]) -> None:
+    unknown = sorted(set(given) - set(NAMES))
+    if unknown:
+        close = difflib.get_close_matches(unknown[0], NAMES, n=1)
+        hint = f"; did you mean '{close[0]}'?" if close else f"; expected {', '.join(NAMES)}"
+        msg = f"{path}: [parameters] {unknown[0]}: unknown parameter{hint}"
+        raise ConfigError(msg)
+    missing = [name for name in NAMES if name not in given]
+    if missing:
+        msg = (
+            f"{path}: [parameters] {missing[0]} is missing; give all {len(NAMES)} parameters, or "
+            'take the others from a preset: base = "SIM"'
+        )
+        raise ConfigError(msg)
