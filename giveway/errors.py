@@ -59,6 +59,12 @@ class CrashError(GivewayError):
     """Native code (SUMO, an FMU, a solver) ended or hung the run's process; rows are kept."""
 
 
+class DatasetError(GivewayError):
+    """Recorded trajectories cannot be read, or there are too few for what was asked."""
+
+    exit_code = 2
+
+
 class ResultsError(GivewayError):
     """The results cannot be written, or would overwrite something."""
 
