@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.metrics import (
+    Critical,
     pedestrian_metrics,
     post_encroachment_time,
     summarise,
@@ -92,7 +93,7 @@ def main() -> None:
             lambda judged=judged: post_encroachment_time(*judged),
             lambda judged=judged: pedestrian_metrics(*judged),
             lambda ego=ego, table=table: summarise(
-                ego, table, goal=40.0, safe_distance=8.0, controller="mpc-paper"
+                ego, table, Critical(0, 0.0), goal=40.0, safe_distance=8.0, controller="mpc-paper"
             ),
         )
         times = " ".join(f"{milliseconds(call, repetitions):8.3f}" for call in calls)

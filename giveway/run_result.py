@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from giveway.configfile import dump_toml
-from giveway.metrics import PEDESTRIAN_FIELDS, SUMMARY_FIELDS, pedestrian_metrics, summarise
+from giveway.metrics import (
+    PEDESTRIAN_FIELDS,
+    SUMMARY_FIELDS,
+    conflicts,
+    pedestrian_metrics,
+    summarise,
+)
 from giveway.presets import parameters_of
 from giveway.schema import (
     EGO_COLUMNS,
@@ -83,9 +89,11 @@ class EgoResult:
     def summary(self) -> dict[str, Any]:
         """The drive in one row."""
         config = self.config
+        body = self.shape, self.body_radius
         figures = summarise(
             self.track,
             self.pedestrians,
+            conflicts(self.track, self.crowd, *body, config.record.stop_speed),
             goal=self.goal,
             safe_distance=config.regulation.safe_distance,
             stop_speed=config.record.stop_speed,

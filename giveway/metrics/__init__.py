@@ -1,6 +1,8 @@
 """What happened between ego and pedestrians, in the numbers that traffic engineers use."""
 
 from giveway.metrics.conflicts import clearance, deceleration_to_avoid_crash, time_to_collision
+from giveway.metrics.contacts import FRONTAL, NO_CONTACT, SIDE, contacts
+from giveway.metrics.critical import CRITICAL_TTC, Critical, conflicts
 from giveway.metrics.encroachment import post_encroachment_time
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS, pedestrian_metrics
 from giveway.metrics.summary import (
@@ -12,11 +14,18 @@ from giveway.metrics.summary import (
 )
 
 __all__ = [
+    "CRITICAL_TTC",
+    "FRONTAL",
+    "NO_CONTACT",
     "PEDESTRIAN_FIELDS",
+    "SIDE",
     "STOP_SPEED",
     "SUMMARY_FIELDS",
+    "Critical",
     "Summary",
     "clearance",
+    "conflicts",
+    "contacts",
     "deceleration_to_avoid_crash",
     "pedestrian_metrics",
     "post_encroachment_time",

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from giveway.metrics.conflicts import proximity
+from giveway.metrics.contacts import contacts
 from giveway.metrics.encroachment import post_encroachment_time
 from giveway.metrics.fields import Quantity, columns_of
 from giveway.metrics.groups import PedestrianGroups
@@ -32,6 +33,9 @@ class PedestrianRow:
     time_of_minimum_clearance: Annotated[float, Quantity("s", "when that was, the first time")]
     overlap_time: Annotated[
         float, Quantity("s", "for how long its circle overlapped the ego's rectangle")
+    ]
+    contact: Annotated[
+        str, Quantity(None, "frontal: the ego moved into it; side: any other overlap; empty: none")
     ]
     minimum_ttc: Annotated[
         float, Quantity("s", "smallest time to collision; empty: never on a collision course")
@@ -60,7 +64,7 @@ def pedestrian_metrics(
         body_radius: radius of a pedestrian [m].
 
     Returns:
-        n rows in the order of ``crowd.ids``; who was never seen has nan throughout.
+        n rows in the order of ``crowd.ids``; who was never seen has nan throughout, and no contact.
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -84,6 +88,7 @@ def pedestrian_metrics(
         "minimum_clearance": groups.at(clear, closest),
         "time_of_minimum_clearance": groups.at(time, closest),
         "overlap_time": groups.total(np.where(clear < 0.0, durations(ego)[crowd.step], 0.0)),
+        "contact": contacts(ego, crowd, shape, body_radius, clear),
         "minimum_ttc": np.where(on_course, minimum_ttc, np.nan),
         "time_of_minimum_ttc": np.where(on_course, groups.at(time, soonest), np.nan),
         "post_encroachment_time": post_encroachment_time(ego, crowd, shape, body_radius),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from giveway.metrics.contacts import FRONTAL, SIDE
 from giveway.metrics.fields import Quantity, columns_of
 
 if TYPE_CHECKING:
@@ -15,10 +16,12 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
+    from giveway.metrics.critical import Critical
     from giveway.tracks import EgoTrack
 
 STOP_SPEED = 0.2
 """[m/s] Below it the ego stands: Yang & Özgüner 2019, section 2.1, treat it as an obstacle then."""
+SAFETY = "safety"  # who acts where the safety layer does
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,7 @@ class Summary:
     mpc_feasibility_rate: Annotated[
         float, Quantity(None, "share of steps in which the MPC acted; empty: run without MPC")
     ]
+    safety_share: Annotated[float, Quantity(None, "share of steps in which the safety layer acted")]
     minimum_gap: Annotated[
         float, Quantity("m", "smallest gap to a pedestrian in front; empty: nobody was in front")
     ]
@@ -58,9 +62,17 @@ class Summary:
     overlaps: Annotated[
         int, Quantity(None, "pedestrians whose circle ever overlapped the ego's rectangle")
     ]
+    frontal_contacts: Annotated[int, Quantity(None, "pedestrians that the ego moved into")]
+    side_contacts: Annotated[int, Quantity(None, "all other pedestrians that overlapped it")]
     overlap_time: Annotated[float, Quantity("s", "of all pedestrians, added up")]
     minimum_ttc: Annotated[
         float, Quantity("s", "smallest time to collision; empty: never on a collision course")
+    ]
+    conflicts: Annotated[
+        int, Quantity(None, "pedestrians less than 1.5 s from a collision with the moving ego")
+    ]
+    share_below_ttc: Annotated[
+        float, Quantity(None, "share of steps at which somebody was that close")
     ]
     minimum_pet: Annotated[
         float, Quantity("s", "smallest post-encroachment time; empty: no paths crossed")
@@ -80,6 +92,7 @@ SUMMARY_FIELDS = columns_of(Summary)
 def summarise(
     ego: EgoTrack,
     per_pedestrian: pd.DataFrame,
+    critical: Critical,
     *,
     goal: float,
     safe_distance: float,
@@ -95,6 +108,7 @@ def summarise(
     Args:
         ego: the ego's track, at least one instant.
         per_pedestrian: the table of ``pedestrian_metrics``.
+        critical: the drive's ``conflicts``.
         goal: the position that ends the run [m]; the time at which it is reached is interpolated
             between control instants.
         safe_distance: d_safe [m].
@@ -127,12 +141,17 @@ def summarise(
         mpc_feasibility_rate=(
             float(np.mean(ego.acting == "mpc")) if controller.startswith("mpc") else np.nan
         ),
+        safety_share=float(np.mean(ego.acting == SAFETY)),
         minimum_gap=_extreme(ego.gap, np.min),
         share_below_safe_distance=float(np.mean(ego.gap < safe_distance)),
         minimum_clearance=_extreme(clearances, np.min),
         overlaps=int(np.count_nonzero(clearances < 0.0)),
+        frontal_contacts=int(np.count_nonzero(per_pedestrian["contact"] == FRONTAL)),
+        side_contacts=int(np.count_nonzero(per_pedestrian["contact"] == SIDE)),
         overlap_time=float(np.nansum(per_pedestrian["overlap_time"].to_numpy())),
         minimum_ttc=_extreme(per_pedestrian["minimum_ttc"].to_numpy(), np.min),
+        conflicts=critical.persons,
+        share_below_ttc=critical.share,
         minimum_pet=_extreme(per_pedestrian["post_encroachment_time"].to_numpy(), np.min),
         maximum_drac=_extreme(per_pedestrian["maximum_drac"].to_numpy(), np.max),
     )

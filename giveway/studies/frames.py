@@ -32,6 +32,8 @@ EXECUTION_COLUMNS = (
     Column("attempts", "integer", None, "how often it was tried"),
     Column("worker", "string", None, "host and process that made it"),
     Column("memory", "number", "MB", "memory that this process held afterwards"),
+    Column("control_median", "number", "ms", "of one control step: prediction and controller"),
+    Column("control_max", "number", "ms", "the longest control step but the first"),
 )
 FAILURE_COLUMNS = (
     Column("run", "string", None, "id of the run"),

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 import os
 import socket
+from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from fmus.text import printable
 from giveway.api import simulate
@@ -21,6 +24,7 @@ from sumo_scenarios import find
 
 if TYPE_CHECKING:
     from giveway.run_result import RunResult
+    from giveway.tracks import Timings
 
 
 _LONGEST_FAILURE = 2000  # characters
@@ -49,14 +53,27 @@ def perform(
         return RunRecord(task.run, task.key, FAILED, failure=failure, computing=_since(began))
     journal.heartbeat.beat(Phase.MEASURING)
     rows = rows_of(result)
+    median, longest = control_times(result.timings)
     return RunRecord(
         run=task.run,
         key=task.key,
         ending=str(result.ending),
         rows=rows,
         remarks=tuple(result.remarks),
-        computing=_since(began),
+        computing=replace(_since(began), control_median=median, control_max=longest),
     )
+
+
+def control_times(timings: Timings) -> tuple[float, float]:
+    """Median and maximum [ms] of what one control step takes: prediction and controller.
+
+    The first step is left out, which fills caches; nan without a second one.
+    """
+    columns = [timings.NAMES.index(name) for name in ("prediction", "control")]
+    steps = 1000.0 * timings.seconds[1:, columns].sum(axis=1)
+    if not steps.size:
+        return math.nan, math.nan
+    return round(float(np.median(steps)), 6), round(float(steps.max()), 6)
 
 
 def rows_of(result: RunResult) -> tuple[dict[str, Scalar], ...]:

@@ -46,12 +46,16 @@ class Computing:
         attempts: how often it was tried.
         worker: who did it: host and process id.
         memory: resident set of the worker after the run [MB].
+        control_median: of the time of one control step, prediction and controller [ms].
+        control_max: the longest one [ms]; the run's first step is left out of both.
     """
 
     seconds: float = math.nan
     attempts: int = 1
     worker: str = ""
     memory: float = math.nan
+    control_median: float = math.nan
+    control_max: float = math.nan
 
 
 @dataclass(frozen=True)

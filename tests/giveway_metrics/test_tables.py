@@ -13,6 +13,7 @@ import pytest
 from giveway.metrics import (
     PEDESTRIAN_FIELDS,
     SUMMARY_FIELDS,
+    Critical,
     Summary,
     pedestrian_metrics,
     summarise,
@@ -63,6 +64,7 @@ def test_who_was_never_seen_has_an_empty_row(driving, crowd):
     track = crowd((5, []), (5, [(20.0, 3.0, 0.0, 0.0)]))
     never, once = pedestrian_metrics(driving(TIME, 4.0), track, CAR, R).to_dict("records")
     assert never.pop("id") == "ped0"
+    assert never.pop("contact") == ""
     assert all(np.isnan(value) for value in never.values())
     assert once["first_seen"] == once["last_seen"] == pytest.approx(0.25)
     assert (once["path_length"], once["overlap_time"]) == (0.0, 0.0)
@@ -105,9 +107,9 @@ def test_one_uninterrupted_stop_is_one_waiting_time(ego, case, speed, expected):
     assert waiting_times(track) == pytest.approx(expected), case
 
 
-def summary_of(track, table=NOBODY, **arguments):
+def summary_of(track, table=NOBODY, critical=Critical(0, 0.0), **arguments):  # noqa: B008
     arguments = {"goal": 4.0, "safe_distance": 8.0, "controller": "mpc"} | arguments
-    return summarise(track, table, **arguments)
+    return summarise(track, table, critical, **arguments)
 
 
 def test_the_summary_of_a_drive(ego):
@@ -118,7 +120,7 @@ def test_the_summary_of_a_drive(ego):
         speed=np.array([4.0, 2.0, 0.0, 0.1, 2.0]),
         acceleration=np.array([0.0, -4.0, -4.0, 0.0, 4.0]),
         gap=np.array([np.inf, 9.0, 6.0, 8.0, np.inf]),
-        acting=np.array(["mpc", "mpc", "pid", "pid", "mpc"]),
+        acting=np.array(["mpc", "mpc", "pid", "safety", "mpc"]),
     )
     summary = summary_of(track)
     assert summary.completed
@@ -129,6 +131,7 @@ def test_the_summary_of_a_drive(ego):
     assert summary.rms_jerk == pytest.approx(np.sqrt((8**2 + 0 + 8**2 + 8**2) / 4))
     assert summary.peak_jerk == 8.0
     assert summary.mpc_feasibility_rate == 0.6
+    assert summary.safety_share == 0.2
     assert summary.minimum_gap == 6.0
     assert summary.share_below_safe_distance == 0.2  # 8.0 m is not below 8 m
 
@@ -161,13 +164,16 @@ def test_the_summary_of_the_crowd(ego):
         {
             "minimum_clearance": [0.4, -0.1, -0.2, nan],
             "overlap_time": [0.0, 0.1, 0.3, nan],
+            "contact": ["", "side", "frontal", ""],
             "minimum_ttc": [1.5, 0.0, nan, nan],
             "post_encroachment_time": [nan, 0.0, 0.8, nan],
             "maximum_drac": [2.0, 3.5, 0.0, nan],
         }
     )
-    summary = summary_of(ego(TIME), table)
+    summary = summary_of(ego(TIME), table, Critical(3, 0.25))
     assert summary.minimum_clearance == -0.2
+    assert (summary.frontal_contacts, summary.side_contacts) == (1, 1)
+    assert (summary.conflicts, summary.share_below_ttc) == (3, 0.25)
     assert (summary.overlaps, summary.overlap_time) == (2, pytest.approx(0.4))
     assert (summary.minimum_ttc, summary.minimum_pet, summary.maximum_drac) == (0.0, 0.0, 3.5)
 

@@ -1,0 +1,136 @@
+"""Who moved into whom: every overlap of a pedestrian with the ego is frontal or lateral.
+
+The ego is answerable for whom it drives into, not for who walks into its side or into a standing
+car. The rule, and its odd cases, stand in docs/results.md.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.jit import kernel
+from giveway.metrics.conflicts import as_floats, as_integers, centre_poses, check_records
+from giveway.metrics.geometry import contact_interval, to_frame
+from giveway.metrics.groups import PedestrianGroups
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
+
+NO_CONTACT = ""
+SIDE = "side"
+FRONTAL = "frontal"
+MOVING = 0.01
+"""[m/s] Above it the ego moves: a centimetre a second is less than any controller creeps at."""
+
+_NAMES = np.array([NO_CONTACT, SIDE, FRONTAL])
+_SIDE, _FRONTAL = 1, 2
+
+
+def contacts(
+    ego: EgoTrack,
+    crowd: CrowdTrack,
+    shape: VehicleShape,
+    body_radius: float,
+    clearance: NDArray[np.float64],
+) -> NDArray[np.str_]:
+    """How each pedestrian and the ego came into contact, if they did.
+
+    A contact is frontal if at its first instant the pedestrian's centre is ahead of the line of
+    the front bumper and the ego moves, or if both hold later on while the ego is the faster one
+    along its heading: then it moves into somebody who stands at its front. All others are ``side``.
+    The first instant is found between control instants, with straight motion between them.
+
+    Args:
+        ego: the ego's track, T instants.
+        crowd: the crowd's track, R records of n pedestrians in time order.
+        shape: the ego's rectangle.
+        body_radius: radius of a pedestrian [m].
+        clearance: (R,) [m] of :func:`giveway.metrics.clearance`; below zero is a contact.
+
+    Returns:
+        (n,) ``frontal`` if any contact was; else ``side`` if there was one; else empty.
+
+    Raises:
+        ValueError: a record points outside the ego's track.
+    """
+    check_records(ego, crowd)
+    groups = PedestrianGroups(crowd)
+    kinds = np.zeros(len(crowd.ids), dtype=np.int64)
+    order = groups.order
+    _classify(
+        centre_poses(ego, shape),
+        as_floats(ego.speed),
+        as_integers(groups.bounds),
+        as_integers(crowd.step[order]),
+        as_floats(crowd.x[order]),
+        as_floats(crowd.y[order]),
+        as_floats(crowd.vx[order]),
+        as_floats(crowd.vy[order]),
+        as_floats(clearance[order]),
+        shape.length / 2.0,
+        shape.width / 2.0,
+        float(body_radius),
+        kinds,
+    )
+    return np.asarray(_NAMES[kinds], dtype=np.str_)
+
+
+@kernel
+def _first_touch(
+    k: int,
+    r: int,
+    poses: NDArray[np.float64],
+    speed: NDArray[np.float64],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    half_length: float,
+    half_width: float,
+    radius: float,
+) -> tuple[float, float]:
+    """Where along the ego the centre is when a contact begins in the step before k, and v then."""
+    b, e = poses[k - 1], poses[k]
+    b_x, b_y = to_frame(x[r - 1] - b[0], y[r - 1] - b[1], b[2], b[3])
+    e_x, e_y = to_frame(x[r] - e[0], y[r] - e[1], e[2], e[3])
+    first, _ = contact_interval(b_x, b_y, e_x - b_x, e_y - b_y, half_length, half_width, radius)
+    share = min(max(first, 0.0), 1.0) if first < inf else 1.0
+    return b_x + share * (e_x - b_x), speed[k - 1] + share * (speed[k] - speed[k - 1])
+
+
+@kernel
+def _classify(
+    poses: NDArray[np.float64],
+    speed: NDArray[np.float64],
+    bounds: NDArray[np.int64],
+    step: NDArray[np.int64],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    vx: NDArray[np.float64],
+    vy: NDArray[np.float64],
+    clearance: NDArray[np.float64],
+    half_length: float,
+    half_width: float,
+    radius: float,
+    kinds: NDArray[np.int64],
+) -> None:
+    """Fill ``kinds`` (n,); the records are those of pedestrian 0, then 1, ..., each in order."""
+    for i in range(kinds.size):
+        for r in range(bounds[i], bounds[i + 1]):
+            if clearance[r] >= 0.0:
+                continue
+            k = step[r]
+            c, s = poses[k, 2], poses[k, 3]
+            p_x, _ = to_frame(x[r] - poses[k, 0], y[r] - poses[k, 1], c, s)
+            w_x, _ = to_frame(vx[r], vy[r], c, s)
+            frontal = p_x > half_length and speed[k] > MOVING and speed[k] > w_x
+            followed = r > bounds[i] and step[r - 1] == k - 1
+            if followed and clearance[r - 1] >= 0.0:
+                at, v = _first_touch(k, r, poses, speed, x, y, half_length, half_width, radius)
+                frontal = frontal or (at > half_length and v > MOVING)
+            elif not followed:
+                frontal = frontal or (p_x > half_length and speed[k] > MOVING)
+            kinds[i] = max(kinds[i], _FRONTAL if frontal else _SIDE)
