@@ -23,6 +23,8 @@ from controller.pid import Pid
 from controller.quadratic_program import QuadraticProgram, quadratic_program
 from controller.regulator import Decision, Observation, Regulator
 from controller.solution import MpcSolution, Outcome
+from controller.speed_reference import ReferenceParameters, SpeedReference
+from controller.tuned_pid import TunedPid, TunedPidParameters
 
 __all__ = [
     "CONSISTENT_PID",
@@ -40,8 +42,12 @@ __all__ = [
     "Pid",
     "PidParameters",
     "QuadraticProgram",
+    "ReferenceParameters",
     "Regulator",
     "SolverMissingError",
     "SolverSetupError",
+    "SpeedReference",
+    "TunedPid",
+    "TunedPidParameters",
     "quadratic_program",
 ]

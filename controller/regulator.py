@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from controller.mpc import Mpc
     from controller.pid import Pid
+    from controller.tuned_pid import TunedPid
 
 STANDSTILL = 1e-9  # [m/s] below it the car stands and the brake's force does no work
 
@@ -29,8 +30,8 @@ class Decision(NamedTuple):
     """The force for [t_k, t_k+1], and how it came about."""
 
     force: float  # u(k) [N]
-    acting: Literal["mpc", "pid"]
-    reason: str  # "optimal", "infeasible", "solver: ...", "selected"
+    acting: Literal["mpc", "pid", "safety"]
+    reason: str  # "optimal", "infeasible", "solver: ...", "selected", or the safety layer's
     status: str  # of the QP; empty where none was posed
     iterations: int  # of the QP solver
     reference_speed: float  # [m/s] of the controller that acted
@@ -45,7 +46,7 @@ class Regulator:
         pid: the fallback.
     """
 
-    def __init__(self, mpc: Mpc | None, pid: Pid) -> None:
+    def __init__(self, mpc: Mpc | None, pid: Pid | TunedPid) -> None:
         self.mpc = mpc
         self.pid = pid
         self._previous_force = 0.0
@@ -87,6 +88,11 @@ class Regulator:
                 )
         self._previous_force = decision.force
         return decision
+
+    def applied(self, force: float) -> None:
+        """Another force [N] than the last one asked for acts: the next is asked for from there."""
+        self._previous_force = force
+        self.pid.applied(force)
 
     def _by_pid(
         self, speed: float, gap: float, limit: float, reason: str, status: str, iterations: int

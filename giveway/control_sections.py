@@ -63,6 +63,25 @@ class TunedPidConfig(Section):
     profile: Literal["braking-curve", "linear"] = option(
         "braking-curve", None, "how the reference speed falls towards who is in front"
     )
+    buffer_distance: float = option(
+        10.0, "m", "over which the linear profile rises to v_r", gt=0, le=1e4
+    )
+    deceleration: float = option(
+        2.0, "m/s^2", "b of the braking curve, and of braking in comfort", gt=0, le=10
+    )
+    approach_lag: float = option(
+        0.5, "s", "near d_safe the braking curve is the line (gap - d_safe)/tau", gt=0, le=10
+    )
+    acceleration: float = option(2.0, "m/s^2", "of driving off", gt=0, le=10)
+    jerk: float = option(5.0, "m/s^3", "of a change of acceleration in comfort", gt=0, le=200)
+    last_distance: float = option(
+        4.0, "m", "it stops before this distance however hard that is", ge=0, le=1e4
+    )
+    bandwidth: float = option(3.0, "rad/s", "omega of the closed loop's poles", gt=0, le=100)
+    damping: float = option(1.0, None, "zeta of the closed loop's poles", gt=0, le=10)
+    acceleration_feed_forward: bool = option(
+        True, None, "M dv_ref/dt is fed forward beside alpha v_ref"
+    )
 
 
 class PlannerConfig(Section):
@@ -80,13 +99,31 @@ class SafetyConfig(Section):
         "brakes where the controller would not; none: yes, but not for the paper's controllers",
         flag="--safety",
     )
+    margin: float = option(
+        0.1, "m", "kept between the front bumper and whoever may get there", ge=0, le=5
+    )
+    reaction_time: float | None = option(
+        None,
+        "s",
+        "within which the vehicle does what it is told; none: as its profile identified, else 0",
+        ge=0,
+        le=5,
+    )
+    rate_limited: bool = option(False, None, "the layer's braking keeps to du_max too")
 
 
 class PerceptionConfig(Section):
     """What the controllers know of the pedestrians, as far as it is not the truth."""
 
     position_noise: float = option(
-        0.0, "m", "standard deviation of the perceived positions", ge=0, le=5
+        0.0,
+        "m",
+        "people are seen this far off (standard deviation per axis, cut off at twice that)",
+        ge=0,
+        le=5,
+    )
+    desired_speeds: Literal["known", "typical"] = option(
+        "known", None, "of each person, or [crowd] desired_speed_mean for everybody"
     )
     preset: Preset = option(
         "", None, "parameters the pedestrians are predicted with, as [crowd] preset; none: the same"

@@ -11,7 +11,10 @@ from controller import (
     MpcParameters,
     Pid,
     PidParameters,
+    ReferenceParameters,
     Regulator,
+    TunedPid,
+    TunedPidParameters,
 )
 from fmus import FmuError
 from giveway.ego import Driver
@@ -38,6 +41,8 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator:
     """
     regulation = config.regulation
     try:
+        if config.controller == "pid-tuned":
+            return Regulator(None, _tuned_pid(config, time_step))
         pid = Pid(
             PidParameters(
                 K_p=config.pid.proportional_gain,
@@ -73,6 +78,32 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator:
     except ControllerError as error:
         raise ControlError(str(error)) from error
     return Regulator(mpc, pid)
+
+
+def _tuned_pid(config: RunConfig, time_step: float) -> TunedPid:
+    """The well-tuned PID, with the actuator's limits of the MPC."""
+    regulation, tuned, vehicle = config.regulation, config.tuned_pid, config.vehicle
+    return TunedPid(
+        TunedPidParameters(
+            bandwidth=tuned.bandwidth,
+            damping=tuned.damping,
+            acceleration_feed_forward=tuned.acceleration_feed_forward,
+            force_limit=config.mpc.force_limit,
+            force_rate_limit=config.mpc.force_rate_limit,
+            reference=ReferenceParameters(
+                reference_speed=regulation.reference_speed,
+                safe_distance=regulation.safe_distance,
+                profile=tuned.profile,
+                buffer_distance=tuned.buffer_distance,
+                deceleration=tuned.deceleration,
+                approach_lag=tuned.approach_lag,
+                acceleration=tuned.acceleration,
+                jerk=tuned.jerk,
+                last_distance=tuned.last_distance,
+            ),
+        ),
+        LongitudinalModel(vehicle.mass, vehicle.friction, time_step),
+    )
 
 
 def make_driver(

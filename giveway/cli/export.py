@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
+from controller import Pid
 from fmus.controller_fmu.export import export_controller
 from fmus.controller_fmu.parameters import CONTROLLER_FILES, ControllerParameters
 from fmus.errors import FmuError
@@ -66,7 +67,7 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
     """The parameters of the egos' controller.
 
     Raises:
-        ConfigError: there is no ego, or their controllers differ.
+        ConfigError: there is no ego, their controllers differ, or are not the paper's.
         ControlError: its parameters contradict each other.
     """
     exports = dict.fromkeys(_parameters(ego, time_step) for ego in config.each_ego())
@@ -80,6 +81,9 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
 def _parameters(config: RunConfig, time_step: float) -> ControllerParameters:
     """What giveway's own regulator of one ego is set to."""
     regulator = make_regulator(config, time_step)
+    if not config.controller.endswith("-paper") or not isinstance(regulator.pid, Pid):
+        msg = f"controller = {config.controller}: only the paper's controllers can be exported"
+        raise ConfigError(f"{msg}; choose --controller mpc-paper or pid-paper")
     pid = regulator.pid.parameters
     model = config.vehicle if regulator.mpc is None else regulator.mpc.model
     try:

@@ -1,0 +1,145 @@
+"""The speed a tuned PID aims at: a profile over the gap, and how it is got to smoothly."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import copysign, inf, sqrt
+from typing import Literal
+
+from controller.parameters import require, require_not_negative, require_positive
+
+ProfileName = Literal["braking-curve", "linear"]
+
+_STANDS = 0.005  # [m/s] a reference that falls this low ends: the brake holds
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceParameters:
+    """Where to stop and how hard to brake; chosen by the study in docs/pid.md."""
+
+    reference_speed: float = 4.0  # v_r [m/s]
+    safe_distance: float = 8.0  # d_safe [m]
+    profile: ProfileName = "braking-curve"
+    buffer_distance: float = 10.0  # d_buffer [m] of the linear profile
+    deceleration: float = 2.0  # b [m/s^2] of the braking curve, and of braking in comfort
+    approach_lag: float = 0.5  # tau [s]: near d_safe the braking curve is the line (gap-d_safe)/tau
+    acceleration: float = 2.0  # a [m/s^2] of driving off
+    jerk: float = 5.0  # j [m/s^3] of a change of acceleration in comfort
+    last_distance: float = 4.0  # d_last [m] before which it stops, however hard that is
+    creep_speed: float = 0.1  # [m/s] a lower target is a stop: nobody is followed in inches
+
+    def __post_init__(self) -> None:
+        require_positive("reference_speed", self.reference_speed, "m/s")
+        require_not_negative("safe_distance", self.safe_distance, "m")
+        known = self.profile in ("braking-curve", "linear")
+        require(known, "profile", self.profile, "'braking-curve' or 'linear'")
+        require_positive("buffer_distance", self.buffer_distance, "m")
+        require_positive("deceleration", self.deceleration, "m/s^2")
+        require_positive("approach_lag", self.approach_lag, "s")
+        require_positive("acceleration", self.acceleration, "m/s^2")
+        require_positive("jerk", self.jerk, "m/s^3")
+        require_not_negative("last_distance", self.last_distance, "m")
+        require_not_negative("creep_speed", self.creep_speed, "m/s")
+
+
+def stoppable(room: float, rate: float, lag: float) -> float:
+    """What may be had so that ``rate`` takes it away within ``room``, beginning after ``lag``.
+
+    The positive x of x lag + x^2 / (2 rate) = room (Gipps 1981, his safe speed): the braking curve
+    sqrt(2 rate room) far away, the line room / lag, of finite slope, near the end.
+    """
+    return sqrt((rate * lag) ** 2 + 2.0 * rate * room) - rate * lag
+
+
+class SpeedReference:
+    """v_ref and its slope: what the profile asks for, within limits of acceleration and jerk.
+
+    In comfort acceleration, deceleration and jerk are the parameters'. Where that would end closer
+    than ``last_distance`` to who is in front, it brakes as hard as a stop there takes.
+
+    Args:
+        parameters: profile and comfort.
+        strongest: acceleration [m/s^2] that the vehicle's forces reach.
+        sharpest: jerk [m/s^3] that they reach.
+        time_step: dt [s].
+    """
+
+    def __init__(
+        self, parameters: ReferenceParameters, strongest: float, sharpest: float, time_step: float
+    ) -> None:
+        self.parameters = parameters
+        self.time_step = time_step
+        self._strongest = strongest
+        self._sharpest = sharpest
+        self._up = min(parameters.acceleration, strongest)
+        self._down = min(parameters.deceleration, strongest)
+        self._jerk = min(parameters.jerk, sharpest)
+        self._build_up = self._down / self._jerk  # [s] until comfortable braking is reached
+        # A change of acceleration takes effect a step later; shorter lags overshoot the target.
+        self._lag = 2.0 * time_step
+        self.start(0.0)
+
+    def start(self, speed: float, acceleration: float = 0.0) -> None:
+        """Go on from the vehicle's speed [m/s] and acceleration [m/s^2]."""
+        self.speed = max(0.0, speed)
+        self.acceleration = acceleration
+        self._limit = inf
+
+    def target(self, gap: float, limit: float = inf) -> float:
+        """The profile [m/s] at ``gap`` [m] to who is in front; never more than ``limit`` [m/s]."""
+        p = self.parameters
+        room = gap - p.safe_distance
+        if room <= 0.0:
+            return 0.0
+        if p.profile == "linear":
+            wanted = p.reference_speed * min(room / p.buffer_distance, 1.0)
+        else:
+            wanted = min(p.reference_speed, stoppable(room, self._down, p.approach_lag))
+        wanted = min(wanted, limit)
+        return wanted if wanted >= p.creep_speed else 0.0
+
+    def advance(self, speed: float, gap: float, limit: float) -> tuple[float, float]:
+        """The reference speed [m/s] at t_k, and its acceleration [m/s^2] until t_k+1.
+
+        Args:
+            speed: the vehicle's [m/s].
+            gap: to who is in front [m]; inf when nobody is.
+            limit: caps the reference speed [m/s].
+        """
+        dt, now, before = self.time_step, self.speed, self.acceleration
+        wanted = self.target(gap, limit)
+        down = self._braking(speed, gap, limit)
+        away = wanted - now
+        jerk = self._jerk if away >= 0.0 else min(self._sharpest, down / self._build_up)
+        a = self._slope(speed, wanted, limit)
+        a += copysign(stoppable(abs(away), jerk, self._lag), away)
+        a = min(max(a, -down), self._up)
+        a = min(max(a, before - jerk * dt), before + jerk * dt)
+        a = max(a, -now / dt)  # it does not go back
+        if wanted == 0.0 and now <= _STANDS:
+            a = -now / dt
+        self._limit = limit
+        self.speed, self.acceleration = now + dt * a, a
+        return now, a
+
+    def _braking(self, speed: float, gap: float, limit: float) -> float:
+        """How hard it may brake [m/s^2]: in comfort, or as hard as a stop at d_last takes."""
+        p = self.parameters
+        comfort = self._down
+        if limit < inf:  # stop lines and vehicles come with a curve of their own: keep to it
+            comfort = min(2.0 * comfort, self._strongest)
+        room = gap - p.last_distance - speed * self._build_up
+        needed = speed * speed / (2.0 * room) if room > 0.0 else inf
+        return min(max(comfort, needed), self._strongest)
+
+    def _slope(self, speed: float, wanted: float, limit: float) -> float:
+        """The target's own slope [m/s^2], while the vehicle approaches who stands in front."""
+        p = self.parameters
+        if wanted == 0.0 or wanted >= p.reference_speed:
+            return 0.0
+        if wanted == limit:
+            change = (limit - self._limit) / self.time_step
+            return change if abs(change) <= 2.0 * self._down else 0.0  # else it has just appeared
+        if p.profile == "linear":
+            return -speed * p.reference_speed / p.buffer_distance
+        return -speed * self._down / (wanted + self._down * p.approach_lag)
