@@ -60,6 +60,19 @@ def require_preset_name(preset: str) -> None:
     raise ConfigError(msg)
 
 
+def require_parameter(name: str, where: str) -> None:
+    """Make sure that ``name`` is a parameter of the model.
+
+    Raises:
+        ConfigError: it is not; the message begins with ``where``.
+    """
+    if name not in NAMES:
+        close = difflib.get_close_matches(name, NAMES, n=1)
+        hint = f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(NAMES)}"
+        msg = f"{where} {name}: unknown parameter; {hint}"
+        raise ConfigError(msg)
+
+
 def is_preset_file(preset: str) -> bool:
     """Whether ``preset`` names a file, not a preset that is built in."""
     return preset not in PRESETS and preset.endswith(SUFFIX)
@@ -124,12 +137,8 @@ def _base(path: Path, base: object) -> dict[str, float]:
 
 
 def _require_names(path: Path, given: Mapping[str, object]) -> None:
-    unknown = sorted(set(given) - set(NAMES))
-    if unknown:
-        close = difflib.get_close_matches(unknown[0], NAMES, n=1)
-        hint = f"; did you mean '{close[0]}'?" if close else f"; expected {', '.join(NAMES)}"
-        msg = f"{path}: [parameters] {unknown[0]}: unknown parameter{hint}"
-        raise ConfigError(msg)
+    for name in given:
+        require_parameter(name, f"{path}: [parameters]")
     missing = [name for name in NAMES if name not in given]
     if missing:
         msg = (

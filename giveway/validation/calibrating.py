@@ -1,0 +1,202 @@
+"""``giveway calibrate``: some of the model's parameters, fitted to recorded trajectories."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.errors import ConfigError, DatasetError
+from giveway.presets import NAMES, require_parameter
+from giveway.validation.contacts import contact_table
+from giveway.validation.fitting import Objective, Search, average
+from giveway.validation.intervals import TAILS, ClipBootstrap
+from giveway.validation.predictors import VCI
+from giveway.validation.validating import CITR, SEED, cut_windows
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from giveway.validation.clips import Clip
+    from giveway.validation.protocol import Protocol
+    from pedestrian_model import VciParameters
+
+DEFAULT = (
+    "destination_gain",
+    "repulsion_strength",
+    "navigation_strength",
+    "vehicle_strength",
+    "vehicle_decay",
+    "vehicle_lookahead",
+)
+"""What is fitted if nothing is named: how hard each sub-force pulls, and the vehicle's reach."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """An error [m] before and after, and the difference with its interval.
+
+    Attributes:
+        difference: after minus before; negative where the fit is better.
+        low, high: its clip-bootstrap interval; nan with fewer than two clips.
+    """
+
+    before: float
+    after: float
+    difference: float
+    low: float
+    high: float
+
+    @property
+    def improves(self) -> bool:
+        """Whether it is better beyond what the choice of clips explains."""
+        return self.high < 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """A fit.
+
+    Attributes:
+        fitted: the names of the parameters that were free.
+        training, held_out: the clips' names.
+        train, test: the objective on each; ``test`` is nan throughout without held-out clips.
+        touching: (before, after) pedestrians that touch a vehicle in replays of all clips.
+        at_bound: the parameters that ended at the end of their range.
+        evaluations: of the objective.
+        converged: whether the optimiser arrived before it ran out of evaluations.
+    """
+
+    start: VciParameters
+    parameters: VciParameters
+    fitted: tuple[str, ...]
+    training: tuple[str, ...]
+    held_out: tuple[str, ...]
+    train: Fit
+    test: Fit
+    touching: tuple[int, int]
+    at_bound: tuple[str, ...]
+    evaluations: int
+    converged: bool
+
+
+def calibrate(
+    clips: Sequence[Clip],
+    start: VciParameters,
+    names: Sequence[str] = DEFAULT,
+    *,
+    held_out: float = 0.3,
+    seed: int = 0,
+    evaluations: int = 400,
+    protocol: Protocol = CITR,
+    progress: Callable[[int, int, float], None] = lambda _done, _all, _best: None,
+) -> Calibration:
+    """Fit the parameters ``names`` to some of the clips, and judge them on the others.
+
+    Args:
+        clips: as :func:`giveway.validation.read_clips` reads them.
+        start: where the search starts; what is not named stays.
+        names: fields of :class:`VciParameters`.
+        held_out: share of the clips that the fit does not see, in each kind of clip alike.
+        seed: of the choice of these clips.
+        evaluations: of the objective, at most.
+        protocol: how the clips are cut and judged.
+        progress: called with evaluations done, at most, and the least error so far.
+
+    Raises:
+        ConfigError: a name is no parameter's, or one that cannot be fitted.
+        DatasetError: too few clips are there, or none is long enough.
+    """
+    names = _checked(names, start)
+    train, test = split(clips, held_out, seed)
+    objective = Objective(cut_windows(train, protocol), protocol, len(train))
+    search = Search(objective, start, names, evaluations, progress)
+    best = search.run()
+    return Calibration(
+        start=start,
+        parameters=best,
+        fitted=names,
+        training=tuple(clip.name for clip in train),
+        held_out=tuple(clip.name for clip in test),
+        train=_fit(objective, len(train), start, best),
+        test=_judged(test, start, best, protocol),
+        touching=(_touching(clips, start, protocol), _touching(clips, best, protocol)),
+        at_bound=search.at_bound,
+        evaluations=search.done,
+        converged=search.converged,
+    )
+
+
+def split(
+    clips: Sequence[Clip], held_out: float, seed: int
+) -> tuple[tuple[Clip, ...], tuple[Clip, ...]]:
+    """The clips to train with, and those held out: one of each kind before a second of any.
+
+    A clip's kind is its name without the number at its end.
+
+    Raises:
+        DatasetError: there are too few clips to hold some out.
+        ConfigError: ``held_out`` is not a share.
+    """
+    if not 0.0 <= held_out < 1.0:
+        msg = f"--held-out {held_out}: expected a share from 0 to less than 1 of the clips"
+        raise ConfigError(msg)
+    count = max(1, round(held_out * len(clips))) if held_out else 0
+    if count >= len(clips):
+        msg = f"clips: {len(clips)} is too few to hold {count} out; expected more, or --held-out 0"
+        raise DatasetError(msg)
+    rank: dict[str, int] = {}
+    order: list[tuple[int, int, int]] = []
+    for i in np.random.default_rng(seed).permutation(len(clips)):
+        kind = clips[i].name.rstrip("0123456789")
+        order.append((rank.get(kind, 0), len(order), int(i)))
+        rank[kind] = rank.get(kind, 0) + 1
+    chosen = {i for _, _, i in sorted(order)[:count]}
+    train = tuple(clip for i, clip in enumerate(clips) if i not in chosen)
+    return train, tuple(clip for i, clip in enumerate(clips) if i in chosen)
+
+
+def _checked(names: Sequence[str], start: VciParameters) -> tuple[str, ...]:
+    for name in names:
+        require_parameter(name, "--parameters")
+        if names.count(name) > 1:
+            msg = f"--parameters: {name} is named twice; expected once"
+            raise ConfigError(msg)
+        if getattr(start, name) == 0.0:
+            msg = f"--parameters: {name} starts at 0 and is scaled from there; start elsewhere"
+            raise ConfigError(msg)
+    if not names:
+        msg = f"--parameters: expected at least one of {', '.join(NAMES)}"
+        raise ConfigError(msg)
+    return tuple(names)
+
+
+def _judged(
+    clips: tuple[Clip, ...], start: VciParameters, best: VciParameters, protocol: Protocol
+) -> Fit:
+    if not clips:
+        return Fit(math.nan, math.nan, math.nan, math.nan, math.nan)
+    objective = Objective(cut_windows(clips, protocol), protocol, len(clips))
+    return _fit(objective, len(clips), start, best)
+
+
+def _fit(objective: Objective, clips: int, start: VciParameters, best: VciParameters) -> Fit:
+    """Both errors, and the interval of their difference, clips drawn for both alike."""
+    before, count = objective.per_clip(start)
+    after, _ = objective.per_clip(best)
+    weights = ClipBootstrap.of(clips, SEED).weights
+    low = high = math.nan
+    if clips > 1:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            apart = np.nanmean((weights @ (after - before)) / (weights @ count), axis=1)
+        low, high = np.nanquantile(apart, TAILS)
+    means = average(before, count), average(after, count)
+    return Fit(*means, means[1] - means[0], float(low), float(high))
+
+
+def _touching(clips: Sequence[Clip], parameters: VciParameters, protocol: Protocol) -> int:
+    """How many touch a vehicle in replays of whole clips by the model."""
+    table = contact_table(clips, parameters, protocol)
+    return int(table.loc[table["predictor"] == VCI, "touching"].sum())

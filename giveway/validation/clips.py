@@ -1,0 +1,182 @@
+"""Clips of real pedestrians and vehicles: the CITR dataset's CSV files, as arrays in our frame.
+
+The dataset: Yang, Li, Redmill & Özgüner, "Top-view Trajectories: A Pedestrian Dataset of
+Vehicle-Crowd Interaction from Controlled Experiments and Crowded Campus" (arXiv 1902.00487). It
+asks whoever uses it to cite that paper.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pandas as pd
+
+from giveway.errors import DatasetError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+PEDESTRIANS: Final = "_traj_ped_filtered.csv"
+VEHICLES: Final = "_traj_veh_filtered.csv"
+_PEDESTRIAN_COLUMNS: Final = ("x_est", "y_est", "vx_est", "vy_est")
+_VEHICLE_COLUMNS: Final = ("x_est", "y_est", "psi_est", "vel_est")
+_FARTHEST = 1e5  # [m] no camera sees so far
+_LONGEST = 200_000  # frames: nearly two hours
+
+
+@dataclass(frozen=True, eq=False)
+class Clip:
+    """One recording, in a right-handed frame: x as in the image, y up.
+
+    Attributes:
+        name: of its files, like ``front_interaction_01``.
+        first_frame: the dataset's number of frame 0 here.
+        ids: (n,) of the pedestrians.
+        position: (T, n, 2) [m]; nan where somebody is not seen.
+        velocity: (T, n, 2) [m/s]; likewise.
+        poses: (T, m, 4) of the vehicles: x, y [m], heading [rad], speed [m/s]; nan likewise.
+    """
+
+    name: str
+    first_frame: int
+    ids: NDArray[np.int64]
+    position: Array
+    velocity: Array
+    poses: Array
+
+    @property
+    def frames(self) -> int:
+        """T, how many frames it has."""
+        return int(self.position.shape[0])
+
+    @property
+    def seen(self) -> NDArray[np.bool_]:
+        """(T, n) who is seen."""
+        return ~np.isnan(self.position[:, :, 0])
+
+    @property
+    def last_seen(self) -> NDArray[np.int64]:
+        """(n,) the last frame in which each is seen."""
+        last: NDArray[np.int64] = self.frames - 1 - self.seen[::-1].argmax(axis=0)
+        return last
+
+    @property
+    def destination(self) -> Array:
+        """(n, 2) [m] the last observed point of each."""
+        return self.position[self.last_seen, np.arange(len(self.ids))]
+
+
+def read_clips(folder: Path) -> tuple[Clip, ...]:
+    """Every clip below ``folder``, in the order of their paths.
+
+    Args:
+        folder: the dataset's, or any part of it; clips are known by the names of their files.
+
+    Raises:
+        DatasetError: there is no such folder, no clip in it, or a file cannot be used.
+    """
+    if not folder.is_dir():
+        msg = f"{folder}: no such folder; expected the CITR dataset's, or a part of it"
+        raise DatasetError(msg)
+    files = sorted(folder.rglob(f"*{PEDESTRIANS}"))
+    for file in sorted(folder.rglob(f"*{VEHICLES}")):
+        people = file.with_name(file.name.removesuffix(VEHICLES) + PEDESTRIANS)
+        if not people.is_file():
+            msg = f"{file}: no pedestrians beside it; expected {people.name}, or remove the file"
+            raise DatasetError(msg)
+    if not files:
+        msg = f"{folder}: no clip found; expected files *{PEDESTRIANS} in it or its folders"
+        raise DatasetError(msg)
+    clips = [read_clip(file) for file in files]
+    names: dict[str, Path] = {}
+    for clip, file in zip(clips, files, strict=True):
+        if names.setdefault(clip.name, file) != file:
+            msg = f"{file}: a clip of this name is in {names[clip.name].parent} too; keep one"
+            raise DatasetError(msg)
+    return tuple(clips)
+
+
+def read_clip(people: Path) -> Clip:
+    """The clip of a file of pedestrians, with the vehicles' file beside it if there is one.
+
+    Raises:
+        DatasetError: a file cannot be read, or a column, row or number is not as it should be.
+    """
+    name = people.name.removesuffix(PEDESTRIANS)
+    beside = people.with_name(name + VEHICLES)
+    pedestrians = _read(people, _PEDESTRIAN_COLUMNS)
+    vehicles = _read(beside, _VEHICLE_COLUMNS) if beside.is_file() else None
+    first = int(pedestrians["frame"].min())
+    last = int(pedestrians["frame"].max())
+    if last - first >= _LONGEST:
+        msg = f"{people}: frames {first} to {last}: expected at most {_LONGEST}"
+        raise DatasetError(msg)
+    ids, rows = _spread(pedestrians, _PEDESTRIAN_COLUMNS, first, last)
+    poses = np.empty((last - first + 1, 0, 4))
+    if vehicles is not None:
+        poses = _spread(vehicles, _VEHICLE_COLUMNS, first, last)[1]
+    # Image axes have y down: mirrored, headings and lateral velocities change sign.
+    rows[:, :, [1, 3]] *= -1.0
+    poses[:, :, [1, 2]] *= -1.0
+    position = np.ascontiguousarray(rows[:, :, :2])
+    return Clip(name, first, ids, position, np.ascontiguousarray(rows[:, :, 2:]), poses)
+
+
+def _spread(
+    table: pd.DataFrame, columns: tuple[str, ...], first: int, last: int
+) -> tuple[NDArray[np.int64], Array]:
+    """(k,) the ids, and (T, k, c) their values in each frame, nan where there is no row."""
+    table = table[table["frame"].between(first, last)]
+    ids, who = np.unique(table["id"].to_numpy(), return_inverse=True)
+    values = np.full((last - first + 1, len(ids), len(columns)), np.nan)
+    values[table["frame"].to_numpy() - first, who] = table[list(columns)].to_numpy()
+    return ids.astype(np.int64), values
+
+
+def _read(file: Path, columns: tuple[str, ...]) -> pd.DataFrame:
+    try:
+        table = pd.read_csv(file, dtype=str, keep_default_na=False)
+    except (OSError, ValueError) as error:  # pandas' and Unicode's errors are ValueErrors
+        reason = error.strerror if isinstance(error, OSError) else str(error).splitlines()[0]
+        msg = f"{file}: cannot be read as CSV ({reason}); take the file from the dataset again"
+        raise DatasetError(msg) from error
+    missing = [name for name in ("id", "frame", *columns) if name not in table.columns]
+    if missing:
+        expected = ",".join(("id", "frame", "label", *columns))
+        msg = f"{file}: column '{missing[0]}' is missing; expected {expected}"
+        raise DatasetError(msg)
+    if table.empty:
+        msg = f"{file}: no rows; take the file from the dataset again"
+        raise DatasetError(msg)
+    numbers = pd.DataFrame({name: _numbers(file, table, name) for name in ("id", "frame")})
+    numbers = numbers.astype(np.int64)
+    for name in columns:
+        numbers[name] = _numbers(file, table, name)
+    twice = numbers.duplicated(["id", "frame"])
+    if twice.any():
+        row = int(twice.to_numpy().argmax())
+        who, frame = (int(numbers[name].iloc[row]) for name in ("id", "frame"))
+        msg = f"{file}: line {row + 2}: id {who} is in frame {frame} twice; expected once"
+        raise DatasetError(msg)
+    return numbers
+
+
+def _numbers(file: Path, table: pd.DataFrame, name: str) -> NDArray[np.float64]:
+    """A column as finite numbers."""
+    values = pd.to_numeric(table[name], errors="coerce").to_numpy(dtype=np.float64)
+    whole = name in {"id", "frame"}
+    with np.errstate(invalid="ignore"):
+        bad = ~(np.abs(values) <= (1e9 if whole else _FARTHEST))
+        bad |= whole & (values != np.floor(values))
+    if bad.any():
+        row = int(bad.argmax())
+        expected = "a whole number" if whole else "a finite number"
+        msg = f"{file}: line {row + 2}: {name} = {str(table[name].iloc[row])!r}: expected {expected}"
+        raise DatasetError(msg)
+    return values

@@ -1,0 +1,129 @@
+"""Whole clips played again: who touches the vehicle?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from giveway.validation.predictors import (
+    CV,
+    GOAL_CV,
+    NO_VEHICLE,
+    VCI,
+    crowd_of,
+    straight_on,
+    straight_to,
+)
+from giveway.validation.protocol import distance_to_bodies, vehicle_rows
+from pedestrian_model import CrowdModel, Vehicles
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from giveway.validation.clips import Array, Clip
+    from giveway.validation.protocol import Protocol
+    from pedestrian_model import VciParameters
+
+DATA = "data"
+ORDER = (DATA, CV, GOAL_CV, NO_VEHICLE, VCI)
+
+
+@dataclass(frozen=True, eq=False)
+class _Stay:
+    """When each pedestrian of a clip is there: from ``first`` to ``last``, gaps included."""
+
+    who: NDArray[np.int64]
+    first: NDArray[np.int64]
+    last: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, clip: Clip, skip: int) -> _Stay:
+        seen = clip.seen[skip:]
+        who = np.flatnonzero(seen.any(axis=0))
+        return cls(who, skip + seen[:, who].argmax(axis=0), clip.last_seen[who])
+
+
+def replay(clip: Clip, parameters: VciParameters, protocol: Protocol) -> dict[str, Array]:
+    """(T, n, 2) [m] the tracks of the data and of each predictor, from the first frame used on.
+
+    Everybody enters where and as the data have it, and leaves when the data end.
+    """
+    stay = _Stay.of(clip, protocol.skip)
+    bodies = vehicle_rows(clip, protocol)
+    without = replace(parameters, vehicle_strength=0.0)
+    data = np.full_like(clip.position, np.nan)
+    data[protocol.skip :] = clip.position[protocol.skip :]
+    return {
+        DATA: data,
+        CV: _alone(clip, stay, protocol.time_step, towards=False),
+        GOAL_CV: _alone(clip, stay, protocol.time_step, towards=True),
+        NO_VEHICLE: _jointly(clip, stay, bodies, without, protocol.time_step),
+        VCI: _jointly(clip, stay, bodies, parameters, protocol.time_step),
+    }
+
+
+def _alone(clip: Clip, stay: _Stay, time_step: float, *, towards: bool) -> Array:
+    """Everybody at constant velocity, or at constant speed to the destination."""
+    out = np.full_like(clip.position, np.nan)
+    for i, first, last in zip(stay.who, stay.first, stay.last, strict=True):
+        x, v = clip.position[first, i][None], clip.velocity[first, i][None]
+        frames = int(last - first)
+        goal = clip.destination[i][None]
+        ahead = straight_to(x, v, goal, time_step, frames) if towards else None
+        ahead = straight_on(x, v, time_step, frames) if ahead is None else ahead
+        out[first, i] = x[0]
+        out[first + 1 : last + 1, i] = ahead[:, 0]
+    return out
+
+
+def _jointly(
+    clip: Clip, stay: _Stay, bodies: Array, parameters: VciParameters, time_step: float
+) -> Array:
+    """Everybody by the model, people entering and leaving on the way."""
+    model = CrowdModel(parameters, time_step)
+    out, velocity = np.full_like(clip.position, np.nan), clip.velocity.copy()
+    out[stay.first, stay.who] = clip.position[stay.first, stay.who]
+    there = np.empty(0, dtype=np.int64)
+    crowd = None
+    for k in range(int(stay.first.min(initial=clip.frames)), clip.frames - 1):
+        now = stay.who[(stay.first <= k) & (k < stay.last)]
+        if crowd is None or not np.array_equal(now, there):
+            there = now
+            destination = clip.destination[there]
+            crowd = crowd_of(
+                out[k, there], velocity[k, there], destination, parameters.desired_speed
+            )
+        model.advance(crowd, Vehicles(bodies[k]))
+        out[k + 1, there], velocity[k + 1, there] = crowd.position, crowd.velocity
+    return out
+
+
+def contact_table(
+    clips: Sequence[Clip],
+    parameters: VciParameters,
+    protocol: Protocol,
+    advance: Callable[[], None] = lambda: None,
+) -> pd.DataFrame:
+    """Who touches a vehicle in each clip that has one: in the data, and as each predictor has it.
+
+    Columns: clip, predictor, pedestrians, touching, closest [m], the least distance from a
+    pedestrian's skin to the body, negative in touch. A pedestrian is a disc of the model's radius.
+    """
+    rows = []
+    for clip in clips:
+        if clip.poses.shape[1] == 0:
+            continue
+        bodies = vehicle_rows(clip, protocol)
+        for name, track in replay(clip, parameters, protocol).items():
+            distance = np.nan_to_num(distance_to_bodies(track, bodies), nan=np.inf)
+            skin = distance.min(axis=0) - parameters.body_radius
+            people = int((~np.isnan(track[:, :, 0])).any(axis=0).sum())
+            touching = int((skin < 0.0).sum())
+            rows.append((clip.name, name, people, touching, float(skin.min(initial=np.inf))))
+        advance()
+    return pd.DataFrame(rows, columns=["clip", "predictor", "pedestrians", "touching", "closest"])

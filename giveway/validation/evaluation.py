@@ -1,0 +1,163 @@
+"""How far predictions end from what came to pass: one row per window, pedestrian and horizon."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from giveway.validation.predictors import CV
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from giveway.validation.clips import Array
+    from giveway.validation.intervals import ClipBootstrap
+    from giveway.validation.predictors import TrackPredictor
+    from giveway.validation.protocol import Protocol, Window
+
+EVERYWHERE = "all"
+NEAR = "near"
+METRICS = ("ADE", "FDE")
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """The errors of each predictor; rows are pedestrians of windows.
+
+    Attributes:
+        names: (P,) of the predictors.
+        horizons: (K,) [frames].
+        clip: (R,) the clip of each row.
+        valid: (R, K) who is seen for that long.
+        near: (R, K) who comes near the vehicle within that time.
+        ade, fde: (P, R, K) [m]; nan where not valid.
+        error: (P, R, H) [m] the displacement at each frame; nan where not seen.
+        place: (R, 2) [m] at the start, before and left of the vehicle; nan without one.
+        clips: C, how many there are.
+    """
+
+    names: tuple[str, ...]
+    horizons: tuple[int, ...]
+    clip: NDArray[np.int64]
+    valid: NDArray[np.bool_]
+    near: NDArray[np.bool_]
+    ade: Array
+    fde: Array
+    error: Array
+    place: Array
+    clips: int
+
+    def chosen(self, subset: str, horizon: int) -> NDArray[np.bool_]:
+        """(R,) the rows of a subset at the horizon of this number."""
+        everybody = self.valid[:, horizon]
+        return everybody if subset == EVERYWHERE else everybody & self.near[:, horizon]
+
+    def per_clip(self, values: Array, mask: NDArray[np.bool_]) -> tuple[Array, Array]:
+        """(C,) the sum of ``values`` (R,) in each clip where ``mask``, and how many they are."""
+        clip = self.clip[mask]
+        total = np.bincount(clip, values[mask], self.clips).astype(np.float64)
+        return total, np.bincount(clip, minlength=self.clips).astype(np.float64)
+
+
+def evaluate(
+    cut: Sequence[Window],
+    by: Mapping[str, TrackPredictor],
+    protocol: Protocol,
+    clips: int,
+    advance: Callable[[], None] = lambda: None,
+) -> Evaluation:
+    """Predict every window by each predictor, and compare.
+
+    Args:
+        cut: the windows, at least one.
+        by: the predictors by name.
+        protocol: the windows were cut by.
+        clips: how many clips there are, those without a window included.
+        advance: called after each window.
+    """
+    steps = np.array(protocol.horizons) - 1
+    error, near, place = [], [], []
+    for window in cut:
+        error.append(np.stack([displacement(predict(window), window) for predict in by.values()]))
+        closest = np.minimum.accumulate(np.nan_to_num(window.distance, nan=np.inf), axis=0)
+        near.append((closest[steps + 1] <= protocol.near).T)
+        place.append(_place(window))
+        advance()
+    errors = np.concatenate(error, axis=2).transpose(0, 2, 1)
+    with np.errstate(invalid="ignore"):
+        means = np.cumsum(errors, axis=2)[:, :, steps] / (steps + 1.0)
+    return Evaluation(
+        names=tuple(by),
+        horizons=protocol.horizons,
+        clip=np.repeat([w.clip for w in cut], [len(w.who) for w in cut]).astype(np.int64),
+        valid=~np.isnan(errors[0][:, steps]),
+        near=np.concatenate(near),
+        ade=means,
+        fde=errors[:, :, steps],
+        error=errors,
+        place=np.concatenate(place),
+        clips=clips,
+    )
+
+
+def displacement(predicted: Array, window: Window) -> Array:
+    """(H, n) [m] from each predicted to the observed position; nan where nobody is seen."""
+    apart = predicted - window.observed
+    length: Array = np.hypot(apart[:, :, 0], apart[:, :, 1])
+    return length
+
+
+def error_table(found: Evaluation, protocol: Protocol, draws: ClipBootstrap) -> pd.DataFrame:
+    """Means, their intervals, and paired differences to constant velocity.
+
+    One row per subset, horizon [s], metric [m] and predictor; ``count`` is of pedestrians in
+    windows, ``clips`` of those that have any.
+    """
+    rows: list[dict[str, Any]] = []
+    for subset in (EVERYWHERE, NEAR):
+        for k, horizon in enumerate(found.horizons):
+            mask = found.chosen(subset, k)
+            for metric, values in zip(METRICS, (found.ade, found.fde), strict=True):
+                sums = {
+                    name: found.per_clip(values[p, :, k], mask)
+                    for p, name in enumerate(found.names)
+                }
+                for name in found.names:
+                    head = {"subset": subset, "horizon": round(horizon * protocol.time_step, 2)}
+                    head |= {"metric": metric, "predictor": name}
+                    rows.append(head | _numbers(sums, name, draws))
+    return pd.DataFrame(rows)
+
+
+def _numbers(
+    sums: Mapping[str, tuple[Array, Array]], name: str, draws: ClipBootstrap
+) -> dict[str, Any]:
+    total, count = sums[name]
+    people = count.sum()
+    low, high = draws.interval(total, count)
+    numbers = {"mean": _ratio(total.sum(), people), "low": low, "high": high}
+    if CV in sums:
+        apart = total - sums[CV][0]
+        low, high = draws.interval(apart, count)
+        numbers |= {"against_cv": _ratio(apart.sum(), people)}
+        numbers |= {"against_cv_low": low, "against_cv_high": high}
+    return numbers | {"count": int(people), "clips": int(np.count_nonzero(count))}
+
+
+def _ratio(total: float, count: float) -> float:
+    return float(total / count) if count else float("nan")
+
+
+def _place(window: Window) -> Array:
+    """(n, 2) [m] before and left of the first vehicle at the start."""
+    if not window.vehicles.shape[1]:
+        return np.full((len(window.who), 2), np.nan)
+    x, y, heading = window.vehicles[0, 0, :3]
+    dx, dy = (window.position - (x, y)).T
+    cos, sin = np.cos(heading), np.sin(heading)
+    return np.stack([cos * dx + sin * dy, cos * dy - sin * dx], axis=1)

@@ -1,0 +1,140 @@
+"""The least displacement error over some of the parameters.
+
+The objective is the ADE [m] at each horizon, averaged over everybody who is seen for that long and
+then over the horizons. It is minimised by Nelder & Mead's simplex (The Computer Journal 1965) as
+scipy has it, with the coefficients of Gao & Han (Comput. Optim. Appl. 2012), over the logarithm of
+each parameter's ratio to its start: a descent that needs no derivatives, since contacts and limits
+make the objective rough, and that stays near published numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy
+
+from giveway.validation.evaluation import displacement
+from giveway.validation.predictors import VciPredictor
+from pedestrian_model import ParameterError, PedestrianModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from giveway.validation.clips import Array
+    from giveway.validation.protocol import Protocol, Window
+    from pedestrian_model import VciParameters
+
+FACTOR = 5.0  # a parameter stays between start / 5 and 5 start
+_SPREAD = 0.2  # of the first simplex, in the logarithm
+_ARRIVED = 1e-4  # [m] and in the logarithm: a simplex this small has arrived
+_AT_BOUND = 1e-3  # of the logarithm
+
+
+class Objective:
+    """The mean displacement error [m] of parameters over windows.
+
+    Args:
+        cut: the windows, at least one.
+        protocol: they were cut by.
+        clips: how many clips there are.
+    """
+
+    def __init__(self, cut: Sequence[Window], protocol: Protocol, clips: int) -> None:
+        self._cut, self._protocol, self._clips = cut, protocol, clips
+        self._steps = np.array(protocol.horizons) - 1
+
+    def __call__(self, parameters: VciParameters) -> float:
+        """The error; infinite where the model does not survive the parameters."""
+        try:
+            total, count = self.per_clip(parameters)
+        except PedestrianModelError:
+            return math.inf
+        return average(total, count)
+
+    def per_clip(self, parameters: VciParameters) -> tuple[Array, Array]:
+        """(C, K) sums of the ADE in each clip at each horizon, and of how many."""
+        shape = self._clips, len(self._steps)
+        total, count = np.zeros(shape), np.zeros(shape)
+        predict = VciPredictor(parameters, self._protocol.time_step, self._protocol.longest)
+        for window in self._cut:
+            error = displacement(predict(window), window)
+            ade = np.cumsum(error, axis=0)[self._steps] / (self._steps + 1.0)[:, None]
+            total[window.clip] += np.nansum(ade, axis=1)
+            count[window.clip] += (~np.isnan(ade)).sum(axis=1)
+        return total, count
+
+
+def average(total: Array, count: Array) -> float:
+    """The objective of sums and counts (C, K): the mean of the means at each horizon."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.nanmean(total.sum(axis=0) / count.sum(axis=0)))
+
+
+class Search:
+    """One descent from ``start``.
+
+    Args:
+        objective: to minimise.
+        start: of the search; what is not named stays.
+        names: of the parameters that are free; none starts at 0.
+        evaluations: of the objective, at most.
+        progress: called with evaluations done, at most, and the least error so far.
+    """
+
+    def __init__(
+        self,
+        objective: Objective,
+        start: VciParameters,
+        names: Sequence[str],
+        evaluations: int,
+        progress: Callable[[int, int, float], None],
+    ) -> None:
+        self._objective, self._start, self._names = objective, start, tuple(names)
+        self._most, self._progress = evaluations, progress
+        self._least = math.inf
+        self.done = 0
+        self.converged = False
+        self.at_bound: tuple[str, ...] = ()
+
+    def run(self) -> VciParameters:
+        """The best parameters found; never worse than the start."""
+        n, bound = len(self._names), math.log(FACTOR)
+        simplex = np.vstack([np.zeros(n), _SPREAD * np.eye(n)])
+        found = scipy.optimize.minimize(
+            self._error,
+            np.zeros(n),
+            method="Nelder-Mead",
+            bounds=[(-bound, bound)] * n,
+            options={
+                "initial_simplex": simplex,
+                "maxfev": self._most,
+                "xatol": _ARRIVED,
+                "fatol": _ARRIVED,
+                "adaptive": True,
+            },
+        )
+        self.converged = bool(found.success)
+        self.at_bound = tuple(
+            name for name, x in zip(self._names, found.x, strict=True) if abs(x) > bound - _AT_BOUND
+        )
+        return self._parameters(found.x)
+
+    def _parameters(self, x: Array) -> VciParameters:
+        factors = dict(zip(self._names, np.exp(x), strict=True))
+        return replace(
+            self._start,
+            **{name: float(getattr(self._start, name) * by) for name, by in factors.items()},
+        )
+
+    def _error(self, x: Array) -> float:
+        try:
+            error = self._objective(self._parameters(x))
+        except ParameterError:  # beyond the model's own bounds
+            error = math.inf
+        self.done += 1
+        self._least = min(self._least, error)
+        self._progress(self.done, self._most, self._least)
+        return error

@@ -1,0 +1,48 @@
+"""Intervals of means over people who share clips: the bootstrap over clips.
+
+Pedestrians of one clip, and the windows of one pedestrian, are not independent; clips are. So whole
+clips are drawn (Davison & Hinkley 1997, "Bootstrap Methods and their Application", section 3.8).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from giveway.validation.clips import Array
+
+CONFIDENCE = 0.95
+TAILS = ((1.0 - CONFIDENCE) / 2.0, (1.0 + CONFIDENCE) / 2.0)
+RESAMPLES = 5000
+
+
+@dataclass(frozen=True, eq=False)
+class ClipBootstrap:
+    """The same draws of clips for every number, so that differences are paired.
+
+    Attributes:
+        weights: (B, C) how often each clip is drawn.
+    """
+
+    weights: Array
+
+    @classmethod
+    def of(cls, clips: int, seed: int = 0, resamples: int = RESAMPLES) -> ClipBootstrap:
+        """Draws of ``clips`` clips out of as many."""
+        rng = np.random.default_rng(seed)
+        return cls(rng.multinomial(clips, np.full(clips, 1.0 / clips), resamples).astype(float))
+
+    def interval(self, total: Array, count: Array) -> tuple[float, float]:
+        """The percentile interval of ``sum(total) / sum(count)``, both (C,).
+
+        Nan, nan where fewer than two clips have anything to count.
+        """
+        if np.count_nonzero(count) < 2:
+            return np.nan, np.nan
+        with np.errstate(divide="ignore", invalid="ignore"):
+            means = (self.weights @ total) / (self.weights @ count)
+        low, high = np.nanquantile(means, TAILS)
+        return float(low), float(high)

@@ -1,0 +1,86 @@
+"""Who predicts: the model, without the vehicle's force too, and the two baselines."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from pedestrian_model import Crowd, Predictor
+
+if TYPE_CHECKING:
+    from giveway.validation.clips import Array
+    from giveway.validation.protocol import Window
+    from pedestrian_model import VciParameters
+
+VCI = "VCI"
+CV = "CV"
+GOAL_CV = "goalCV"
+NO_VEHICLE = "VCI without f_v"
+NAMES = (VCI, CV, GOAL_CV, NO_VEHICLE)
+
+
+class TrackPredictor(Protocol):
+    """Whoever predicts a window."""
+
+    def __call__(self, window: Window) -> Array:
+        """(H, n, 2) [m] at 1 ... H frames ahead."""
+
+
+def predictors(
+    parameters: VciParameters, time_step: float, frames: int
+) -> dict[str, TrackPredictor]:
+    """All of ``NAMES``, for windows of so many ``frames`` of ``time_step`` [s]."""
+    without = replace(parameters, vehicle_strength=0.0)
+    return {
+        VCI: VciPredictor(parameters, time_step, frames),
+        CV: lambda window: straight_on(window.position, window.velocity, time_step, frames),
+        GOAL_CV: lambda window: straight_to(
+            window.position, window.velocity, window.destination, time_step, frames
+        ),
+        NO_VEHICLE: VciPredictor(without, time_step, frames),
+    }
+
+
+class VciPredictor:
+    """The pedestrian model: all pedestrians jointly, under the vehicles as they drove.
+
+    Args:
+        parameters: of the model; everybody's desired speed is theirs.
+        time_step: from frame to frame [s].
+        frames: H, of a window.
+    """
+
+    def __init__(self, parameters: VciParameters, time_step: float, frames: int) -> None:
+        self._desired_speed = parameters.desired_speed
+        self._predictor = Predictor(parameters, time_step, frames)
+
+    def __call__(self, window: Window) -> Array:
+        """(H, n, 2) [m] at 1 ... H frames ahead; a buffer that the next call overwrites."""
+        crowd = crowd_of(window.position, window.velocity, window.destination, self._desired_speed)
+        return self._predictor.predict(crowd, window.vehicles)
+
+
+def crowd_of(position: Array, velocity: Array, destination: Array, desired_speed: float) -> Crowd:
+    """A crowd of which everybody walks straight to the destination."""
+    return Crowd.create(position, velocity, desired_speed, list(destination[:, None, :]))
+
+
+def straight_on(position: Array, velocity: Array, time_step: float, frames: int) -> Array:
+    """(H, n, 2) [m] at constant velocity."""
+    time = time_step * np.arange(1, frames + 1)
+    return position + time[:, None, None] * velocity
+
+
+def straight_to(
+    position: Array, velocity: Array, destination: Array, time_step: float, frames: int
+) -> Array:
+    """(H, n, 2) [m] at the present speed straight to the destination, and there to stay."""
+    way = destination - position
+    length = np.hypot(way[:, 0], way[:, 1])
+    speed = np.hypot(velocity[:, 0], velocity[:, 1])
+    walked = np.minimum(time_step * np.arange(1, frames + 1)[:, None] * speed, length)
+    direction = way / np.where(length > 0.0, length, 1.0)[:, None]
+    out: Array = position + walked[:, :, None] * direction
+    return out

@@ -1,0 +1,138 @@
+"""What is predicted from where: windows over the clips, in the manner of the field.
+
+Errors are ADE and FDE, the mean and the final displacement between predicted and observed positions
+(Pellegrini, Ess, Schindler & van Gool, "You'll Never Walk Alone", ICCV 2009; Alahi et al., "Social
+LSTM", CVPR 2016).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from giveway.validation.clips import Array, Clip
+
+_NOWHERE = 1e6  # [m] where a vehicle stands in frames in which it is not seen
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """How clips are cut and judged; the defaults are CITR's camera and golf cart."""
+
+    frame_rate: float = 29.97  # [1/s], arXiv 1902.00487
+    skip: int = 15  # frames at the start, in which the dataset's filter settles
+    stride: int = 15  # frames from window to window
+    horizons: tuple[int, ...] = (22, 60, 120)  # frames ahead: 0.75, 2 and 4 s
+    near: float = 2.0  # [m] from a pedestrian's centre to the vehicle's body
+    front: float = 1.0  # [m] from the cart's tracked point to its front
+    rear: float = 1.2  # [m] and to its rear
+    width: float = 1.2  # [m]
+
+    @property
+    def time_step(self) -> float:
+        """From frame to frame [s]."""
+        return 1.0 / self.frame_rate
+
+    @property
+    def longest(self) -> int:
+        """The last frame of a window."""
+        return max(self.horizons)
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """What a predictor is given, and what came to pass.
+
+    Attributes:
+        clip: its place among the clips.
+        frame: of the clip, at which the prediction begins.
+        who: (n,) the pedestrians seen there, by their place in the clip.
+        position, velocity, destination: (n, 2) [m], [m/s], [m].
+        vehicles: (H, m, 7) at 0 ... H - 1 frames ahead, as the pedestrian model takes them.
+        observed: (H, n, 2) [m] at 1 ... H frames ahead; nan from where somebody is first not seen.
+        distance: (H + 1, n) [m] observed, from centre to the nearest body; inf without vehicles.
+    """
+
+    clip: int
+    frame: int
+    who: NDArray[np.int64]
+    position: Array
+    velocity: Array
+    destination: Array
+    vehicles: Array
+    observed: Array
+    distance: Array
+
+
+def windows(clips: tuple[Clip, ...], protocol: Protocol) -> tuple[Window, ...]:
+    """Every window of the clips in which somebody is seen for the shortest horizon."""
+    return tuple(w for number, clip in enumerate(clips) for w in _of_clip(number, clip, protocol))
+
+
+def _of_clip(number: int, clip: Clip, protocol: Protocol) -> Iterator[Window]:
+    shortest, longest = min(protocol.horizons), protocol.longest
+    bodies = vehicle_rows(clip, protocol)
+    distances = distance_to_bodies(clip.position, bodies)
+    for frame in range(protocol.skip, clip.frames - shortest, protocol.stride):
+        who = np.flatnonzero(clip.seen[frame])
+        observed = _padded(clip.position[frame + 1 : frame + 1 + longest, who], longest)
+        lost = np.isnan(observed[:, :, 0]).cumsum(axis=0) > 0
+        observed[lost] = np.nan
+        if np.isnan(observed[shortest - 1, :, 0]).all():
+            continue
+        distance = _padded(distances[frame : frame + 1 + longest, who], longest + 1, np.inf)
+        held = np.minimum(np.arange(frame, frame + longest), clip.frames - 1)
+        yield Window(
+            clip=number,
+            frame=frame,
+            who=who,
+            position=np.ascontiguousarray(clip.position[frame, who]),
+            velocity=np.ascontiguousarray(clip.velocity[frame, who]),
+            destination=clip.destination[who],
+            vehicles=np.ascontiguousarray(bodies[held]),
+            observed=observed,
+            distance=distance,
+        )
+
+
+def vehicle_rows(clip: Clip, protocol: Protocol) -> Array:
+    """(T, m, 7) the clip's vehicles as the pedestrian model takes them."""
+    rows = np.empty((*clip.poses.shape[:2], 7))
+    rows[:, :, :4] = clip.poses
+    rows[:, :, 4:] = protocol.front, protocol.rear, protocol.width
+    unseen = np.isnan(rows).any(axis=2)
+    rows[unseen, :4] = _NOWHERE, _NOWHERE, 0.0, 0.0
+    return rows
+
+
+def distance_to_bodies(position: Array, rows: Array) -> Array:
+    """(T, n) [m] from each centre (T, n, 2) to the nearest of the bodies (T, m, 7); 0 inside."""
+    nearest = np.full(position.shape[:2], np.inf)
+    for x, y, heading, _, front, rear, width in np.moveaxis(rows, 0, 2):
+        forward, left = to_vehicle_frame(position, x, y, heading)
+        beyond = np.maximum(forward - front[:, None], -rear[:, None] - forward)
+        beside = np.abs(left) - 0.5 * width[:, None]
+        distance = np.hypot(np.maximum(beyond, 0.0), np.maximum(beside, 0.0))
+        nearest = np.fmin(nearest, distance)
+    return nearest
+
+
+def to_vehicle_frame(position: Array, x: Array, y: Array, heading: Array) -> tuple[Array, Array]:
+    """(T, n) [m] how far (T, n, 2) lie before and to the left of a vehicle (T,)."""
+    dx, dy = position[:, :, 0] - x[:, None], position[:, :, 1] - y[:, None]
+    cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]
+    return cos * dx + sin * dy, cos * dy - sin * dx
+
+
+def _padded(values: Array, length: int, fill: float = np.nan) -> Array:
+    """``values`` along the first axis, ``fill`` after their end."""
+    out = np.full((length, *values.shape[1:]), fill)
+    out[: len(values)] = values
+    return out
