@@ -12,6 +12,7 @@ from controller import Observation
 from fmus import FmuError
 from giveway.corridor import NO_LEADER, Corridor, Leader
 from giveway.errors import ControlError, VehicleError
+from giveway.perception import Perception
 from giveway.recorder import EgoRow
 
 if TYPE_CHECKING:
@@ -87,6 +88,7 @@ class Seen(NamedTuple):
     ahead: Array  # (N,) stations [m] of the closest obstacle at steps 1 ... N
     predicted: Array | None  # (N, n, 2) [m] of people at steps 1 ... N, until the next look
     whom: NDArray[np.bool_] | None  # of the crowd has been predicted; None: everybody
+    closest: float  # station [m] of ``person`` in truth, however it is seen: for the tables
 
 
 class Ego:
@@ -135,6 +137,7 @@ class Ego:
         )
         self._span = driver.horizon * time_step  # [s]
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
+        self._perception = Perception(config)
         self._force = 0.0
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
@@ -175,11 +178,13 @@ class Ego:
         Args:
             row: the ego's row among the vehicles.
             poses: (N, m, 7) of all vehicles at steps 0 ... N-1.
-            crowd: the pedestrians now.
+            crowd: the pedestrians now, as they are; the controller acts on how they are seen.
             surroundings: the walls and lights that they heed.
         """
         front, speed, corridor = self.front, self.vehicle.speed, self.corridor
+        truth, crowd = crowd, self._perception.observe(crowd)
         person, reachable = corridor.closest_now(crowd.position, front)
+        closest = person if crowd is truth else corridor.closest_now(truth.position, front)[0]
         ahead = corridor.nobody
         predictor, predicted, whom = self.driver.predictor, None, None
         if reachable and predictor is not None:
@@ -196,7 +201,7 @@ class Ego:
             if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
                 allowed = stop + _BEYOND + self._origin
                 ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
-        return Seen(person, leader, stop, ahead, predicted, whom)
+        return Seen(person, leader, stop, ahead, predicted, whom, closest)
 
     def _relevant(self, crowd: Crowd, speed: float) -> NDArray[np.bool_] | None:
         """(n,) whom of a large crowd the plan, or somebody whom it depends on, may meet.
@@ -271,7 +276,7 @@ class Ego:
             self.vehicle.speed,
             self.vehicle.acceleration,
             decision.force,
-            seen.person - origin,
+            seen.closest - origin,
             decision.reference_speed,
             seen.leader.station - origin,
             seen.stop - front,

@@ -177,6 +177,13 @@ class CrowdConfig(Section):
     desired_speed_sd: float = option(0.26, "m/s", "its standard deviation", ge=0, le=2)
     desired_speed_min: float = option(0.5, "m/s", "its lower truncation", gt=0, le=2.5)
     desired_speed_max: float = option(2.2, "m/s", "its upper truncation", gt=0, le=2.5)
+    acceleration_noise: float = option(
+        0.0,
+        "m/s^2",
+        "random acceleration in each step (standard deviation per axis, cut off at twice that)",
+        ge=0,
+        le=5,
+    )
     minimum_spacing: float = option(0.5, "m", "no two start closer than this", ge=0, le=10)
     host_edge: str = option(
         "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 
 from controller import ControllerError
 from fmus import FmuError
+from giveway.disturbance import disturbance_of
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.heartbeat import Phase
 from giveway.mirror import Mirror
@@ -107,6 +108,7 @@ class Loop:
         self._looks = looks_ahead(parts.config.record.predictions, parts.time_step)
         self._named = 0
         self._fronts = np.empty((0, 2))
+        self._disturbance = disturbance_of(parts.config, parts.crowd_model)
 
     def run(self, watcher: Watcher | None, interrupted: Callable[[], bool]) -> Ending:
         """Step until every ego is done, a limit or an interrupt.
@@ -324,8 +326,12 @@ class Loop:
         parts, population = self._parts, self._population
         if not len(population.present):
             return
-        surroundings = parts.surroundings
-        parts.crowd_model.advance(population.crowd, self._mirror.vehicles, surroundings)
+        crowd, now = population.crowd, (self._mirror.vehicles, parts.surroundings)
+        if self._disturbance is None:
+            parts.crowd_model.advance(crowd, *now)
+        else:
+            people = population.present, len(population.ids)
+            self._disturbance.advance(crowd, *now, *people)
         there = parts.arrived(population.crowd)
         if not np.count_nonzero(there):
             return

@@ -1,0 +1,107 @@
+"""What the controllers see of the crowd: the truth, or less."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from giveway.config import RunConfig
+from giveway.perception import Perception
+from pedestrian_model import Crowd, CrowdModel, Vehicles
+
+
+def make_crowd(n: int = 40) -> Crowd:
+    random = np.random.default_rng(7)
+    place = random.uniform(-10.0, 10.0, (n, 2))
+    speeds = random.uniform(0.6, 2.0, n)
+    return Crowd.create(place, np.zeros((n, 2)), speeds, list(place[:, None] + (0.0, 30.0)))
+
+
+def eyes(seed: int = 1, ego: str = "ego", **perception) -> Perception:
+    return Perception(RunConfig(seed=seed, perception=perception, ego={"id": ego}))
+
+
+def test_without_errors_the_very_crowd_is_seen():
+    crowd = make_crowd()
+    assert eyes().exact
+    assert eyes().observe(crowd) is crowd
+
+
+def test_nobody_is_seen_as_nobody():
+    crowd = Crowd.empty()
+    assert eyes(position_noise=1.0, desired_speeds="typical").observe(crowd) is crowd
+
+
+def test_positions_are_off_by_at_most_two_deviations_on_each_axis():
+    crowd, seen_by = make_crowd(), eyes(position_noise=0.3)
+    offsets = np.array([seen_by.observe(crowd).position - crowd.position for _ in range(500)])
+    assert np.abs(offsets).max() <= 0.6 + 1e-12
+    assert np.abs(offsets.mean()) < 0.01
+    assert offsets.std() == pytest.approx(0.3 * 0.8796, rel=0.02)  # of a normal cut off at 2
+    apart = np.corrcoef(offsets[:-1].ravel(), offsets[1:].ravel())[0, 1]
+    assert abs(apart) < 0.02  # each step anew
+
+
+def test_the_truth_is_not_touched_and_the_rest_is_seen_as_it_is():
+    crowd, before = make_crowd(), make_crowd()
+    seen = eyes(position_noise=0.3).observe(crowd)
+    assert (crowd.position == before.position).all()
+    assert (seen.position != crowd.position).all()
+    assert (seen.velocity == crowd.velocity).all()
+    assert (seen.desired_speed == crowd.desired_speed).all()
+    assert (seen.target == crowd.target).all()
+
+
+def test_a_crowd_that_has_been_stepped_is_seen_where_it_is_now():
+    crowd, seen_by = make_crowd(), eyes(position_noise=1e-9, desired_speeds="typical")
+    seen_by.observe(crowd)
+    for _ in range(5):
+        CrowdModel().advance(crowd, Vehicles.empty())
+    seen = seen_by.observe(crowd)
+    assert np.allclose(seen.position, crowd.position, atol=1e-8)
+    assert (seen.velocity == crowd.velocity).all()
+    left = crowd.select(np.arange(len(crowd)) % 2 == 0)
+    assert np.allclose(seen_by.observe(left).position, left.position, atol=1e-8)
+    assert len(seen_by.observe(left).desired_speed) == len(left)
+
+
+def test_typical_desired_speeds_are_the_mean_for_everybody():
+    crowd = make_crowd()
+    seen = eyes(desired_speeds="typical").observe(crowd)
+    assert (seen.desired_speed == 1.394).all()
+    assert (seen.position == crowd.position).all()
+
+
+def test_the_same_seed_sees_the_same_and_every_ego_for_itself():
+    crowd = make_crowd()
+
+    def look(**who):
+        return eyes(**who, position_noise=0.3).observe(crowd).position.copy()
+
+    assert (look(seed=3) == look(seed=3)).all()
+    assert (look(seed=3) != look(seed=4)).all()
+    assert (look(ego="a") != look(ego="b")).all()
+
+
+PEOPLE = {"pedestrians": 6, "spawn_area": (12.0, -6.0, 20.0, -2.0)}
+
+
+def test_noise_changes_the_drive_but_the_tables_keep_the_truth(run_once):
+    plain = run_once(seed=2, time_limit=4.0, crowd=PEOPLE)
+    noisy = run_once(seed=2, time_limit=4.0, crowd=PEOPLE, perception={"position_noise": 0.4})
+    drive = noisy.egos[0]
+    assert not np.array_equal(drive.track.force, plain.egos[0].track.force)
+    crowd = drive.crowd
+    for k in range(len(drive.track.time)):
+        now = crowd.step == k
+        ahead = crowd.x[now] - drive.track.front_x[k]
+        front = ahead[(np.abs(crowd.y[now] - drive.track.front_y[k]) <= 1.25) & (ahead >= 0.0)]
+        assert drive.track.gap[k] == pytest.approx(front.min(initial=np.inf), abs=1e-9)
+
+
+def test_a_run_with_unseen_desired_speeds_predicts_otherwise(run_once):
+    plain = run_once(seed=2, time_limit=4.0, crowd=PEOPLE)
+    typical = run_once(
+        seed=2, time_limit=4.0, crowd=PEOPLE, perception={"desired_speeds": "typical"}
+    )
+    assert not np.array_equal(typical.egos[0].track.force, plain.egos[0].track.force)
