@@ -22,6 +22,7 @@ from controller.parameters import (
 from controller.pid import Pid
 from controller.quadratic_program import QuadraticProgram, quadratic_program
 from controller.regulator import Decision, Observation, Regulator
+from controller.safety import SafeForce, SafetyLayer, SafetyParameters
 from controller.solution import MpcSolution, Outcome
 from controller.speed_reference import ReferenceParameters, SpeedReference
 from controller.tuned_pid import TunedPid, TunedPidParameters
@@ -44,6 +45,9 @@ __all__ = [
     "QuadraticProgram",
     "ReferenceParameters",
     "Regulator",
+    "SafeForce",
+    "SafetyLayer",
+    "SafetyParameters",
     "SolverMissingError",
     "SolverSetupError",
     "SpeedReference",

@@ -70,6 +70,9 @@ class Pid:
         self._integral, self._error = u_i, e
         return min(max(-(u_p + u_i + u_d), -p.force_limit), p.force_limit)
 
+    def applied(self, force: float) -> None:
+        """Another force [N] than was asked for acts; as printed, the PID does not look at it."""
+
     def track(self, speed: float, gap: float, limit: float = inf) -> None:
         """While the MPC acts: empty the integrator, and keep e(k-1) at the current error.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf, sqrt
 from typing import TYPE_CHECKING
 
 from controller import (
@@ -13,6 +14,7 @@ from controller import (
     PidParameters,
     ReferenceParameters,
     Regulator,
+    SafetyParameters,
     TunedPid,
     TunedPidParameters,
 )
@@ -20,13 +22,16 @@ from fmus import FmuError
 from giveway.ego import Driver
 from giveway.errors import ControlError, VehicleError
 from giveway.presets import parameters_of
-from giveway.vehicles import model_margin, open_for
+from giveway.vehicles import identified_reaction_time, model_margin, open_for
 from pedestrian_model import Predictor
 
 if TYPE_CHECKING:
     from contextlib import ExitStack
 
     from giveway.config import RunConfig
+
+
+_WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut at two in x and in y
 
 
 def make_regulator(config: RunConfig, time_step: float) -> Regulator:
@@ -130,4 +135,26 @@ def make_driver(
     if config.optimises:
         predictor = Predictor(expected, time_step, config.mpc.horizon)
     fastest = max(crowd.max_speed, expected.max_speed)
-    return Driver(config, vehicle, description, regulator, predictor, fastest)
+    safety = safety_parameters(config, time_step) if config.safety_layer else None
+    return Driver(config, vehicle, description, regulator, predictor, fastest, safety)
+
+
+def safety_parameters(config: RunConfig, time_step: float) -> SafetyParameters:
+    """The limits that the safety layer counts on; the body's width is not known yet.
+
+    Args:
+        config: of this ego alone.
+        time_step: of the co-simulation [s].
+    """
+    safety, people = config.safety, parameters_of(config.crowd.preset)
+    reaction = safety.reaction_time
+    return SafetyParameters(
+        walking_acceleration=people.max_acceleration,
+        walking_speed=people.max_speed,
+        body_radius=people.body_radius,
+        margin=safety.margin + model_margin(config, time_step),
+        position_error=_WITHIN * config.perception.position_noise,
+        force_limit=config.mpc.force_limit,
+        force_rate_limit=config.mpc.force_rate_limit if safety.rate_limited else inf,
+        reaction_time=identified_reaction_time(config) if reaction is None else reaction,
+    )

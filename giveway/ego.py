@@ -12,13 +12,14 @@ from controller import Observation
 from fmus import FmuError
 from giveway.corridor import NO_LEADER, Corridor, Leader
 from giveway.errors import ControlError, VehicleError
+from giveway.guard import Guard
 from giveway.perception import Perception
 from giveway.recorder import EgoRow
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from controller import Decision, Regulator
+    from controller import Decision, Regulator, SafetyParameters
     from fmus import Vehicle
     from giveway.config import RunConfig
     from giveway.ego_path import EgoPath, Pose
@@ -51,6 +52,7 @@ class Driver:
     regulator: Regulator
     predictor: Predictor | None
     walking_speed_limit: float  # [m/s]
+    safety: SafetyParameters | None  # None: nothing watches over the controller
 
     @property
     def id(self) -> str:
@@ -89,6 +91,7 @@ class Seen(NamedTuple):
     predicted: Array | None  # (N, n, 2) [m] of people at steps 1 ... N, until the next look
     whom: NDArray[np.bool_] | None  # of the crowd has been predicted; None: everybody
     closest: float  # station [m] of ``person`` in truth, however it is seen: for the tables
+    crowd: Crowd  # the pedestrians as they are seen
 
 
 class Ego:
@@ -138,6 +141,8 @@ class Ego:
         self._span = driver.horizon * time_step  # [s]
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
         self._perception = Perception(config)
+        safety = driver.safety
+        self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
         self._force = 0.0
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
@@ -201,7 +206,7 @@ class Ego:
             if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
                 allowed = stop + _BEYOND + self._origin
                 ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
-        return Seen(person, leader, stop, ahead, predicted, whom, closest)
+        return Seen(person, leader, stop, ahead, predicted, whom, closest, crowd)
 
     def _relevant(self, crowd: Crowd, speed: float) -> NDArray[np.bool_] | None:
         """(n,) whom of a large crowd the plan, or somebody whom it depends on, may meet.
@@ -242,6 +247,11 @@ class Ego:
                 "run's config.toml"
             )
             raise ControlError(msg)
+        if self._guard is not None:
+            allowed = self._guard.watch(decision, self.front, self.vehicle.speed, seen.crowd)
+            if allowed is not decision:
+                self.driver.regulator.applied(allowed.force)
+                decision = allowed
         self._force = decision.force
         return decision
 

@@ -176,6 +176,19 @@ def model_margin(config: RunConfig, time_step: float) -> float:
     return model.position_error * max(1.0, config.mpc.horizon * time_step / model.horizon) ** 2
 
 
+def identified_reaction_time(config: RunConfig) -> float:
+    """The dead time and the lag of the actuator [s], as the profile knows them.
+
+    Args:
+        config: of one ego.
+
+    Raises:
+        VehicleError: the profile cannot be read.
+    """
+    model = _model(config)
+    return 0.0 if model is None else model.delay + model.lag
+
+
 def model_remark(config: RunConfig, time_step: float) -> str:
     """What the controller knows of its vehicle by identification; empty if nothing.
 

@@ -1,0 +1,252 @@
+"""The kernels of :mod:`controller.safety`: stopping profiles against what people can reach."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+from controller._jit import kernel
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+LETS_THROUGH, ACTS, UNAVOIDABLE = 0, 1, 2
+_RESOLUTION = 1.0  # [N] to which the largest safe force is found
+_SLACK = 1e-9  # [m] that a new plan keeps and the fallback need not: above rounding, below a hair
+_BETWEEN = 3  # poses of the front in a bend that a box is made to hold, besides the last
+_STANDSTILL = 1e-9  # [m/s] as in the regulator
+
+
+class Limits(NamedTuple):
+    """What the ego and people can do."""
+
+    time_step: float  # dt [s]
+    slowest_decay: float  # what a step leaves of the speed at most: exp(-alpha dt / M)
+    fastest_decay: float  # and at least: 1 - alpha dt / M
+    gain: float  # dt / M [(m/s)/N], what a step of driving adds at most, of braking takes at most
+    braking_gain: float  # [(m/s)/N] what a step of braking takes at least
+    force_limit: float  # u_max [N]
+    force_rate_limit: float  # [N per step]
+    walking_acceleration: float  # a_max [m/s^2]
+    walking_speed: float  # v_max [m/s]
+    half_width: float  # of the ego [m]
+    clearance: float  # [m] between the front and a person's centre
+    behind: float  # [m] behind the front somebody still counts as being before it
+
+
+@kernel
+def _strongest(i: int, force: float, commands: Array, c: Limits) -> float:
+    """The largest force [N] that may act in step i: a command of the reaction time before.
+
+    The commands are those of the past, then ``force``, then full braking.
+    """
+    delay = commands.shape[0] - 1
+    strongest = -c.force_limit
+    for command in range(i - delay, i + 1):
+        if command < 0:
+            f = commands[commands.shape[0] + command]
+        elif command == 0:
+            f = force
+        else:
+            f = force - command * c.force_rate_limit
+        strongest = max(strongest, f)
+    return strongest
+
+
+@kernel
+def _pose(way: Array, spacing: float, travel: float) -> tuple[float, float, float, float]:
+    """x, y, cos, sin of the front after ``travel`` [m]."""
+    last = way.shape[0] - 1
+    i = min(int(travel / spacing), last)
+    rest = travel - i * spacing
+    x, y, cos, sin = way[i, 0], way[i, 1], way[i, 2], way[i, 3]
+    if i == last:
+        return x + rest * cos, y + rest * sin, cos, sin
+    w = rest / spacing
+    x, y = x + w * (way[i + 1, 0] - x), y + w * (way[i + 1, 1] - y)
+    cos, sin = cos + w * (way[i + 1, 2] - cos), sin + w * (way[i + 1, 3] - sin)
+    size = sqrt(cos * cos + sin * sin)
+    return x, y, cos / size, sin / size
+
+
+@kernel
+def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box: Array) -> None:
+    """Fill ``box`` with the rectangle that holds the front from ``low`` to ``high`` of travel [m].
+
+    Columns: x, y, cos, sin of its frame; its extent along and across [m].
+    """
+    if way.shape[0] == 1:
+        box[0], box[1], box[2], box[3] = way[0, 0], way[0, 1], way[0, 2], way[0, 3]
+        box[4], box[5], box[6], box[7] = low, high, -half, half
+        return
+    x_0, y_0, cos, sin = _pose(way, spacing, high)
+    box[0], box[1], box[2], box[3] = x_0, y_0, cos, sin
+    box[4], box[5], box[6], box[7] = 0.0, 0.0, -half, half
+    for i in range(_BETWEEN):
+        x, y, c, s = _pose(way, spacing, low + i * (high - low) / _BETWEEN)
+        for side in (-half, half):
+            d_x, d_y = x - side * s - x_0, y + side * c - y_0
+            along, across = d_x * cos + d_y * sin, d_y * cos - d_x * sin
+            box[4], box[5] = min(box[4], along), max(box[5], along)
+            box[6], box[7] = min(box[6], across), max(box[7], across)
+
+
+@kernel
+def _stop(
+    force: float,
+    speed: float,
+    way: Array,
+    spacing: float,
+    c: Limits,
+    commands: Array,
+    boxes: Array,
+) -> tuple[int, float]:
+    """Fill what the front may sweep in each step until the stop: steps, way [m]; -1 steps: none.
+
+    In step j the front is between where it would be under full braking from now on and where it
+    is at most under ``force`` first: so the boxes grow with the force.
+    """
+    dt, delay = c.time_step, commands.shape[0] - 1
+    low = high = 0.0
+    slowest = fastest = speed
+    for j in range(boxes.shape[0]):
+        if fastest <= 0.0 and j > delay and _strongest(j, force, commands, c) <= 0.0:
+            return j, high
+        f = _strongest(j, force, commands, c)
+        after = max(0.0, c.slowest_decay * fastest + f * (c.gain if f > 0.0 else c.braking_gain))
+        ahead = high + dt * max(fastest, after)
+        if ahead > high:
+            _sweep(way, spacing, low, ahead, c.half_width, boxes[j])
+        else:
+            boxes[j, 5] = boxes[j, 4] - 1.0  # it stands: an empty box
+        slowest = max(0.0, c.fastest_decay * slowest - c.gain * c.force_limit)
+        low += dt * slowest
+        high, fastest = ahead, after
+    return -1, high
+
+
+@kernel
+def _touches(box: Array, x: float, y: float, radius: float, clearance: float, c: Limits) -> bool:
+    """Whether a body whose centre is within ``radius`` of (x, y) may meet the front in its box."""
+    d_x, d_y = x - box[0], y - box[1]
+    along, across = d_x * box[2] + d_y * box[3], d_y * box[2] - d_x * box[3]
+    if along + radius < box[4] - c.behind:
+        return False  # it can only walk into the side
+    off = max(box[4] - along, 0.0, along - box[5])
+    aside = max(box[6] - across, 0.0, across - box[7])
+    reach = radius + clearance
+    touched: bool = off * off + aside * aside <= reach * reach
+    return touched
+
+
+@kernel
+def _may_meet(
+    x: float,
+    y: float,
+    v_x: float,
+    v_y: float,
+    steps: int,
+    clearance: float,
+    c: Limits,
+    boxes: Array,
+) -> bool:
+    """Whether somebody now at (x, y) with velocity (v_x, v_y) can meet the front in any step.
+
+    Who accelerates by at most a_max is within a_max t^2/2 of x + v t, and who walks at most at
+    v_max is within v_max t of x; within a step x + v t is within |v| dt/2 of its middle.
+    """
+    dt = c.time_step
+    half_step = 0.5 * dt * sqrt(v_x * v_x + v_y * v_y)
+    for j in range(steps):
+        box = boxes[j]
+        if box[5] < box[4]:
+            continue
+        t, t_end = (j + 0.5) * dt, (j + 1) * dt
+        accelerated = 0.5 * c.walking_acceleration * t_end * t_end + half_step
+        if not _touches(box, x + v_x * t, y + v_y * t, accelerated, clearance, c):
+            continue
+        if _touches(box, x, y, c.walking_speed * t_end, clearance, c):
+            return True
+    return False
+
+
+@kernel
+def _is_safe(
+    force: float,
+    speed: float,
+    way: Array,
+    spacing: float,
+    position: Array,
+    velocity: Array,
+    c: Limits,
+    commands: Array,
+    boxes: Array,
+    clearance: float,
+) -> bool:
+    """Whether after ``force`` the ego can stop without moving into anybody."""
+    steps, travel = _stop(force, speed, way, spacing, c, commands, boxes)
+    if steps < 0:
+        return False
+    reach = travel + c.half_width + clearance + c.walking_speed * steps * c.time_step
+    for i in range(position.shape[0]):
+        x, y = position[i, 0], position[i, 1]
+        d_x, d_y = x - way[0, 0], y - way[0, 1]
+        if d_x * d_x + d_y * d_y > reach * reach:
+            continue
+        if _may_meet(x, y, velocity[i, 0], velocity[i, 1], steps, clearance, c, boxes):
+            return False
+    return True
+
+
+@kernel
+def largest_safe_force(
+    force: float,
+    speed: float,
+    way: Array,
+    spacing: float,
+    position: Array,
+    velocity: Array,
+    c: Limits,
+    commands: Array,
+    boxes: Array,
+) -> tuple[float, int]:
+    """The largest safe force up to ``force`` [N], and what the layer does; notes the force.
+
+    Args:
+        force: asked for.
+        speed: of the ego.
+        way: (k, 4) of the front's poses ahead.
+        spacing: [m] between them.
+        position: (n, 2) [m].
+        velocity: (n, 2) [m/s].
+        c: the limits.
+        commands: (delay + 1,) [N] the forces of the past, the latest last; changed.
+        boxes: (longest stop, 8) scratch.
+    """
+    v = speed if speed > _STANDSTILL else 0.0
+    wide = c.clearance + _SLACK
+    verdict, safe = LETS_THROUGH, force
+    if position.shape[0] > 0 and not _is_safe(
+        force, v, way, spacing, position, velocity, c, commands, boxes, wide
+    ):
+        verdict = ACTS
+        safe = max(-c.force_limit, commands[-1] - c.force_rate_limit)
+        safe = min(safe, force)
+        unsafe = force
+        if not _is_safe(safe, v, way, spacing, position, velocity, c, commands, boxes, c.clearance):
+            verdict, unsafe = UNAVOIDABLE, safe
+        while unsafe - safe > _RESOLUTION:
+            middle = 0.5 * (safe + unsafe)
+            if _is_safe(middle, v, way, spacing, position, velocity, c, commands, boxes, wide):
+                safe = middle
+            else:
+                unsafe = middle
+        if safe == force and verdict == ACTS:
+            verdict = LETS_THROUGH  # full braking was asked for, and is just enough
+    for i in range(commands.shape[0] - 1):
+        commands[i] = commands[i + 1]
+    commands[-1] = safe
+    return safe, verdict

@@ -1,0 +1,156 @@
+"""The safety layer: whatever a controller asks for, a stop before every pedestrian stays possible.
+
+Of the forces up to the one asked for it lets through the largest after which full braking still
+stops the ego before its front could move into anybody, however people walk within their limits of
+acceleration and speed. Where that holds it holds again one step later, by braking fully: the
+fallback of the last step is still there (docs/safety.md has the proof). The idea is that of
+set-based online verification with a fail-safe manoeuvre (Althoff & Dolan, IEEE T-RO 2014; Pek &
+Althoff, ICRA 2018) and of the safe distances of RSS (Shalev-Shwartz et al., arXiv 1708.06374).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, exp, inf
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from controller._stopping import ACTS, UNAVOIDABLE, Limits, largest_safe_force
+from controller.parameters import require, require_not_negative, require_positive
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from controller.model import LongitudinalModel
+
+    Array = NDArray[np.float64]
+
+LONGEST_STOP = 20.0  # [s] what has not stopped by then does not count as stopping
+_WHOLE_STEPS = 1e-6  # of a step: a reaction time of so little more is no step more
+
+
+@dataclass(frozen=True, slots=True)
+class SafetyParameters:
+    """The limits of people and of the ego's body and brake.
+
+    Raises:
+        ParameterError: a value is not finite or out of range.
+    """
+
+    walking_acceleration: float = 5.0  # a_max [m/s^2] of the VCI model (TSAS 2020)
+    walking_speed: float = 2.5  # v_max [m/s] of the VCI model (TSAS 2020)
+    body_radius: float = 0.27  # R [m] of the VCI model (TSAS 2020)
+    width: float = 2.0  # of the ego [m] (Yang & Özgüner 2019)
+    margin: float = 0.1  # [m] kept between the front and a body (ours)
+    position_error: float = 0.0  # [m] that a perceived position is off at most
+    force_limit: float = 8000.0  # u_max [N] (Yang & Özgüner 2019, table 1)
+    force_rate_limit: float = inf  # [N per step] of the layer's own braking (ours: none)
+    reaction_time: float = 0.0  # [s] within which the vehicle does what it is told
+
+    def __post_init__(self) -> None:
+        require_positive("walking_acceleration", self.walking_acceleration, "m/s^2")
+        require_positive("walking_speed", self.walking_speed, "m/s")
+        require_not_negative("body_radius", self.body_radius, "m")
+        require_positive("width", self.width, "m")
+        require_not_negative("margin", self.margin, "m")
+        require_not_negative("position_error", self.position_error, "m")
+        require_positive("force_limit", self.force_limit, "N")
+        rate = self.force_rate_limit
+        require(rate > 0.0, "force_rate_limit", rate, "a number > 0 [N per step]")
+        require_not_negative("reaction_time", self.reaction_time, "s")
+        short = self.reaction_time < LONGEST_STOP
+        require(short, "reaction_time", self.reaction_time, f"less than {LONGEST_STOP:g} s")
+
+
+class SafeForce(NamedTuple):
+    """What the layer lets through."""
+
+    force: float  # [N], never more than was asked for
+    acted: bool  # the layer decides, not the controller
+    reason: str  # "safety layer", "unavoidable" (no braking is surely enough); empty if not acted
+
+
+class SafetyLayer:
+    """The last word on the ego's force.
+
+    Args:
+        model: of the ego's motion. The layer holds for its forward Euler and for its exact
+            solution, whichever of them the plant is.
+        parameters: the limits.
+    """
+
+    def __init__(self, model: LongitudinalModel, parameters: SafetyParameters) -> None:
+        self.model = model
+        self.parameters = p = parameters
+        dt = model.time_step
+        z = model.friction * dt / model.mass
+        self._limits = Limits(
+            time_step=dt,
+            slowest_decay=exp(-z),
+            fastest_decay=max(0.0, model.decay),
+            gain=model.speed_per_force,
+            braking_gain=model.speed_per_force * ((1.0 - exp(-z)) / z if z > 0.0 else 1.0),
+            force_limit=p.force_limit,
+            force_rate_limit=p.force_rate_limit,
+            walking_acceleration=p.walking_acceleration,
+            walking_speed=p.walking_speed,
+            half_width=p.width / 2.0,
+            clearance=p.body_radius + p.margin + p.position_error,
+            behind=p.margin + p.position_error,
+        )
+        self._boxes = np.zeros((ceil(LONGEST_STOP / dt), 8))
+        delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
+        self._commands = np.zeros(1 + max(delay, 0))
+
+    def reach(self, speed: float) -> float:
+        """How far the front gets at most until it stops, whatever is asked for now [m].
+
+        Args:
+            speed: now [m/s].
+        """
+        p, c = self.parameters, self._limits
+        not_yet = len(self._commands) + 2.0 * p.force_limit / p.force_rate_limit  # [steps]
+        v = max(speed, 0.0) + not_yet * c.gain * p.force_limit
+        return v * c.time_step * (not_yet + 1.0 + v / (2.0 * c.braking_gain * p.force_limit))
+
+    def reset(self) -> None:
+        """Forget the forces of the past."""
+        self._commands[:] = 0.0
+
+    def filter(
+        self,
+        force: float,
+        speed: float,
+        way: Array,
+        spacing: float,
+        position: Array,
+        velocity: Array,
+    ) -> SafeForce:
+        """Let a force through, or the largest safe one below it.
+
+        Args:
+            force: asked for, for the step from now on [N].
+            speed: of the ego [m/s].
+            way: (k, 4) x, y [m] of the front's middle and cos, sin of the body's heading, after
+                0, 1, ... times ``spacing`` of travel; straight on beyond the last.
+            spacing: [m] of travel between the rows of ``way``.
+            position: (n, 2) [m] people's centres, in the frame of ``way``.
+            velocity: (n, 2) [m/s] theirs.
+        """
+        safe, verdict = largest_safe_force(
+            force,
+            speed,
+            way,
+            spacing,
+            position,
+            velocity,
+            self._limits,
+            self._commands,
+            self._boxes,
+        )
+        if verdict == ACTS:
+            return SafeForce(safe, True, "safety layer")
+        if verdict == UNAVOIDABLE:
+            return SafeForce(safe, True, "unavoidable")
+        return SafeForce(safe, False, "")
