@@ -114,7 +114,8 @@ class SpeedReference:
         a = self._slope(speed, wanted, limit)
         a += copysign(stoppable(abs(away), jerk, self._lag), away)
         a = min(max(a, -down), self._up)
-        a = min(max(a, before - jerk * dt), before + jerk * dt)
+        release = min(self._sharpest, max(jerk, -before / self._build_up))
+        a = min(max(a, before - jerk * dt), before + release * dt)
         a = max(a, -now / dt)  # it does not go back
         if wanted == 0.0 and now <= _STANDS:
             a = -now / dt

@@ -11,6 +11,7 @@ from controller.parameters import require_not_negative, require_positive
 from controller.speed_reference import ReferenceParameters, SpeedReference
 
 _STANDSTILL = 1e-9  # [m/s] below it the car stands
+_TRANSIENT = 0.5  # [m/s^2] of the reference, from which on errors are not integrated
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,8 +22,8 @@ class TunedPidParameters:
     the vehicle. controller/tuning.py finds the defaults.
     """
 
-    bandwidth: float = 3.0  # omega_0 [rad/s] of the closed loop s^2 + 2 zeta omega_0 s + omega_0^2
-    damping: float = 1.0  # zeta [-]
+    bandwidth: float = 2.5  # omega_0 [rad/s] of the closed loop s^2 + 2 zeta omega_0 s + omega_0^2
+    damping: float = 0.85  # zeta [-]
     acceleration_feed_forward: bool = True  # M dv_ref/dt beside alpha v_ref
     force_limit: float = 8000.0  # u_max [N]
     force_rate_limit: float = 1000.0  # du_max [N per step]
@@ -78,6 +79,7 @@ class TunedPid:
         """Forget the past: the reference begins at the next speed, the integrator is empty."""
         self._integral = 0.0  # u_i(k) [N]
         self._force = 0.0  # u(k-1) [N]
+        self._speed = 0.0  # v(k) [m/s]
         self._started = False
 
     def reference_speed(self, gap: float, limit: float = inf) -> float:
@@ -102,6 +104,7 @@ class TunedPid:
         if not self._started:
             self._begin(speed, self.model.friction * speed)
             self._force = 0.0
+        self._speed = speed
         if speed <= _STANDSTILL:
             self._stand()
         v_ref, a_ref = self.reference.advance(speed, gap, limit)
@@ -112,7 +115,8 @@ class TunedPid:
         if limit <= 0.0:
             high = max(low, min(high, 0.0))
         force = min(max(wanted, low), high)
-        self._learn(e, force - wanted)
+        settled = max(0.0, 1.0 - abs(a_ref) / _TRANSIENT)
+        self._learn(settled * e, force - wanted)
         self._force = force
         return force
 
@@ -124,8 +128,10 @@ class TunedPid:
         self._begin(speed, self.model.friction * speed if force is None else force)
 
     def applied(self, force: float) -> None:
-        """Another than the force that was asked for acts [N]: go on from there, without windup."""
-        self._learn(0.0, force - self._force)
+        """Another force [N] than was asked for acts: the reference goes on from what it does."""
+        model, speed = self.model, self._speed
+        after = model.decay * speed + model.speed_per_force * force
+        self.reference.start(after, (force - model.friction * speed) / model.mass)
         self._force = force
 
     def _begin(self, speed: float, force: float) -> None:

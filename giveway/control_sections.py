@@ -77,8 +77,8 @@ class TunedPidConfig(Section):
     last_distance: float = option(
         4.0, "m", "it stops before this distance however hard that is", ge=0, le=1e4
     )
-    bandwidth: float = option(3.0, "rad/s", "omega of the closed loop's poles", gt=0, le=100)
-    damping: float = option(1.0, None, "zeta of the closed loop's poles", gt=0, le=10)
+    bandwidth: float = option(2.5, "rad/s", "omega of the closed loop's poles", gt=0, le=100)
+    damping: float = option(0.85, None, "zeta of the closed loop's poles", gt=0, le=10)
     acceleration_feed_forward: bool = option(
         True, None, "M dv_ref/dt is fed forward beside alpha v_ref"
     )
