@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,7 +29,6 @@ DEFAULT = (
     "repulsion_strength",
     "navigation_strength",
     "vehicle_strength",
-    "vehicle_decay",
     "vehicle_lookahead",
 )
 """What is fitted if nothing is named: how hard each sub-force pulls, and the vehicle's reach."""
@@ -89,6 +89,7 @@ def calibrate(
     *,
     held_out: float = 0.3,
     seed: int = 0,
+    own_pace: bool = True,
     evaluations: int = 400,
     protocol: Protocol = CITR,
     progress: Callable[[int, int, float], None] = lambda _done, _all, _best: None,
@@ -101,6 +102,7 @@ def calibrate(
         names: fields of :class:`VciParameters`.
         held_out: share of the clips that the fit does not see, in each kind of clip alike.
         seed: of the choice of these clips.
+        own_pace: everybody's desired speed is the present one; else it is the parameters'.
         evaluations: of the objective, at most.
         protocol: how the clips are cut and judged.
         progress: called with evaluations done, at most, and the least error so far.
@@ -111,7 +113,8 @@ def calibrate(
     """
     names = _checked(names, start)
     train, test = split(clips, held_out, seed)
-    objective = Objective(cut_windows(train, protocol), protocol, len(train))
+    judge = partial(_judged, protocol=protocol, own_pace=own_pace)
+    objective = Objective(cut_windows(train, protocol), protocol, len(train), own_pace=own_pace)
     search = Search(objective, start, names, evaluations, progress)
     best = search.run()
     return Calibration(
@@ -120,8 +123,8 @@ def calibrate(
         fitted=names,
         training=tuple(clip.name for clip in train),
         held_out=tuple(clip.name for clip in test),
-        train=_fit(objective, len(train), start, best),
-        test=_judged(test, start, best, protocol),
+        train=judge(train, start, best),
+        test=judge(test, start, best),
         touching=(_touching(clips, start, protocol), _touching(clips, best, protocol)),
         at_bound=search.at_bound,
         evaluations=search.done,
@@ -174,21 +177,23 @@ def _checked(names: Sequence[str], start: VciParameters) -> tuple[str, ...]:
 
 
 def _judged(
-    clips: tuple[Clip, ...], start: VciParameters, best: VciParameters, protocol: Protocol
+    clips: tuple[Clip, ...],
+    start: VciParameters,
+    best: VciParameters,
+    *,
+    protocol: Protocol,
+    own_pace: bool,
 ) -> Fit:
+    """Both errors, and the interval of their difference, clips drawn for both alike."""
     if not clips:
         return Fit(math.nan, math.nan, math.nan, math.nan, math.nan)
-    objective = Objective(cut_windows(clips, protocol), protocol, len(clips))
-    return _fit(objective, len(clips), start, best)
-
-
-def _fit(objective: Objective, clips: int, start: VciParameters, best: VciParameters) -> Fit:
-    """Both errors, and the interval of their difference, clips drawn for both alike."""
+    cut = cut_windows(clips, protocol)
+    objective = Objective(cut, protocol, len(clips), own_pace=own_pace)
     before, count = objective.per_clip(start)
     after, _ = objective.per_clip(best)
-    weights = ClipBootstrap.of(clips, SEED).weights
+    weights = ClipBootstrap.of(len(clips), SEED).weights
     low = high = math.nan
-    if clips > 1:
+    if len(clips) > 1:
         with np.errstate(divide="ignore", invalid="ignore"):
             apart = np.nanmean((weights @ (after - before)) / (weights @ count), axis=1)
         low, high = np.nanquantile(apart, TAILS)

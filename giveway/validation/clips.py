@@ -177,6 +177,7 @@ def _numbers(file: Path, table: pd.DataFrame, name: str) -> NDArray[np.float64]:
     if bad.any():
         row = int(bad.argmax())
         expected = "a whole number" if whole else "a finite number"
-        msg = f"{file}: line {row + 2}: {name} = {str(table[name].iloc[row])!r}: expected {expected}"
+        found = str(table[name].iloc[row])
+        msg = f"{file}: line {row + 2}: {name} = {found!r}: expected {expected}"
         raise DatasetError(msg)
     return values

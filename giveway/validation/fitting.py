@@ -27,9 +27,10 @@ if TYPE_CHECKING:
     from giveway.validation.protocol import Protocol, Window
     from pedestrian_model import VciParameters
 
-FACTOR = 5.0  # a parameter stays between start / 5 and 5 start
+FACTOR = 10.0  # a parameter stays between start / 10 and 10 start
 _SPREAD = 0.2  # of the first simplex, in the logarithm
-_ARRIVED = 1e-4  # [m] and in the logarithm: a simplex this small has arrived
+_SMALL = 0.02  # in the logarithm: of a simplex that has arrived ...
+_FLAT = 5e-5  # [m] and over which the error is this even
 _AT_BOUND = 1e-3  # of the logarithm
 
 
@@ -40,10 +41,14 @@ class Objective:
         cut: the windows, at least one.
         protocol: they were cut by.
         clips: how many clips there are.
+        own_pace: see :class:`VciPredictor`.
     """
 
-    def __init__(self, cut: Sequence[Window], protocol: Protocol, clips: int) -> None:
+    def __init__(
+        self, cut: Sequence[Window], protocol: Protocol, clips: int, *, own_pace: bool = True
+    ) -> None:
         self._cut, self._protocol, self._clips = cut, protocol, clips
+        self._own_pace = own_pace
         self._steps = np.array(protocol.horizons) - 1
 
     def __call__(self, parameters: VciParameters) -> float:
@@ -58,7 +63,9 @@ class Objective:
         """(C, K) sums of the ADE in each clip at each horizon, and of how many."""
         shape = self._clips, len(self._steps)
         total, count = np.zeros(shape), np.zeros(shape)
-        predict = VciPredictor(parameters, self._protocol.time_step, self._protocol.longest)
+        predict = VciPredictor(
+            parameters, self._protocol.time_step, self._protocol.longest, own_pace=self._own_pace
+        )
         for window in self._cut:
             error = displacement(predict(window), window)
             ade = np.cumsum(error, axis=0)[self._steps] / (self._steps + 1.0)[:, None]
@@ -111,8 +118,8 @@ class Search:
             options={
                 "initial_simplex": simplex,
                 "maxfev": self._most,
-                "xatol": _ARRIVED,
-                "fatol": _ARRIVED,
+                "xatol": _SMALL,
+                "fatol": _FLAT,
                 "adaptive": True,
             },
         )

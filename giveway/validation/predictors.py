@@ -18,7 +18,10 @@ VCI = "VCI"
 CV = "CV"
 GOAL_CV = "goalCV"
 NO_VEHICLE = "VCI without f_v"
-NAMES = (VCI, CV, GOAL_CV, NO_VEHICLE)
+OWN_PACE = "VCI at own pace"
+NAMES = (VCI, OWN_PACE, NO_VEHICLE, CV, GOAL_CV)
+
+SLOWEST_PACE = 0.3  # [m/s] who stands at the start will walk on (ours)
 
 
 class TrackPredictor(Protocol):
@@ -35,11 +38,12 @@ def predictors(
     without = replace(parameters, vehicle_strength=0.0)
     return {
         VCI: VciPredictor(parameters, time_step, frames),
+        OWN_PACE: VciPredictor(parameters, time_step, frames, own_pace=True),
+        NO_VEHICLE: VciPredictor(without, time_step, frames),
         CV: lambda window: straight_on(window.position, window.velocity, time_step, frames),
         GOAL_CV: lambda window: straight_to(
             window.position, window.velocity, window.destination, time_step, frames
         ),
-        NO_VEHICLE: VciPredictor(without, time_step, frames),
     }
 
 
@@ -47,22 +51,38 @@ class VciPredictor:
     """The pedestrian model: all pedestrians jointly, under the vehicles as they drove.
 
     Args:
-        parameters: of the model; everybody's desired speed is theirs.
+        parameters: of the model.
         time_step: from frame to frame [s].
         frames: H, of a window.
+        own_pace: everybody's desired speed is the present speed, not the parameters': in a run
+            too, it is known of each pedestrian.
     """
 
-    def __init__(self, parameters: VciParameters, time_step: float, frames: int) -> None:
+    def __init__(
+        self,
+        parameters: VciParameters,
+        time_step: float,
+        frames: int,
+        *,
+        own_pace: bool = False,
+    ) -> None:
+        self._own_pace = own_pace
         self._desired_speed = parameters.desired_speed
         self._predictor = Predictor(parameters, time_step, frames)
 
     def __call__(self, window: Window) -> Array:
         """(H, n, 2) [m] at 1 ... H frames ahead; a buffer that the next call overwrites."""
-        crowd = crowd_of(window.position, window.velocity, window.destination, self._desired_speed)
+        desired: Array | float = self._desired_speed
+        if self._own_pace:
+            speed = np.hypot(window.velocity[:, 0], window.velocity[:, 1])
+            desired = np.maximum(speed, SLOWEST_PACE)
+        crowd = crowd_of(window.position, window.velocity, window.destination, desired)
         return self._predictor.predict(crowd, window.vehicles)
 
 
-def crowd_of(position: Array, velocity: Array, destination: Array, desired_speed: float) -> Crowd:
+def crowd_of(
+    position: Array, velocity: Array, destination: Array, desired_speed: Array | float
+) -> Crowd:
     """A crowd of which everybody walks straight to the destination."""
     return Crowd.create(position, velocity, desired_speed, list(destination[:, None, :]))
 

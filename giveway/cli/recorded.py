@@ -1,0 +1,75 @@
+"""``giveway validate``, ``calibrate``: the commands and their help."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+_Dataset = Annotated[
+    Path, typer.Argument(help="The CITR dataset's folder, or any part of it with clips.")
+]
+_PARAMETERS = (
+    "destination_gain,repulsion_strength,navigation_strength,vehicle_strength,vehicle_lookahead"
+)
+
+
+def add_recorded(app: typer.Typer) -> None:
+    """Add the commands about recorded trajectories to ``app``."""
+    app.command("validate")(_validate)
+    app.command("calibrate")(_calibrate)
+
+
+def _validate(
+    dataset: _Dataset,
+    preset: Annotated[str, typer.Option(help="SIM, TABLE2 or a preset file (TOML).")] = "SIM",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder (default results/validation_PRESET).")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the results there.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")
+    ] = False,
+) -> None:
+    """Hold the pedestrian model against recorded trajectories: ADE, FDE, contacts."""
+    from giveway.cli.validate import validate_command
+
+    validate_command(dataset, preset=preset, out=out, force=force, quiet=quiet)
+
+
+def _calibrate(
+    dataset: _Dataset,
+    out: Annotated[Path, typer.Option(help="Preset file (TOML) to write.")],
+    parameters: Annotated[
+        str, typer.Option(help="What is fitted, comma-separated; see docs/validation.md.")
+    ] = _PARAMETERS,
+    start: Annotated[
+        str, typer.Option("--preset", help="Where the fit starts: SIM, TABLE2 or a preset file.")
+    ] = "SIM",
+    held_out: Annotated[float, typer.Option(help="Share of the clips to judge the fit by.")] = 0.3,
+    seed: Annotated[int, typer.Option(help="Of the choice of these clips.", min=0)] = 0,
+    own_pace: Annotated[
+        bool, typer.Option(help="Desired speed: each one's present one; or the parameters'.")
+    ] = True,
+    evaluations: Annotated[int, typer.Option(help="Of the error, at most.", min=1)] = 400,
+    force: Annotated[bool, typer.Option("--force", help="Replace the file.")] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")
+    ] = False,
+) -> None:
+    """Fit parameters of the pedestrian model to recorded trajectories: a preset file."""
+    from giveway.cli.calibrate import calibrate_command
+
+    calibrate_command(
+        dataset,
+        parameters=parameters,
+        out=out,
+        start=start,
+        held_out=held_out,
+        seed=seed,
+        own_pace=own_pace,
+        evaluations=evaluations,
+        force=force,
+        quiet=quiet,
+    )

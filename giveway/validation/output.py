@@ -1,0 +1,153 @@
+"""What ``giveway validate`` leaves in its folder: tables and pictures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.errors import ResultsError
+from giveway.figures.style import save_figure
+from giveway.figures.validation import Body, Curve, growth_figure, places_figure, tracks_figure
+from giveway.validation.evaluation import EVERYWHERE, NEAR
+from giveway.validation.predictors import CV, NO_VEHICLE, OWN_PACE, VCI, predictors
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from giveway.validation.clips import Array
+    from giveway.validation.protocol import Window
+    from giveway.validation.validating import Validation
+    from pedestrian_model import VciParameters
+
+TABLES = ("errors.csv", "contacts.csv")
+PICTURES = ("growth", "tracks", "places")
+_SUFFIXES = (".png", ".svg")
+_FILES = {*TABLES, *(name + suffix for name in PICTURES for suffix in _SUFFIXES)}
+_DECIMALS = 6
+
+
+def check_folder(folder: Path, *, force: bool) -> None:
+    """Make sure that a validation may be written into ``folder``.
+
+    Raises:
+        ResultsError: it is a file, or holds what giveway did not write, or results without
+            ``force``.
+    """
+    if not folder.exists():
+        return
+    if not folder.is_dir():
+        msg = f"{folder}: is a file; name a folder with --out"
+        raise ResultsError(msg)
+    present = sorted(path.name for path in folder.iterdir())
+    foreign = [name for name in present if name not in _FILES]
+    if foreign:
+        msg = (
+            f"{folder}: holds '{foreign[0]}', which giveway validate did not write; "
+            "name another folder with --out"
+        )
+        raise ResultsError(msg)
+    if present and not force:
+        msg = f"{folder}: results exist; replace them with --force or name another with --out"
+        raise ResultsError(msg)
+
+
+def write_validation(found: Validation, parameters: VciParameters, folder: Path) -> None:
+    """Write the tables, and each picture as PNG and SVG.
+
+    Raises:
+        ResultsError: a file cannot be written.
+    """
+    pictures = dict(zip(PICTURES, _pictures(found, parameters), strict=True))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, table in zip(TABLES, (found.errors, found.contacts), strict=True):
+            table.round(_DECIMALS).to_csv(folder / name, index=False, lineterminator="\n")
+        for name, figure in pictures.items():
+            for suffix in _SUFFIXES:
+                save_figure(figure, folder / f"{name}{suffix}")
+    except OSError as error:
+        msg = f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
+        raise ResultsError(msg) from error
+
+
+def _pictures(found: Validation, parameters: VciParameters) -> tuple[Figure, Figure, Figure]:
+    people = f"{len(found.clips)} clips, {found.pedestrians} pedestrians"
+    return (
+        growth_figure(_time(found), _curves(found), f"Prediction error, {people}"),
+        _tracks(found, parameters),
+        _places(found),
+    )
+
+
+def _time(found: Validation) -> Array:
+    time: Array = found.protocol.time_step * np.arange(1, found.protocol.longest + 1)
+    return time
+
+
+def _curves(found: Validation) -> dict[str, dict[str, Curve]]:
+    """Of everybody, and of those who come near the vehicle within the longest horizon."""
+    rows = found.found
+    near = rows.near[:, int(np.argmax(rows.horizons))]
+    groups = {EVERYWHERE: np.ones(len(near), dtype=bool), NEAR: near}
+    titles = {
+        EVERYWHERE: "everybody",
+        NEAR: f"within {found.protocol.near:g} m of the vehicle",
+    }
+    return {
+        titles[group]: {name: _curve(found, p, mask) for p, name in enumerate(rows.names)}
+        for group, mask in groups.items()
+        if mask.any()
+    }
+
+
+def _curve(found: Validation, predictor: int, mask: NDArray[np.bool_]) -> Curve:
+    rows = found.found
+    points = []
+    for error in rows.error[predictor].T:
+        total, count = rows.per_clip(error, mask & ~np.isnan(error))
+        mean = total.sum() / count.sum() if count.any() else np.nan
+        points.append((mean, *found.draws.interval(total, count)))
+    mean, low, high = np.array(points).T
+    return Curve(mean, low, high)
+
+
+def _tracks(found: Validation, parameters: VciParameters) -> Figure:
+    """The window in which most people come near a vehicle; of these, where one comes nearest."""
+    window = max(found.cut, key=lambda w: _interest(w, found.protocol.near))
+    steps, longest = found.protocol.time_step, found.protocol.longest
+    by = predictors(parameters, steps, longest)
+    shown = [name for name in (VCI, NO_VEHICLE, CV) if name in by]
+    start = window.position[None]
+    ahead = {name: np.concatenate([start, by[name](window)]) for name in shown}
+    clip = found.clips[window.clip]
+    bodies = []
+    for k in (0, longest // 2, longest - 1) if window.vehicles.shape[1] else ():
+        x, y, heading, _, front, rear, width = window.vehicles[k, 0]
+        bodies.append(Body(x, y, heading, front, rear, width))
+    return tracks_figure(
+        np.concatenate([start, window.observed]),
+        ahead,
+        bodies,
+        f"{clip.name}, {longest * steps:.1f} s from frame {clip.first_frame + window.frame}",
+    )
+
+
+def _interest(window: Window, near: float) -> tuple[int, int, float]:
+    distance = np.nan_to_num(window.distance, nan=np.inf)
+    whole = int((~np.isnan(window.observed[-1, :, 0])).sum())
+    return int((distance.min(axis=0) <= near).sum()), whole, -float(distance.min())
+
+
+def _places(found: Validation) -> Figure:
+    """At the horizon in the middle: 2 s of 0.75, 2 and 4."""
+    rows, protocol = found.found, found.protocol
+    k = len(rows.horizons) // 2
+    errors = {name: rows.fde[rows.names.index(name), :, k] for name in (VCI, OWN_PACE, CV)}
+    body = Body(0.0, 0.0, 0.0, protocol.front, protocol.rear, protocol.width)
+    seconds = rows.horizons[k] * protocol.time_step
+    title = f"Where errors are made: {seconds:.2g} s ahead, by place at the start"
+    return places_figure(rows.place, errors, body, title)
