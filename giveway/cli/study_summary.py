@@ -10,6 +10,7 @@ from rich.markup import escape
 from rich.padding import Padding
 from rich.table import Table
 
+from giveway.cli.study_levels import print_levels
 from giveway.studies.design import label_of
 from giveway.studies.statistics import metric, precise_enough
 
@@ -70,7 +71,7 @@ def _trial(seconds: float) -> str:
 def print_summary(
     console: Console, study: StudyFolder, *, made: int, elapsed: float, workers: int | None
 ) -> None:
-    """The comparison's main rows, failures, and where everything is.
+    """The main rows of what the study shows, failures, and where everything is.
 
     Args:
         console: to print on.
@@ -81,6 +82,8 @@ def print_summary(
     """
     if study.definition.reference:
         _print_reference(console, study)
+    elif study.definition.table == "levels":
+        print_levels(console, study)
     else:
         print_comparison(console, study)
     _print_precision(console, study)

@@ -23,6 +23,7 @@ from giveway.reports.beside import published_frame, published_table
 from giveway.reports.choice import example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
 from giveway.reports.examples import TITLES, example_pictures
+from giveway.reports.levels import levels_section
 from giveway.reports.pictures import Picture, study_pictures
 from giveway.reports.study import contexts
 from giveway.reports.wording import pretty_unit
@@ -186,6 +187,7 @@ def _content(study: Study, extremes: Sequence[WorstRun], replays: dict[str, str]
         "published": None if published is None else published_table(published),
         "glance": glance if glance is not None and glance.rows else None,
         "comparison": tables.comparison_table(study) if some else None,
+        "levels": levels_section(study),
         "situations": tables.situations_table(study) if len(study.situations) else None,
         "cells": tables.cells_table(study),
         "worst": tables.worst_tables(extremes, replays),

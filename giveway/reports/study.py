@@ -44,6 +44,14 @@ class Study(Protocol):
         """One row per context, ego, treatment, situation and metric."""
 
     @property
+    def levels(self) -> pd.DataFrame:
+        """One row per cell, ego and metric."""
+
+    @property
+    def computing(self) -> pd.DataFrame:
+        """One row per cell: what runs and control steps took."""
+
+    @property
     def situations(self) -> pd.DataFrame:
         """One row per context, ego and treatment."""
 

@@ -70,6 +70,10 @@ class StudyDefinition(Section):
     reference: Literal["", "yang2019"] = Field(
         "", description="published numbers that the report shows beside its own"
     )
+    table: Literal["differences", "levels"] = Field(
+        "differences",
+        description="what is shown first: differences to the baseline, or each level's own numbers",
+    )
     folder: str = Field("", description="of relative file names; none: the study file's own")
     run: dict[str, Any] = Field(
         default_factory=dict, description="settings of every run, as in a run's TOML file"

@@ -12,6 +12,7 @@ from giveway.errors import ConfigError
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.studies.statistics.columns import (
     COMPARISON_COLUMNS,
+    LEVEL_COLUMNS,
     PRECISION_COLUMNS,
     SITUATION_COLUMNS,
     TABLE_2_COLUMNS,
@@ -20,11 +21,12 @@ from giveway.studies.statistics.columns import (
 if TYPE_CHECKING:
     from giveway.studies.definition import StudyDefinition
 
-_RESERVED = frozenset({"run", "cell", "seed", "ego", "ending", "runs", "failed"}) | {
+_RESERVED = frozenset({"run", "cell", "seed", "ego", "ending", "runs", "failed", "seconds"}) | {
     column.name
     for columns in (
         SUMMARY_FIELDS,
         COMPARISON_COLUMNS,
+        LEVEL_COLUMNS,
         SITUATION_COLUMNS,
         PRECISION_COLUMNS,
         TABLE_2_COLUMNS,

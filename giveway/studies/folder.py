@@ -17,6 +17,7 @@ from giveway.studies.definition import StudyDefinition, parse_definition
 from giveway.studies.design import Cell, Design, design
 from giveway.studies.frames import (
     cells_frame,
+    computing_frame,
     execution_frame,
     failures_frame,
     runs_columns,
@@ -24,7 +25,12 @@ from giveway.studies.frames import (
 )
 from giveway.studies.identity import run_key
 from giveway.studies.record import run_id
-from giveway.studies.statistics import COMPARISON_COLUMNS, compare, situations
+from giveway.studies.statistics import (
+    COMPARISON_COLUMNS,
+    compare,
+    levels,
+    situations,
+)
 from giveway.studies.store import RecordStore
 
 if TYPE_CHECKING:
@@ -122,10 +128,24 @@ class StudyFolder:
     @cached_property
     def cells(self) -> pd.DataFrame:
         """One row per cell."""
+        return cells_frame(self.design.cells, self._by_cell)
+
+    @cached_property
+    def levels(self) -> pd.DataFrame:
+        """Every level's own means: one row per cell, ego and metric."""
+        return levels(self.runs, self.design, self.definition.comparison)
+
+    @cached_property
+    def computing(self) -> pd.DataFrame:
+        """What runs and control steps took: one row per cell."""
+        return computing_frame(self.design.cells, self._by_cell)
+
+    @cached_property
+    def _by_cell(self) -> dict[int, list[RunRecord]]:
         by_cell: defaultdict[int, list[RunRecord]] = defaultdict(list)
         for cell, _, record in self.records:
             by_cell[cell.number].append(record)
-        return cells_frame(self.design.cells, by_cell)
+        return by_cell
 
     @cached_property
     def comparison(self) -> pd.DataFrame:

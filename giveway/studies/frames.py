@@ -35,6 +35,11 @@ EXECUTION_COLUMNS = (
     Column("control_median", "number", "ms", "of one control step: prediction and controller"),
     Column("control_max", "number", "ms", "the longest control step but the first"),
 )
+COMPUTING_COLUMNS = (
+    Column("seconds", "number", "s", "median wall clock of the cell's runs"),
+    Column("control_median", "number", "ms", "median of the runs' median control steps"),
+    Column("control_max", "number", "ms", "the longest control step of any of the runs"),
+)
 FAILURE_COLUMNS = (
     Column("run", "string", None, "id of the run"),
     Column("cell", "integer", None, "number of the cell"),
@@ -124,10 +129,34 @@ def cells_frame(cells: Iterable[Cell], records: Mapping[int, list[RunRecord]]) -
 
 
 def execution_frame(records: Iterable[RunRecord]) -> pd.DataFrame:
-    """``execution.csv``: how each run was computed; the one table that differs between studies."""
+    """``execution.csv``: how each run was computed; differs between equal studies."""
     names = [column.name for column in EXECUTION_COLUMNS]
     rows = [{"run": record.run, **asdict(record.computing)} for record in records]
     return pd.DataFrame(rows, columns=names)
+
+
+def computing_frame(cells: Iterable[Cell], records: Mapping[int, list[RunRecord]]) -> pd.DataFrame:
+    """``computing.csv``: what the runs of each cell took; differs between equal studies.
+
+    Args:
+        cells: of the design.
+        records: by the cell's number; those without a result are left out.
+    """
+    rows = []
+    for cell in cells:
+        made = [record for record in records.get(cell.number, []) if not record.failed]
+        times = pd.DataFrame([asdict(record.computing) for record in made])
+        row = {"cell": cell.number, **{name: level.value for name, level in cell.levels.items()}}
+        if made:
+            row |= {
+                "seconds": times["seconds"].median(),
+                "control_median": times["control_median"].median(),
+                "control_max": times["control_max"].max(),
+            }
+        rows.append(row | {"runs": len(made)})
+    factors = [name for cell in cells for name in cell.levels]
+    names = ["cell", *dict.fromkeys(factors), "runs", *(c.name for c in COMPUTING_COLUMNS)]
+    return pd.DataFrame(rows, columns=names).astype({c.name: float for c in COMPUTING_COLUMNS})
 
 
 def failures_frame(records: Iterable[tuple[Cell, int, RunRecord]], command: str) -> pd.DataFrame:

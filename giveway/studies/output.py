@@ -9,7 +9,13 @@ import numpy as np
 
 from giveway.results import package_of
 from giveway.schema import Column
-from giveway.studies.frames import EXECUTION_COLUMNS, FAILURE_COLUMNS, runs_columns, written
+from giveway.studies.frames import (
+    COMPUTING_COLUMNS,
+    EXECUTION_COLUMNS,
+    FAILURE_COLUMNS,
+    runs_columns,
+    written,
+)
 from giveway.studies.whole_files import write_whole
 
 if TYPE_CHECKING:
@@ -19,9 +25,18 @@ if TYPE_CHECKING:
 
     from giveway.studies.folder import StudyFolder
 
-TABLES = ("runs", "cells", "comparison", "situations", "execution", "failures")
+TABLES = (
+    "runs",
+    "cells",
+    "levels",
+    "comparison",
+    "situations",
+    "execution",
+    "computing",
+    "failures",
+)
 PACKAGE = "datapackage.json"
-_LONG = frozenset({"comparison", "situations"})  # these take their time
+_LONG = frozenset({"comparison", "levels", "situations"})  # these take their time
 _DECIMALS = 6
 _SIGNIFICANT = frozenset({"p_value", "q_value"})  # of these the first six digits count
 _TYPES: dict[str, Any] = {"b": "boolean", "i": "integer", "f": "number"}
@@ -59,7 +74,7 @@ def _columns(study: StudyFolder, name: str) -> Sequence[Column]:
         return FAILURE_COLUMNS
     frame: pd.DataFrame = getattr(study, name)
     known = {column.name: column for column in runs_columns(study.design)}
-    described = _described()
+    described = _described(name)
     return [
         described.get(column)
         or known.get(column)
@@ -68,14 +83,19 @@ def _columns(study: StudyFolder, name: str) -> Sequence[Column]:
     ]
 
 
-def _described() -> dict[str, Column]:
-    from giveway.studies.statistics import COMPARISON_COLUMNS, SITUATION_COLUMNS
+def _described(name: str) -> dict[str, Column]:
+    from giveway.studies.statistics import COMPARISON_COLUMNS, LEVEL_COLUMNS, SITUATION_COLUMNS
+
+    if name == "levels":
+        return {c.name: c for c in LEVEL_COLUMNS}
 
     counts = (
         Column("runs", "integer", None, "runs of the cell that are there"),
         Column("failed", "integer", None, "of these without a result"),
     )
-    return {c.name: c for c in (*counts, *COMPARISON_COLUMNS, *SITUATION_COLUMNS)}
+    return {
+        c.name: c for c in (*counts, *COMPUTING_COLUMNS, *COMPARISON_COLUMNS, *SITUATION_COLUMNS)
+    }
 
 
 def _rounded(frame: pd.DataFrame) -> pd.DataFrame:

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from giveway.studies.statistics.columns import (
     COMPARISON_COLUMNS,
+    LEVEL_COLUMNS,
     PRECISION_COLUMNS,
     SITUATION_COLUMNS,
     TABLE_2_COLUMNS,
 )
 from giveway.studies.statistics.comparing import compare
+from giveway.studies.statistics.levels import levels
 from giveway.studies.statistics.metrics import METRICS, Metric, metric
 from giveway.studies.statistics.sequential import looks, precise_enough
 from giveway.studies.statistics.situations import SITUATIONS, situations
@@ -19,6 +21,7 @@ from giveway.studies.statistics.yang2019 import PUBLISHED, table2
 
 __all__ = [
     "COMPARISON_COLUMNS",
+    "LEVEL_COLUMNS",
     "METRICS",
     "PRECISION_COLUMNS",
     "PUBLISHED",
@@ -27,6 +30,7 @@ __all__ = [
     "TABLE_2_COLUMNS",
     "Metric",
     "compare",
+    "levels",
     "looks",
     "metric",
     "precise_enough",

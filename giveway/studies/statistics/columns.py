@@ -45,6 +45,20 @@ SITUATION_COLUMNS = (
     Column("incomplete", "integer", None, "pairs, not lost, of which a side missed its goal"),
 )
 
+LEVEL_COLUMNS = (
+    Column("ego", "string", None, "SUMO id of the ego; empty: the run has none"),
+    Column("metric", "string", None, "the summary's column whose mean this is"),
+    Column("unit", "string", None, "of the mean, the interval and the extremes"),
+    Column("runs", "integer", None, "runs of the cell with a result"),
+    Column("n", "integer", None, "of these with a number in this metric"),
+    Column("mean", "number", None, "mean of the n numbers"),
+    Column("ci_low", "number", None, "lower end of the mean's interval"),
+    Column("ci_high", "number", None, "upper end of the mean's interval"),
+    Column("smallest", "number", None, "of the n numbers"),
+    Column("largest", "number", None, "of the n numbers"),
+    Column("interval", "string", None, "how it was made: BCa, percentile, constant; empty: none"),
+)
+
 PRECISION_COLUMNS = (
     *_WHO,
     _SITUATION,

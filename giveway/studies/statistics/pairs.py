@@ -96,8 +96,8 @@ def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterat
     """
     factor = design.factor(comparison.factor)
     baseline = _baseline(factor, comparison)
-    by_cell = dict(iter(_clean(runs).groupby("cell")))
-    nothing = _clean(runs.iloc[:0])
+    by_cell = dict(iter(cleaned(runs).groupby("cell")))
+    nothing = cleaned(runs.iloc[:0])
     for cells in _contexts(design, factor):
         tables = {label: by_cell.get(cell.number, nothing) for label, cell in cells.items()}
         if baseline.label not in tables:
@@ -139,29 +139,30 @@ def _contexts(design: Design, factor: Factor) -> list[dict[str, Cell]]:
     return list(found.values())
 
 
-def _clean(runs: pd.DataFrame) -> pd.DataFrame:
+def cleaned(runs: pd.DataFrame) -> pd.DataFrame:
     """The columns that matter, whatever a CSV reader or an empty table made of their types."""
     frame = runs.reindex(columns=["cell", "seed", "ego", "ending", *_NAMES])
     frame["ego"] = frame["ego"].fillna("").astype(str)
     for name in _NAMES:
         values = pd.to_numeric(frame[name], errors="coerce").to_numpy(np.float64, na_value=np.nan)
         frame[name] = np.where(np.isfinite(values), values, np.nan)
-    frame.loc[_without_result(frame), list(_NAMES)] = np.nan
+    frame.loc[without_result(frame), list(_NAMES)] = np.nan
     return frame.sort_values(["cell", "seed", "ego"], kind="stable")
 
 
-def _without_result(frame: pd.DataFrame) -> pd.Series[bool]:
+def without_result(frame: pd.DataFrame) -> pd.Series[bool]:
+    """Which rows (n,) are those of runs that failed or crashed."""
     return frame["ending"].isin([FAILED, CRASHED])
 
 
 def _egos(tables: dict[str, pd.DataFrame]) -> list[str]:
     """The egos of a context; without any run that has a result there is the nameless one."""
-    names = {str(ego) for table in tables.values() for ego in table["ego"][~_without_result(table)]}
+    names = {str(ego) for table in tables.values() for ego in table["ego"][~without_result(table)]}
     return sorted(names) or [""]
 
 
 def _side(table: pd.DataFrame, ego: str) -> _Side:
-    rows = table[(table["ego"] == ego) | _without_result(table)]
+    rows = table[(table["ego"] == ego) | without_result(table)]
     rows = rows.drop_duplicates("seed")
     seeds = rows["seed"].to_numpy(np.int64)
     return _Side(seeds, rows[list(_NAMES)].to_numpy(np.float64))

@@ -1,0 +1,75 @@
+"""Every level's own numbers: the mean of each metric over the runs of each cell."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from giveway.studies.statistics.bootstrap import mean_interval, seed_of
+from giveway.studies.statistics.columns import LEVEL_COLUMNS
+from giveway.studies.statistics.metrics import METRICS
+from giveway.studies.statistics.pairs import cleaned, without_result
+from giveway.studies.statistics.rounding import mean, tabulated
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.studies.definition import Comparison
+    from giveway.studies.design import Cell, Design
+
+    Array = NDArray[np.float64]
+
+
+def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:
+    """The mean of every metric in every cell, with its interval: ``levels.csv``.
+
+    Unlike a difference, a level's mean holds all that makes some crowds harder than others: its
+    interval is wider, and two that overlap may still differ surely, pair by pair.
+
+    Args:
+        runs: a row per run and ego, as ``runs.csv``.
+        design: of the study.
+        comparison: how sure the intervals are; fewer runs than ``minimum_pairs`` have none.
+
+    Returns:
+        A row per cell, ego and metric, in this order: the factors, then ``LEVEL_COLUMNS``. A cell
+        without any result has no row.
+    """
+    frame = cleaned(runs)
+    frame = frame[~without_result(frame)]
+    tables = dict(iter(frame.groupby(["cell", "ego"])))
+    rows = [
+        _row(cell, str(ego), metric.name, table[metric.name].to_numpy(np.float64), comparison)
+        | {"unit": metric.unit}
+        for cell in design.cells
+        for (number, ego), table in tables.items()
+        if number == cell.number
+        for metric in METRICS
+    ]
+    names = [factor.name for factor in design.factors]
+    frame = pd.DataFrame(rows, columns=[*names, *(column.name for column in LEVEL_COLUMNS)])
+    numbers = [column.name for column in LEVEL_COLUMNS if column.type == "number"]
+    frame[numbers] = frame[numbers].astype(np.float64)
+    return tabulated(frame, numbers)
+
+
+def _row(
+    cell: Cell, ego: str, name: str, values: Array, comparison: Comparison
+) -> dict[str, object]:
+    known = values[np.isfinite(values)]
+    row: dict[str, object] = {factor: level.value for factor, level in cell.levels.items()}
+    row |= {"ego": ego, "metric": name, "runs": values.size, "n": known.size, "interval": ""}
+    if not known.size:
+        return row
+    row |= {"mean": mean(known), "smallest": known.min(), "largest": known.max()}
+    if known.size < comparison.minimum_pairs:
+        return row
+    between = mean_interval(
+        known,
+        confidence=comparison.confidence,
+        resamples=comparison.resamples,
+        seed=seed_of((cell.label, ego, name)),
+    )
+    return row | {"ci_low": between.low, "ci_high": between.high, "interval": between.method}
