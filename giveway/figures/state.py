@@ -35,8 +35,9 @@ if TYPE_CHECKING:
 
 VEHICLE: dict[str, Any] = {"color": GREY, "linewidth": 1.2, "label": "distance to vehicle"}
 RED_LIGHT: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "label": "distance to red light"}
-SHADES = {"mpc": (SKY_BLUE, 0.14), "pid": (ORANGE, 0.28)}  # colour, opacity of a phase
-NAMES = {"mpc": "MPC acts", "pid": "PID acts"}
+# Colour and opacity of a phase.
+SHADES = {"mpc": (SKY_BLUE, 0.14), "pid": (ORANGE, 0.28), "safety": (PURPLE, 0.40)}
+NAMES = {"mpc": "MPC acts", "pid": "PID acts", "safety": "safety layer acts"}
 OTHERS_SHOWN = 40.0  # [m] of the distance to a vehicle or a light is shown at least
 SINGLE_INSTANT = 0.5  # [s] shown to either side of a run of one instant
 

@@ -26,6 +26,10 @@ _REASONS = {
     "selected": "this run is driven by the PID alone",
     "infeasible": "no plan keeps all constraints",
 }
+_SAFETY = {
+    "safety layer": "the safety layer brakes: a stop must stay possible",
+    "unavoidable": "the safety layer brakes: no braking is surely enough",
+}
 
 
 def why(reason: str, status: str) -> dict[str, Any]:
@@ -36,7 +40,7 @@ def why(reason: str, status: str) -> dict[str, Any]:
         status: the solver's.
     """
     infeasible = reason.startswith("infeasible") or status.startswith("infeasible")
-    text = _INFEASIBLE.get(status) or _REASONS.get(reason)
+    text = _SAFETY.get(reason) or _INFEASIBLE.get(status) or _REASONS.get(reason)
     if text is None:
         text = f"the plan was rejected ({reason})" if reason.startswith("solver") else reason
     return {"text": text, "infeasible": infeasible}
@@ -57,12 +61,11 @@ def events(rows: pd.DataFrame, people: pd.DataFrame, config: RunConfig) -> list[
     found = []
     for start, end in _phases(rows["speed"].to_numpy() < config.record.stop_speed, time):
         found.append(_event("stop", start, end, f"stands for {end - start:.1f} s"))
-    if config.optimises:
-        acting = rows["controller"].to_numpy() == "pid"
-        for start, end in _phases(acting, time):
+    for acting in ("pid", "safety") if config.optimises else ("safety",):
+        for start, end in _phases(rows["controller"].to_numpy() == acting, time):
             at = int(np.searchsorted(time, start))
             told = why(str(rows["reason"].iloc[at]), str(rows["solver_status"].iloc[at]))
-            found.append(_event("pid", start, end, told["text"]))
+            found.append(_event(acting, start, end, told["text"]))
     found += _encounters(people)
     return sorted(found, key=lambda event: (event["from"], event["to"], event["kind"]))
 

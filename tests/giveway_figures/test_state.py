@@ -72,12 +72,13 @@ def test_every_panel_is_shaded_where_each_controller_acted(run):
         ("pppp", [("pid", 0.0, 3.0)]),
         ("mppm", [("mpc", 0.0, 1.0), ("pid", 1.0, 3.0)]),  # the last command is not carried out
         ("mpmm", [("mpc", 0.0, 1.0), ("pid", 1.0, 2.0), ("mpc", 2.0, 3.0)]),
+        ("psp", [("pid", 0.0, 1.0), ("safety", 1.0, 2.0)]),
         ("p", [("pid", -0.5, 0.5)]),  # one instant fills the picture
     ],
 )
 def test_phases(run, acting, expected):
     ego = first(run(0, 1, "pid")[0], len(acting))
-    names = np.array([{"m": "mpc", "p": "pid"}[letter] for letter in acting])
+    names = np.array([{"m": "mpc", "p": "pid", "s": "safety"}[letter] for letter in acting])
     assert phases(replace(ego, time=np.arange(float(len(acting))), acting=names)) == expected
 
 
@@ -91,6 +92,9 @@ def test_the_legend_names_who_acted_and_nobody_else(run):
     curves = {"speed", "reference speed", "gap", "force"}
     assert legend(mpc) == curves | {"MPC acts", "PID acts"}
     assert legend(pid) == curves | {"PID acts"}
+    guarded = pid.acting.astype("U6")
+    guarded[5:9] = "safety"
+    assert legend(replace(pid, acting=guarded)) == curves | {"PID acts", "safety layer acts"}
 
 
 def test_runs_side_by_side_share_their_scales(run):

@@ -200,6 +200,27 @@ def test_events_are_stops_fallbacks_and_encounters(recorded: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize("controller", ["pid-tuned", "mpc-paper"])
+def test_the_safety_layers_braking_is_an_event_whoever_drives(controller: str) -> None:
+    from giveway.config import RunConfig
+
+    acting = ["pid", "safety", "safety", "pid", "safety", "safety"]
+    rows = pd.DataFrame(
+        {
+            "time": np.arange(6) * 0.5,
+            "speed": 1.0,
+            "controller": acting,
+            "reason": ["", *2 * ["safety layer"], "", *2 * ["unavoidable"]],
+            "solver_status": "infeasible: too close",
+        }
+    )
+    found = events(rows, pd.DataFrame(), RunConfig(controller=controller))
+    assert [(e["from"], e["to"], e["text"]) for e in found if e["kind"] == "safety"] == [
+        (0.5, 1.5, "the safety layer brakes: a stop must stay possible"),
+        (2.0, 2.5, "the safety layer brakes: no braking is surely enough"),
+    ]
+
+
 def test_the_command_makes_the_run_again_for_its_predictions(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

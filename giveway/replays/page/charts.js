@@ -157,7 +157,7 @@ function shadePhases(g, ego, top, height) {
     let end = i + 1;
     const acting = ego.kinds[ego.kind[i]].acting;
     while (end + 1 < ego.count && ego.kinds[ego.kind[end]].acting === acting) end++;
-    g.globalAlpha = acting === "pid" ? 0.22 : 0.1;
+    g.globalAlpha = acting === "mpc" ? 0.1 : 0.22;
     g.fillStyle = colours[acting] ?? colours.mpc;
     g.fillRect(timeX(ego.time(i)), top, timeX(ego.time(end)) - timeX(ego.time(i)), height);
     i = end - 1;
@@ -184,14 +184,16 @@ function drawTimeAxis(g, y) {
   }
 }
 
-const EVENT_COLOURS = { stop: "stop", pid: "pid", overlap: "overlap", closest: "inside" };
+const EVENT_COLOURS = {
+  stop: "stop", pid: "pid", safety: "safety", overlap: "overlap", closest: "inside",
+};
 
 function drawEvents(g, ego) {
   for (const event of ego.events) {
     const [from, to] = [timeX(event.from), timeX(event.to)];
     g.fillStyle = colours[EVENT_COLOURS[event.kind]];
     if (event.kind === "stop") g.fillRect(from, 10, Math.max(to - from, 2), 5);
-    else if (event.kind === "pid") g.fillRect(from, 4, Math.max(to - from, 2), 4);
+    else if (event.kind === "pid" || event.kind === "safety") g.fillRect(from, 4, Math.max(to - from, 2), 4);
     else {
       g.beginPath();
       g.moveTo(from, EVENT_STRIP + 1);

@@ -54,7 +54,9 @@ function writePerson(person, states) {
   write("person-closest", closest === undefined ? "–" : readable(closest, 2, "m"));
 }
 
-const EVENT_NAMES = { stop: "Stop", pid: "PID", overlap: "Overlap", closest: "Closest" };
+const EVENT_NAMES = {
+  stop: "Stop", pid: "PID", safety: "Safety", overlap: "Overlap", closest: "Closest",
+};
 
 /** What changes only with the ego that is looked at. */
 function writeEgo() {

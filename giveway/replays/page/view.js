@@ -99,8 +99,9 @@ let colours = {};
 function readColours() {
   const style = getComputedStyle(document.documentElement);
   const names = [
-    "ground", "road", "kerb", "ink", "quiet", "line", "mpc", "pid", "person", "close", "inside",
-    "prediction", "influence", "car", "corridor", "safe", "speed", "gap", "stop", "overlap", "panel",
+    "ground", "road", "kerb", "ink", "quiet", "line", "mpc", "pid", "safety", "person", "close",
+    "inside", "prediction", "influence", "car", "corridor", "safe", "speed", "gap", "stop", "overlap",
+    "panel",
   ];
   colours = Object.fromEntries(
     names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]),
