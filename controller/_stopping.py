@@ -33,8 +33,9 @@ class Limits(NamedTuple):
     walking_acceleration: float  # a_max [m/s^2]
     walking_speed: float  # v_max [m/s]
     half_width: float  # of the ego [m]
-    clearance: float  # [m] between the front and a person's centre
-    behind: float  # [m] behind the front somebody still counts as being before it
+    body_radius: float  # R [m]
+    margin: float  # [m]
+    position_error: float  # [m]
 
 
 @kernel
@@ -76,7 +77,7 @@ def _pose(way: Array, spacing: float, travel: float) -> tuple[float, float, floa
 def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box: Array) -> None:
     """Fill ``box`` with the rectangle that holds the front from ``low`` to ``high`` of travel [m].
 
-    Columns: x, y, cos, sin of its frame; its extent along and across [m].
+    Columns: x, y, cos, sin of its frame; its extent along and across [m]; the next is not its.
     """
     if way.shape[0] == 1:
         box[0], box[1], box[2], box[3] = way[0, 0], way[0, 1], way[0, 2], way[0, 3]
@@ -92,6 +93,27 @@ def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box
             along, across = d_x * cos + d_y * sin, d_y * cos - d_x * sin
             box[4], box[5] = min(box[4], along), max(box[5], along)
             box[6], box[7] = min(box[6], across), max(box[7], across)
+
+
+@kernel
+def _clearance(travel: float, c: Limits) -> float:
+    """What keeps a centre from the front at both ends of a step, so that in between it is R [m].
+
+    Relative to the front the centre moves by L at most, on a line but for a_max dt^2/8; a chord of
+    length L between two points outside a circle of radius r comes within sqrt(r^2 - L^2/4).
+    """
+    L = travel + c.walking_speed * c.time_step
+    between = sqrt(c.body_radius * c.body_radius + 0.25 * L * L)
+    between += 0.125 * c.walking_acceleration * c.time_step * c.time_step
+    return max(c.body_radius + c.margin, between) + c.position_error
+
+
+@kernel
+def _least_travel(speed: float, after: float, dt: float) -> float:
+    """What a braking step covers at least [m]: no solution slows down faster than at its start."""
+    if after >= 0.0:
+        return 0.5 * dt * (speed + after)
+    return 0.5 * dt * speed * speed / (speed - after)
 
 
 @kernel
@@ -117,58 +139,52 @@ def _stop(
             return j, high
         f = _strongest(j, force, commands, c)
         after = max(0.0, c.slowest_decay * fastest + f * (c.gain if f > 0.0 else c.braking_gain))
-        ahead = high + dt * max(fastest, after)
-        if ahead > high:
-            _sweep(way, spacing, low, ahead, c.half_width, boxes[j])
-        else:
-            boxes[j, 5] = boxes[j, 4] - 1.0  # it stands: an empty box
-        slowest = max(0.0, c.fastest_decay * slowest - c.gain * c.force_limit)
-        low += dt * slowest
-        high, fastest = ahead, after
+        travel = 0.5 * dt * (fastest + max(fastest, after))
+        boxes[j, 8] = -1.0  # it stands: nobody can meet it
+        if travel > 0.0:
+            _sweep(way, spacing, low, high + travel, c.half_width, boxes[j])
+            boxes[j, 8] = _clearance(travel, c)
+        slower = c.fastest_decay * slowest - c.gain * c.force_limit
+        if slowest > 0.0:
+            low += _least_travel(slowest, slower, dt)
+        slowest = max(0.0, slower)
+        high, fastest = high + travel, after
     return -1, high
 
 
 @kernel
-def _touches(box: Array, x: float, y: float, radius: float, clearance: float, c: Limits) -> bool:
+def _touches(box: Array, x: float, y: float, radius: float, slack: float, c: Limits) -> bool:
     """Whether a body whose centre is within ``radius`` of (x, y) may meet the front in its box."""
     d_x, d_y = x - box[0], y - box[1]
     along, across = d_x * box[2] + d_y * box[3], d_y * box[2] - d_x * box[3]
-    if along + radius < box[4] - c.behind:
+    behind = c.walking_speed * c.time_step + c.position_error  # it gets there within the step
+    if along + radius < box[4] - behind:
         return False  # it can only walk into the side
     off = max(box[4] - along, 0.0, along - box[5])
     aside = max(box[6] - across, 0.0, across - box[7])
-    reach = radius + clearance
+    reach = radius + box[8] + slack
     touched: bool = off * off + aside * aside <= reach * reach
     return touched
 
 
 @kernel
 def _may_meet(
-    x: float,
-    y: float,
-    v_x: float,
-    v_y: float,
-    steps: int,
-    clearance: float,
-    c: Limits,
-    boxes: Array,
+    x: float, y: float, v_x: float, v_y: float, steps: int, slack: float, c: Limits, boxes: Array
 ) -> bool:
     """Whether somebody now at (x, y) with velocity (v_x, v_y) can meet the front in any step.
 
     Who accelerates by at most a_max is within a_max t^2/2 of x + v t, and who walks at most at
-    v_max is within v_max t of x; within a step x + v t is within |v| dt/2 of its middle.
+    v_max is within v_max t of x.
     """
-    dt = c.time_step
-    half_step = 0.5 * dt * sqrt(v_x * v_x + v_y * v_y)
     for j in range(steps):
         box = boxes[j]
-        if box[5] < box[4]:
+        if box[8] < 0.0:
             continue
-        t, t_end = (j + 0.5) * dt, (j + 1) * dt
-        accelerated = 0.5 * c.walking_acceleration * t_end * t_end + half_step
-        if not _touches(box, x + v_x * t, y + v_y * t, accelerated, clearance, c):
+        t = (j + 1) * c.time_step
+        accelerated = 0.5 * c.walking_acceleration * t * t
+        if not _touches(box, x + v_x * t, y + v_y * t, accelerated, slack, c):
             continue
-        if _touches(box, x, y, c.walking_speed * t_end, clearance, c):
+        if _touches(box, x, y, c.walking_speed * t, slack, c):
             return True
     return False
 
@@ -184,19 +200,22 @@ def _is_safe(
     c: Limits,
     commands: Array,
     boxes: Array,
-    clearance: float,
+    slack: float,
 ) -> bool:
     """Whether after ``force`` the ego can stop without moving into anybody."""
     steps, travel = _stop(force, speed, way, spacing, c, commands, boxes)
     if steps < 0:
         return False
-    reach = travel + c.half_width + clearance + c.walking_speed * steps * c.time_step
+    widest = 0.0
+    for j in range(steps):
+        widest = max(widest, boxes[j, 8])
+    reach = travel + c.half_width + widest + slack + c.walking_speed * steps * c.time_step
     for i in range(position.shape[0]):
         x, y = position[i, 0], position[i, 1]
         d_x, d_y = x - way[0, 0], y - way[0, 1]
         if d_x * d_x + d_y * d_y > reach * reach:
             continue
-        if _may_meet(x, y, velocity[i, 0], velocity[i, 1], steps, clearance, c, boxes):
+        if _may_meet(x, y, velocity[i, 0], velocity[i, 1], steps, slack, c, boxes):
             return False
     return True
 
@@ -224,23 +243,22 @@ def largest_safe_force(
         velocity: (n, 2) [m/s].
         c: the limits.
         commands: (delay + 1,) [N] the forces of the past, the latest last; changed.
-        boxes: (longest stop, 8) scratch.
+        boxes: (longest stop, 9) scratch.
     """
     v = speed if speed > _STANDSTILL else 0.0
-    wide = c.clearance + _SLACK
     verdict, safe = LETS_THROUGH, force
     if position.shape[0] > 0 and not _is_safe(
-        force, v, way, spacing, position, velocity, c, commands, boxes, wide
+        force, v, way, spacing, position, velocity, c, commands, boxes, _SLACK
     ):
         verdict = ACTS
         safe = max(-c.force_limit, commands[-1] - c.force_rate_limit)
         safe = min(safe, force)
         unsafe = force
-        if not _is_safe(safe, v, way, spacing, position, velocity, c, commands, boxes, c.clearance):
+        if not _is_safe(safe, v, way, spacing, position, velocity, c, commands, boxes, 0.0):
             verdict, unsafe = UNAVOIDABLE, safe
         while unsafe - safe > _RESOLUTION:
             middle = 0.5 * (safe + unsafe)
-            if _is_safe(middle, v, way, spacing, position, velocity, c, commands, boxes, wide):
+            if _is_safe(middle, v, way, spacing, position, velocity, c, commands, boxes, _SLACK):
                 safe = middle
             else:
                 unsafe = middle

@@ -42,7 +42,7 @@ class SafetyParameters:
     walking_speed: float = 2.5  # v_max [m/s] of the VCI model (TSAS 2020)
     body_radius: float = 0.27  # R [m] of the VCI model (TSAS 2020)
     width: float = 2.0  # of the ego [m] (Yang & Özgüner 2019)
-    margin: float = 0.1  # [m] kept between the front and a body (ours)
+    margin: float = 0.05  # [m] kept between the front and a body (ours)
     position_error: float = 0.0  # [m] that a perceived position is off at most
     force_limit: float = 8000.0  # u_max [N] (Yang & Özgüner 2019, table 1)
     force_rate_limit: float = inf  # [N per step] of the layer's own braking (ours: none)
@@ -96,10 +96,11 @@ class SafetyLayer:
             walking_acceleration=p.walking_acceleration,
             walking_speed=p.walking_speed,
             half_width=p.width / 2.0,
-            clearance=p.body_radius + p.margin + p.position_error,
-            behind=p.margin + p.position_error,
+            body_radius=p.body_radius,
+            margin=p.margin,
+            position_error=p.position_error,
         )
-        self._boxes = np.zeros((ceil(LONGEST_STOP / dt), 8))
+        self._boxes = np.zeros((ceil(LONGEST_STOP / dt), 9))
         delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
         self._commands = np.zeros(1 + max(delay, 0))
 

@@ -87,7 +87,40 @@ class TunedPidConfig(Section):
 class PlannerConfig(Section):
     """The planning MPC (controller = "mpc"); every ingredient is a switch, docs/controllers.md."""
 
-    horizon: float = option(4.0, "s", "how far it plans", gt=0.3, le=10)
+    horizon: float = option(3.0, "s", "how far it plans", ge=0.3, le=10)
+    gap_choice: bool = option(
+        True, None, "search whom to pass before and whom behind; else the plan just keeps d_safe"
+    )
+    soft: bool = option(
+        True, None, "distances give way as far as braking cannot keep them; else the PID takes over"
+    )
+    terminal: bool = option(
+        True, None, "a comfortable stop stays possible at every step of the plan, its end included"
+    )
+    planned_speed: bool = option(
+        True, None, "people are predicted under the planned speeds; else under the present one"
+    )
+    effort_weight: float = option(0.02, "s", "of squared accelerations in the plan", ge=0, le=100)
+    jerk_weight: float = option(0.02, "s^3", "of squared jerks in the plan", ge=0, le=100)
+    conflict_weight: float = option(
+        0.4,
+        None,
+        "seconds of delay that one person-second with less than 1.5 s to a collision is worth",
+        ge=0,
+        le=1e3,
+    )
+    minimum_distance: float = option(
+        1.0, "m", "least distance to a person in front, at standstill", ge=0, le=100
+    )
+    deceleration: float = option(
+        2.0, "m/s^2", "a stop that is no harder stays possible", gt=0, le=10
+    )
+    margin_growth: float = option(
+        0.0, "m/s", "what the corridor grows by per second of look-ahead, on each side", ge=0, le=5
+    )
+    block_growth: float = option(
+        0.25, None, "how the plan's intervals grow from one to the next; 0: not", ge=0, le=2
+    )
 
 
 class SafetyConfig(Section):
@@ -100,7 +133,7 @@ class SafetyConfig(Section):
         flag="--safety",
     )
     margin: float = option(
-        0.1, "m", "kept between the front bumper and whoever may get there", ge=0, le=5
+        0.05, "m", "kept between the front bumper and whoever may get there", ge=0, le=5
     )
     reaction_time: float | None = option(
         None,
