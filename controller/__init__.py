@@ -20,6 +20,13 @@ from controller.parameters import (
     PidParameters,
 )
 from controller.pid import Pid
+from controller.planning import (
+    ManoeuvreParameters,
+    Planner,
+    PlannerParameters,
+    PlanningRegulator,
+    Situation,
+)
 from controller.quadratic_program import QuadraticProgram, quadratic_program
 from controller.regulator import Decision, Observation, Regulator
 from controller.safety import SafeForce, SafetyLayer, SafetyParameters
@@ -34,6 +41,7 @@ __all__ = [
     "ControllerError",
     "Decision",
     "LongitudinalModel",
+    "ManoeuvreParameters",
     "Mpc",
     "MpcParameters",
     "MpcSolution",
@@ -42,12 +50,16 @@ __all__ = [
     "ParameterError",
     "Pid",
     "PidParameters",
+    "Planner",
+    "PlannerParameters",
+    "PlanningRegulator",
     "QuadraticProgram",
     "ReferenceParameters",
     "Regulator",
     "SafeForce",
     "SafetyLayer",
     "SafetyParameters",
+    "Situation",
     "SolverMissingError",
     "SolverSetupError",
     "SpeedReference",

@@ -12,7 +12,7 @@ from controller.solution import Outcome
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from controller.speed_problem import SpeedProblem
+    from controller.osqp_backend import LeastSquares
 
     Array = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ _SOLVED, _INFEASIBLE, _ITERATION_LIMIT = 1, -1, -4
 
 
 class DaqpBackend:
-    """Solves the speed problem by DAQP (Arnström, Bemporad & Axehill 2022).
+    """Solves a least-squares problem by DAQP (Arnström, Bemporad & Axehill 2022).
 
     Raises:
         SolverMissingError: daqp is not installed.
@@ -29,7 +29,7 @@ class DaqpBackend:
 
     name = "daqp"
 
-    def __init__(self, problem: SpeedProblem, iteration_limit: int) -> None:
+    def __init__(self, problem: LeastSquares, iteration_limit: int) -> None:
         try:
             import daqp
         except ImportError as error:

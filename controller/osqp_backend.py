@@ -1,13 +1,13 @@
-"""OSQP: set up once, then only bounds and start are updated. The only file that imports osqp.
+"""OSQP: set up once, then only bounds, target and start change. The only file that imports osqp.
 
-It gets the speed problem in the unknowns v(k+1), v(k+2) - v(k+1), ...: from a cold start it needs a
-seventh of the iterations that the speeds themselves cost it, and they would often not converge.
+It gets the paper's problem in the unknowns v(k+1), v(k+2) - v(k+1), ...: from a cold start it needs
+a seventh of the iterations that the speeds themselves cost it, and they would often not converge.
 """
 
 from __future__ import annotations
 
 import signal
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import osqp
@@ -19,9 +19,25 @@ from controller.solution import Outcome
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from controller.speed_problem import SpeedProblem
-
     Array = NDArray[np.float64]
+
+
+class LeastSquares(Protocol):
+    """min |x - target|^2 subject to lower <= rows x <= upper.
+
+    Attributes:
+        rows: (m, n), constant.
+        target: (n,); changes from step to step, as the bounds do.
+        lower, upper: (m,); infinite where there is none.
+        increments: whether the solver is to get x_1, x_2 - x_1, ... instead of x.
+    """
+
+    rows: Array
+    target: Array
+    lower: Array
+    upper: Array
+    increments: bool
+
 
 _INFINITY = 1e30  # OSQP's
 _STATUS = {
@@ -34,7 +50,7 @@ _STATUS = {
 
 
 class OsqpBackend:
-    """Solves the speed problem by OSQP (Stellato et al. 2020), warm-started.
+    """Solves a least-squares problem by OSQP (Stellato et al. 2020), warm-started.
 
     Nothing depends on a clock: no time limit, and the step size adapts every 50 iterations.
 
@@ -44,11 +60,12 @@ class OsqpBackend:
 
     name = "osqp"
 
-    def __init__(self, problem: SpeedProblem, iteration_limit: int) -> None:
+    def __init__(self, problem: LeastSquares, iteration_limit: int) -> None:
         self._problem = problem
         count, N = problem.rows.shape
-        self._sums = sums = np.tril(np.ones((N, N)))  # V = sums dV
-        self._aimed_at = problem.target[0]
+        increments = problem.increments
+        self._sums = sums = np.tril(np.ones((N, N))) if increments else np.eye(N)  # x = sums dx
+        self._aimed_at = problem.target.copy()
         solver = osqp.OSQP(algebra="builtin")
         try:
             solver.setup(
@@ -74,7 +91,7 @@ class OsqpBackend:
         self._start = np.empty(N)
 
     def _gradient(self, target: Array) -> Array:
-        """The linear cost of |V - V_r|^2 in the unknowns dV."""
+        """The linear cost of |x - target|^2 in the solver's unknowns."""
         return np.asarray(-2.0 * self._sums.T @ target)
 
     def solve(self, speeds: Array, multipliers: Array) -> tuple[Outcome, int]:
@@ -91,12 +108,13 @@ class OsqpBackend:
         np.maximum(self._problem.lower, -_INFINITY, out=self._lower)
         np.minimum(self._problem.upper, _INFINITY, out=self._upper)
         q = None
-        if self._problem.target[0] != self._aimed_at:
-            self._aimed_at = self._problem.target[0]
+        if not np.array_equal(self._problem.target, self._aimed_at):
+            self._aimed_at[:] = self._problem.target
             q = self._gradient(self._problem.target)
         solver.update_data_vec(q=q, l=self._lower, u=self._upper)
-        self._start[0] = speeds[0]
-        np.subtract(speeds[1:], speeds[:-1], out=self._start[1:])
+        self._start[:] = speeds
+        if self._problem.increments:
+            np.subtract(speeds[1:], speeds[:-1], out=self._start[1:])
         solver.warm_start(self._start, multipliers)
         solver.solve()
         if solver.info.status_val == osqp.SolverStatus.OSQP_SIGINT:
@@ -106,6 +124,9 @@ class OsqpBackend:
         if outcome is Outcome.INFEASIBLE:
             multipliers[:] = solver.solution.prim_inf_cert
         else:
-            np.cumsum(solver.solution.x, out=speeds)
+            if self._problem.increments:
+                np.cumsum(solver.solution.x, out=speeds)
+            else:
+                speeds[:] = solver.solution.x
             multipliers[:] = solver.solution.y
         return outcome, int(solver.info.iter)

@@ -50,7 +50,10 @@ class SpeedProblem:
         target: (N,) V_r [m/s]; the caller may change it between two solves.
         lower, upper: (4N - 4,), filled by :meth:`update`.
         limits: (8,) dt, decay, dt/M, d_safe, v_min, v_max, u_max, du_max.
+        increments: OSQP gets v(k+1), v(k+2) - v(k+1), ...
     """
+
+    increments = True
 
     def __init__(self, model: LongitudinalModel, parameters: MpcParameters) -> None:
         N = parameters.horizon

@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING
 from controller import (
     ControllerError,
     LongitudinalModel,
+    ManoeuvreParameters,
     Mpc,
     MpcParameters,
     Pid,
     PidParameters,
+    Planner,
+    PlannerParameters,
+    PlanningRegulator,
     ReferenceParameters,
     Regulator,
     SafetyParameters,
@@ -34,7 +38,7 @@ if TYPE_CHECKING:
 _WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut at two in x and in y
 
 
-def make_regulator(config: RunConfig, time_step: float) -> Regulator:
+def make_regulator(config: RunConfig, time_step: float) -> Regulator | PlanningRegulator:
     """The controller of one ego.
 
     Args:
@@ -48,6 +52,8 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator:
     try:
         if config.controller == "pid-tuned":
             return Regulator(None, _tuned_pid(config, time_step))
+        if config.controller == "mpc":
+            return _planning(config, time_step)
         pid = Pid(
             PidParameters(
                 K_p=config.pid.proportional_gain,
@@ -111,8 +117,41 @@ def _tuned_pid(config: RunConfig, time_step: float) -> TunedPid:
     )
 
 
+def _planning(config: RunConfig, time_step: float) -> PlanningRegulator:
+    """The planning MPC, with the tuned PID where a hard corridor leaves it no plan."""
+    regulation, planner, limits = config.regulation, config.planner, config.mpc
+    margin = model_margin(config, time_step)
+    parameters = PlannerParameters(
+        horizon=plan_steps(config, time_step),
+        reference_speed=regulation.reference_speed,
+        safe_distance=regulation.safe_distance + margin,
+        speed_max=limits.speed_max,
+        force_limit=limits.force_limit,
+        force_rate_limit=limits.force_rate_limit,
+        effort_weight=planner.effort_weight,
+        jerk_weight=planner.jerk_weight,
+        block_growth=planner.block_growth,
+        gap_choice=planner.gap_choice,
+        soft=planner.soft,
+        terminal=planner.terminal,
+        solver=limits.solver,
+        manoeuvres=ManoeuvreParameters(
+            deceleration=planner.deceleration,
+            minimum_distance=planner.minimum_distance + margin,
+            conflict_weight=planner.conflict_weight,
+        ),
+    )
+    model = LongitudinalModel(config.vehicle.mass, config.vehicle.friction, time_step)
+    return PlanningRegulator(Planner(model, parameters), _tuned_pid(config, time_step))
+
+
+def plan_steps(config: RunConfig, time_step: float) -> int:
+    """The planner's horizon in steps."""
+    return max(4, round(config.planner.horizon / time_step))
+
+
 def make_driver(
-    config: RunConfig, regulator: Regulator, time_step: float, stack: ExitStack
+    config: RunConfig, regulator: Regulator | PlanningRegulator, time_step: float, stack: ExitStack
 ) -> Driver:
     """One ego's FMU, loaded, with its controller.
 
@@ -132,7 +171,9 @@ def make_driver(
     except FmuError as error:
         raise VehicleError(str(error)) from error
     predictor = None
-    if config.optimises:
+    if isinstance(regulator, PlanningRegulator):
+        predictor = Predictor(expected, time_step, regulator.planner.horizon)
+    elif regulator.mpc is not None:
         predictor = Predictor(expected, time_step, config.mpc.horizon)
     fastest = max(crowd.max_speed, expected.max_speed)
     safety = safety_parameters(config, time_step) if config.safety_layer else None

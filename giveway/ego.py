@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from controller import Observation
+from controller import Observation, PlanningRegulator, Situation
 from fmus import FmuError
 from giveway.corridor import NO_LEADER, Corridor, Leader
 from giveway.errors import ControlError, VehicleError
+from giveway.foresight import CrowdForesight
 from giveway.guard import Guard
 from giveway.perception import Perception
 from giveway.recorder import EgoRow
@@ -49,7 +50,7 @@ class Driver:
     config: RunConfig
     vehicle: Vehicle
     description: dict[str, object]
-    regulator: Regulator
+    regulator: Regulator | PlanningRegulator
     predictor: Predictor | None
     walking_speed_limit: float  # [m/s]
     safety: SafetyParameters | None  # None: nothing watches over the controller
@@ -78,6 +79,8 @@ class Driver:
     @property
     def horizon(self) -> int:
         """Steps that the controller looks ahead."""
+        if isinstance(self.regulator, PlanningRegulator):
+            return self.regulator.planner.horizon
         return self.config.mpc.horizon if self.config.optimises else 1
 
 
@@ -92,6 +95,9 @@ class Seen(NamedTuple):
     whom: NDArray[np.bool_] | None  # of the crowd has been predicted; None: everybody
     closest: float  # station [m] of ``person`` in truth, however it is seen: for the tables
     crowd: Crowd  # the pedestrians as they are seen
+    foresight: (
+        CrowdForesight | None
+    )  # of the planning controller, where somebody may get in the way
 
 
 class Ego:
@@ -143,10 +149,26 @@ class Ego:
         self._perception = Perception(config)
         safety = driver.safety
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
+        self._foresight = self._foresee()
         self._force = 0.0
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
         self._heed_lights = config.regulation.traffic_lights
+
+    def _foresee(self) -> CrowdForesight | None:
+        """What the planning controller asks how people would answer to a manoeuvre."""
+        driver, planner = self.driver, self.config.planner
+        if not isinstance(driver.regulator, PlanningRegulator) or driver.predictor is None:
+            return None
+        return CrowdForesight(
+            driver.predictor,
+            self.path,
+            self.shape,
+            half_width=self.corridor.half_width,
+            growth=planner.margin_growth,
+            conflict_time=driver.regulator.planner.parameters.manoeuvres.conflict_time,
+            planned_speed=planner.planned_speed,
+        )
 
     @property
     def front(self) -> float:
@@ -191,12 +213,16 @@ class Ego:
         person, reachable = corridor.closest_now(crowd.position, front)
         closest = person if crowd is truth else corridor.closest_now(truth.position, front)[0]
         ahead = corridor.nobody
-        predictor, predicted, whom = self.driver.predictor, None, None
+        predictor, predicted, whom, foresight = self.driver.predictor, None, None, None
         if reachable and predictor is not None:
             whom = self._relevant(crowd, speed)
             people = crowd if whom is None else crowd.select(whom)
-            predicted = predictor.predict(people, poses[: predictor.horizon], surroundings)
-            ahead = corridor.closest_predicted(predicted, front, speed)
+            horizon, foresight = poses[: predictor.horizon], self._foresight
+            if foresight is not None:
+                foresight.look(people, surroundings, horizon, row, front, speed)
+            else:
+                predicted = predictor.predict(people, horizon, surroundings)
+                ahead = corridor.closest_predicted(predicted, front, speed)
         leader, stop = NO_LEADER, math.inf
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
@@ -206,7 +232,7 @@ class Ego:
             if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
                 allowed = stop + _BEYOND + self._origin
                 ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
-        return Seen(person, leader, stop, ahead, predicted, whom, closest, crowd)
+        return Seen(person, leader, stop, ahead, predicted, whom, closest, crowd, foresight)
 
     def _relevant(self, crowd: Crowd, speed: float) -> NDArray[np.bool_] | None:
         """(n,) whom of a large crowd the plan, or somebody whom it depends on, may meet.
@@ -238,8 +264,7 @@ class Ego:
         gap = min(seen.person, seen.leader.station, stop) - origin
         free = seen.stop == math.inf == seen.leader.station
         limit = math.inf if free else self._speed_limit(seen)
-        observation = Observation(origin, self.vehicle.speed, gap, seen.ahead, limit)
-        decision = self.driver.regulator.control(observation)
+        decision = self._ask(seen, gap, limit)
         if not math.isfinite(decision.force):
             msg = (
                 f"controller '{decision.acting}' of '{self.id}' at step {step}: force = "
@@ -254,6 +279,21 @@ class Ego:
                 decision = allowed
         self._force = decision.force
         return decision
+
+    def _ask(self, seen: Seen, gap: float, limit: float) -> Decision:
+        """The controller's own decision."""
+        regulator, speed = self.driver.regulator, self.vehicle.speed
+        origin = self.front + self._origin
+        if not isinstance(regulator, PlanningRegulator):
+            return regulator.control(Observation(origin, speed, gap, seen.ahead, limit))
+        allowed = None
+        if seen.ahead is not self.corridor.nobody:
+            allowed = seen.ahead - (origin + self.config.regulation.safe_distance)
+        return regulator.control(Situation(speed, gap, limit, allowed, seen.foresight))
+
+    def expected(self, seen: Seen) -> Array | None:
+        """(N, n, 2) [m] where the decision expects people at steps 1 ... N, until the next look."""
+        return seen.predicted if seen.foresight is None else seen.foresight.best
 
     def _speed_limit(self, seen: Seen) -> float:
         """From which speed the comfortable deceleration brings it to a light or behind a leader."""

@@ -239,8 +239,9 @@ class Loop:
             decision = ego.decide(self._k, seen)
             controlled_at = perf_counter()
             recorder.ego(ego.id, ego.row(time, seen, decision))
-            if self._looks and seen.predicted is not None:
-                self._record_predictions(ego.id, seen.predicted, seen.whom)
+            predicted = ego.expected(seen) if self._looks else None
+            if predicted is not None:
+                self._record_predictions(ego.id, predicted, seen.whom)
             predicting += decide_at - look_at
             controlling += controlled_at - decide_at
             acting = acting or decision.acting

@@ -1,0 +1,102 @@
+"""The numbers of the planning MPC; docs/controllers.md says what each one gives."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from controller.parameters import (
+    SolverName,
+    require,
+    require_not_negative,
+    require_positive,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class ManoeuvreParameters:
+    """What a manoeuvre may be like, and what it costs; each cost is per second of the horizon.
+
+    Raises:
+        ParameterError: a value is not finite or out of range.
+    """
+
+    accelerations: tuple[float, ...] = (1.5, 0.0, -1.0, -2.5, -5.0)  # [m/s^2] aimed at
+    jerk: float = 8.0  # [m/s^3] with which they are approached
+    deceleration: float = 2.0  # b [m/s^2]: a stop is kept possible that is no harder
+    minimum_distance: float = 1.0  # [m] to a person in front at standstill
+    headway: float = 0.1  # [s] more of it the faster
+    time_weight: float = 1.0  # of the share of the reference speed that is not driven
+    acceleration_weight: float = 0.05  # of (m/s^2)^2
+    nearness_weight: float = 0.3  # of the share of d_safe that is missing, times v / v_r
+    closeness_weight: float = 20.0  # of a metre too little to stop in, times v / v_r
+    conflict_weight: float = 0.4  # of a person with less than conflict_time to a collision
+    final_weight: float = 1.0  # [s] of the missing speed at the horizon's end
+    persistence: float = 0.02  # [s] that another manoeuvre must be better than the last plan
+    conflict_time: float = 1.5  # [s] time to collision of a conflict (FHWA-HRT-08-051)
+
+    def __post_init__(self) -> None:
+        known = all(math.isfinite(a) for a in self.accelerations)
+        drives_off = bool(self.accelerations) and self.accelerations[0] > 0.0
+        require(
+            known and drives_off,
+            "accelerations",
+            self.accelerations,
+            "finite numbers [m/s^2], the first of them > 0",
+        )
+        require_positive("jerk", self.jerk, "m/s^3")
+        require_positive("deceleration", self.deceleration, "m/s^2")
+        require_not_negative("minimum_distance", self.minimum_distance, "m")
+        require_not_negative("headway", self.headway, "s")
+        for name in _WEIGHTS:
+            require_not_negative(name, getattr(self, name), "-")
+        require_positive("conflict_time", self.conflict_time, "s")
+
+
+_WEIGHTS = (
+    "time_weight",
+    "acceleration_weight",
+    "nearness_weight",
+    "closeness_weight",
+    "conflict_weight",
+    "final_weight",
+    "persistence",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class PlannerParameters:
+    """The planning MPC: horizon, limits, what its plan trades, and its switches.
+
+    Raises:
+        ParameterError: a value is not finite or out of range.
+    """
+
+    horizon: int = 60  # N [steps]
+    reference_speed: float = 4.0  # v_r [m/s]
+    safe_distance: float = 8.0  # d_safe [m]
+    speed_max: float = 20.0  # v_max [m/s]
+    force_limit: float = 8000.0  # u_max [N]
+    force_rate_limit: float = 1000.0  # du_max [N per step]
+    effort_weight: float = 0.02  # of (m/s^2)^2 s, beside (m/s)^2 s of the speed error
+    jerk_weight: float = 0.02  # of (m/s^3)^2 s
+    block_growth: float = 0.25  # of the plan's intervals from one to the next; 0: all of one step
+    gap_choice: bool = True  # search manoeuvres; else the plan just keeps d_safe
+    soft: bool = True  # exact penalty; else a plan that cannot keep its distance is none
+    terminal: bool = True  # a stop stays possible also where the horizon ends
+    solver: SolverName = "osqp"
+    iteration_limit: int = 4000  # of the QP solver
+    manoeuvres: ManoeuvreParameters = ManoeuvreParameters()
+
+    def __post_init__(self) -> None:
+        whole = isinstance(self.horizon, int)
+        require(whole and self.horizon >= 4, "horizon", self.horizon, "a whole number >= 4 [steps]")
+        require_positive("reference_speed", self.reference_speed, "m/s")
+        require_not_negative("safe_distance", self.safe_distance, "m")
+        require_positive("speed_max", self.speed_max, "m/s")
+        require_positive("force_limit", self.force_limit, "N")
+        require_positive("force_rate_limit", self.force_rate_limit, "N per step")
+        require_not_negative("effort_weight", self.effort_weight, "s")
+        require_not_negative("jerk_weight", self.jerk_weight, "s^3")
+        require_not_negative("block_growth", self.block_growth, "-")
+        require(self.solver in ("osqp", "daqp"), "solver", self.solver, "'osqp' or 'daqp'")

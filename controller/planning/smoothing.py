@@ -1,0 +1,229 @@
+"""The QP of the planning MPC: a smooth plan within the corridor of the chosen manoeuvre.
+
+The unknowns are the speeds v_1 ... v_n at nodes whose intervals grow (move blocking): the
+acceleration is constant between nodes. The cost, with intervals h_i, is
+
+    sum h_i (v_i - v_i^m)^2 + q_a sum h_i a_i^2 + q_j sum h'_i j_i^2
+
+of speed errors to the manoeuvre, accelerations a_i and jerks j_i: the control-effort and comfort
+terms that Yang & Özgüner 2019, section 5, leave to the future. With H = L L' the unknowns
+z = L' v make it |z - z_m|^2, which every solver of this package takes.
+
+Rows: n speeds (limits; of the first also the force and its rate), n - 1 accelerations (force),
+n - 1 distances (the corridor).
+
+The corridor is soft by an exact penalty. Its minimal violation is known in closed form: of all
+plans the hardest braking is the slowest at every node, so what it violates is unavoidable, and
+what it does not can be kept. A linear penalty beyond the largest multiplier has exactly the plans
+that violate no more than that (Nocedal & Wright 2006, section 17.2), so the bounds are widened by
+the unavoidable amount: no slack variables, and always a solution.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from controller._jit import kernel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from controller.model import LongitudinalModel
+    from controller.planning.parameters import PlannerParameters
+
+    Array = NDArray[np.float64]
+    Indices = NDArray[np.int64]
+
+WIDER = 1e-7  # [m/s] [m] by which bounds are widened, so that rounding leaves no empty problem
+
+
+def nodes_of(horizon: int, growth: float) -> Indices:
+    """The steps of the nodes: 1, 2, ... with intervals that grow by ``growth``, up to N."""
+    nodes, at = [], 0
+    while at < horizon:
+        at = min(horizon, at + max(1, round(growth * at)))
+        nodes.append(at)
+    return np.array(nodes, dtype=np.int64)
+
+
+class Limits(NamedTuple):
+    """The vehicle and its actuator, as the kernels take them."""
+
+    time_step: float
+    decay: float
+    gain: float  # dt / M
+    force: float
+    force_rate: float
+    speed: float
+
+
+class SmoothingProblem:
+    """min |z - target|^2 subject to lower <= rows z <= upper.
+
+    Attributes:
+        nodes: (n,) their steps.
+        rows: (3 n - 2, n), constant.
+        target: (n,) z_m.
+        lower, upper: (3 n - 2,).
+        increments: a solver gets z itself.
+    """
+
+    increments = False
+
+    def __init__(self, model: LongitudinalModel, parameters: PlannerParameters) -> None:
+        p = parameters
+        self.nodes = nodes = nodes_of(p.horizon, p.block_growth)
+        n, dt = len(nodes), model.time_step
+        self.limits = Limits(
+            dt,
+            model.decay,
+            model.speed_per_force,
+            p.force_limit,
+            p.force_rate_limit,
+            p.speed_max,
+        )
+        h = np.diff(nodes, prepend=0) * dt
+        self.intervals = h
+        accelerations = (np.eye(n) - np.eye(n, k=-1)) / h[:, None]  # but for v_0
+        between = np.concatenate([[dt], (h[1:] + h[:-1]) / 2.0])
+        jerks = (accelerations - np.eye(n, k=-1) @ accelerations) / between[:, None]
+        H = np.diag(h)
+        H += p.effort_weight * accelerations.T @ np.diag(h) @ accelerations
+        H += p.jerk_weight * jerks.T @ np.diag(between) @ jerks
+        L = np.linalg.cholesky(H)
+        self._speeds_of = np.ascontiguousarray(np.linalg.inv(L.T))  # v = L'^-1 z
+        distances = np.zeros((n, n))  # driven from v_1 on: trapezia
+        for i in range(1, n):
+            distances[i, :i] += h[1 : i + 1] / 2.0
+            distances[i, 1 : i + 1] += h[1 : i + 1] / 2.0
+        rows = np.concatenate([np.eye(n), accelerations[1:], distances[1:]])
+        self.rows = np.ascontiguousarray(rows @ self._speeds_of)
+        self.target = np.zeros(n)
+        self.lower = np.empty(len(rows))
+        self.upper = np.empty(len(rows))
+        # The gradient at v = 0 in three parts: speeds aimed at, v_0 and the acceleration before.
+        to_z = np.ascontiguousarray(np.linalg.inv(L))
+        of_speed = p.effort_weight * accelerations[0]
+        of_speed = of_speed + p.jerk_weight * (jerks[0] - jerks[1]) / dt
+        self._of_speeds = np.ascontiguousarray(to_z @ np.diag(h))
+        self._of_speed = to_z @ of_speed
+        self._of_acceleration = to_z @ (p.jerk_weight * jerks[0])
+
+    def speeds(self, z: Array) -> Array:
+        """(n,) the speeds [m/s] at the nodes."""
+        return np.asarray(self._speeds_of @ z)
+
+    def aim_at(self, speeds: Array, speed: float, acceleration: float) -> None:
+        """Set the target.
+
+        Args:
+            speeds: (n,) [m/s] of the manoeuvre at the nodes.
+            speed: now [m/s].
+            acceleration: before now [m/s^2].
+        """
+        self.target[:] = self._of_speeds @ speeds
+        self.target += self._of_speed * speed + self._of_acceleration * acceleration
+
+    def bound(
+        self, speed: float, previous_force: float, fastest: float, corridor: Array, *, soft: bool
+    ) -> bool:
+        """Set the bounds.
+
+        Args:
+            speed: now [m/s].
+            previous_force: u(k-1) [N].
+            fastest: [m/s] not exceeded unless it is already.
+            corridor: (N,) [m] how far the plan may have driven at steps 1 ... N.
+            soft: the corridor gives way as far as braking cannot keep it.
+
+        Returns:
+            Whether a plan exists.
+        """
+        found: bool = fill(
+            speed,
+            previous_force,
+            fastest,
+            corridor,
+            self.nodes,
+            self.intervals,
+            self.limits,
+            soft,
+            self.lower,
+            self.upper,
+        )
+        return found
+
+
+@kernel
+def fill(
+    speed: float,
+    previous_force: float,
+    fastest: float,
+    corridor: Array,
+    nodes: Indices,
+    intervals: Array,
+    c: Limits,
+    soft: bool,
+    lower: Array,
+    upper: Array,
+) -> bool:
+    """Bounds of all rows; False if, not being soft, the corridor cannot be kept."""
+    n = len(nodes)
+    dt = c.time_step
+    weakest = max(-c.force, previous_force - c.force_rate)
+    strongest = min(c.force, previous_force + c.force_rate)
+    least = max(0.0, c.decay * speed + c.gain * weakest)
+    most = min(c.speed, max(fastest, speed), c.decay * speed + c.gain * strongest)
+    most = max(most, least)  # from a hard brake at walking speed: what it cannot help driving
+    hardest = c.gain * c.force / dt
+    lower[:n] = 0.0
+    upper[:n] = min(c.speed, max(fastest, speed))
+    lower[0], upper[0] = least, most
+    lower[n : 2 * n - 1] = -hardest
+    upper[n : 2 * n - 1] = hardest
+    kept = True
+    v, driven = least, dt * speed  # x_1(k+1) is independent of all forces
+    for i in range(1, n):
+        slower = max(0.0, v - hardest * intervals[i])
+        driven += intervals[i] * (v + slower) / 2.0
+        v = slower
+        room = corridor[nodes[i] - 1]
+        for k in range(nodes[i - 1], nodes[i] - 1):
+            room = min(room, corridor[k])  # nobody drives backwards: kept at the end, kept before
+        if driven > room:
+            kept = False
+            room = driven
+        lower[2 * n - 2 + i] = -np.inf
+        upper[2 * n - 2 + i] = room - dt * speed
+    for i in range(len(lower)):
+        lower[i] -= WIDER
+        upper[i] += WIDER
+    return kept or soft
+
+
+@kernel
+def unfold(
+    speed: float,
+    at_nodes: Array,
+    nodes: Indices,
+    time_step: float,
+    distance: Array,
+    speeds: Array,
+    accelerations: Array,
+) -> None:
+    """Fill the plan of every step from the speeds at the nodes."""
+    before, at = speed, 0
+    speeds[0] = speed
+    for i in range(len(nodes)):
+        for k in range(at + 1, nodes[i] + 1):
+            share = (k - at) / (nodes[i] - at)
+            speeds[k] = max(0.0, before + share * (at_nodes[i] - before))
+        before, at = at_nodes[i], nodes[i]
+    distance[0] = 0.0
+    N = len(speeds) - 1
+    for k in range(N):
+        distance[k + 1] = distance[k] + time_step * speeds[k]
+        accelerations[k] = (speeds[k + 1] - speeds[k]) / time_step
+    accelerations[N] = 0.0
