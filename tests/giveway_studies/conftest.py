@@ -21,7 +21,7 @@ controller = ["mpc", "pid"]
 minimum_pairs = 4
 resamples = 99
 """
-TABLES = ("runs", "cells", "comparison", "situations", "failures")
+TABLES = ("runs", "cells", "levels", "comparison", "situations", "failures")
 
 
 @pytest.fixture(scope="session")

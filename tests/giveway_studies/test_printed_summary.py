@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import io
+import json
 
+import pandas as pd
 import pytest
 from rich.console import Console
 
 from giveway.cli.study_summary import print_summary
 from giveway.reports.findings import findings
+from giveway.reports.levels import level_table, levels_section
 
 
 @pytest.fixture
@@ -76,3 +79,71 @@ def test_without_an_ego_there_is_nothing_to_compare(study_of, small_text, printe
     study = study_of(text.replace("replications = 5", "replications = 4"), tmp_path / "study")
     assert "The runs have no ego" in printed(study)
     assert "every metric is an ego's" in findings(study)[0]
+
+
+@pytest.fixture(scope="module")
+def of_levels(study_of, small_text, tmp_path_factory):
+    """The small study, which shows its levels."""
+    text = small_text.replace("replications = 5", 'replications = 5\ntable = "levels"')
+    return study_of(text, tmp_path_factory.mktemp("levels") / "study")
+
+
+@pytest.mark.parametrize("width", [60, 80, 300])
+def test_every_level_stands_in_every_column_at_any_width(of_levels, printed, width):
+    """A block per crowd, a row per controller; what does not fit stands below."""
+    text = printed(of_levels, width=width)
+    assert max(map(len, text.splitlines())) <= width
+    assert "…" not in text
+    headings = [line for line in text.splitlines() if "[m/s^3]" in line or "[ms]" in line]
+    assert (len(headings) == 1) == (width == 300)
+    parts = text.count("mpc")
+    assert parts == text.count("pid-paper") - text.count("than pid-paper")
+    for heading in ("completion", "RMS jerk", "frontal", "min. gap", "conflicts", "control step"):
+        assert text.count(heading) == 1
+    frame = of_levels.levels
+    for row in frame[frame["metric"] == "rms_jerk"].to_dict("records"):
+        assert f"{row['mean']:.0f}" in text
+
+
+def test_a_level_s_mean_has_half_the_width_of_its_interval(of_levels):
+    table = level_table(of_levels)
+    assert [row.level for row in table.rows] == ["mpc", "pid-paper"] * 2
+    assert [row.context for row in table.rows] == ["pedestrians = 3"] * 2 + ["pedestrians = 2"] * 2
+    column = [heading for heading, _ in table.headings].index("RMS jerk")
+    frame = of_levels.levels
+    frame = frame[frame["metric"] == "rms_jerk"]
+    for row, known in zip(table.rows, frame.to_dict("records"), strict=True):
+        mean, half = map(float, row.means[column].text.split(" ±"))
+        wanted = (known["ci_high"] - known["ci_low"]) / 2.0
+        assert mean == pytest.approx(known["mean"], abs=0.1 * wanted + 0.5)
+        assert half == pytest.approx(wanted, rel=0.3)
+
+
+def test_what_control_steps_took_is_told_by_cell(of_levels):
+    execution, computing = of_levels.execution, of_levels.computing
+    assert (execution["control_median"] > 0.0).all()
+    assert (execution["control_max"] >= execution["control_median"]).all()
+    for cell in computing.to_dict("records"):
+        own = execution[execution["run"].str.startswith(f"c{cell['cell']}-")]
+        assert cell["runs"] == len(own) == 5
+        assert cell["control_median"] == own["control_median"].median()
+        assert cell["control_max"] == own["control_max"].max()
+
+
+def test_levels_and_computing_are_files_that_the_data_package_describes(of_levels):
+    package = json.loads((of_levels.path / "datapackage.json").read_text("utf-8"))
+    by_name = {entry["name"]: entry for entry in package["resources"]}
+    for name in ("levels", "computing"):
+        frame = pd.read_csv(of_levels.path / f"{name}.csv")
+        described = [field["name"] for field in by_name[name]["schema"]["fields"]]
+        assert list(frame.columns) == described
+        assert all(field["description"] for field in by_name[name]["schema"]["fields"])
+    units = {field["name"]: field.get("unit") for field in by_name["computing"]["schema"]["fields"]}
+    assert (units["control_max"], units["seconds"]) == ("ms", "s")
+
+
+def test_the_report_has_the_table_only_if_it_is_asked_for(small, of_levels):
+    assert levels_section(small) is None
+    table = levels_section(of_levels)
+    assert len(table.rows) == 4
+    assert all(len(row) == len(table.headings) for row in table.rows)

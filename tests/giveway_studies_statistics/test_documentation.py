@@ -6,12 +6,19 @@ from pathlib import Path
 import pytest
 
 from giveway.studies.definition import Comparison, Precision
-from giveway.studies.statistics import COMPARISON_COLUMNS, METRICS, SITUATION_COLUMNS
+from giveway.studies.statistics import (
+    COMPARISON_COLUMNS,
+    LEVEL_COLUMNS,
+    METRICS,
+    SITUATION_COLUMNS,
+)
 
 PAGE = (Path(__file__).parents[2] / "docs" / "statistics.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("column", [*COMPARISON_COLUMNS, *SITUATION_COLUMNS], ids=lambda c: c.name)
+@pytest.mark.parametrize(
+    "column", [*COMPARISON_COLUMNS, *LEVEL_COLUMNS, *SITUATION_COLUMNS], ids=lambda c: c.name
+)
 def test_every_column_is_documented_as_it_is_declared(column) -> None:
     row = f"| `{column.name}` | {column.type} | {column.unit or ''} | {column.description} |"
     assert row in PAGE

@@ -12,7 +12,9 @@ def ours(study) -> pd.DataFrame:
 
 
 def paper_study(new_study, **more):
-    return new_study({"crowd.pedestrians": [10, 30], "controller": ["mpc", "pid"]}, **more)
+    return new_study(
+        {"crowd.pedestrians": [10, 30], "controller": ["mpc-paper", "pid-paper"]}, **more
+    )
 
 
 PRINTED = """
@@ -33,8 +35,8 @@ def test_each_number_stands_beside_the_same_one_of_ours(new_study) -> None:
     study = paper_study(new_study)
     for pedestrians, shift in ((30, -1.25), (10, 0.5)):
         noise = np.random.default_rng(pedestrians).normal(0.0, 0.1, 40)
-        study.add(pedestrians, "mpc", completion_time=20.0 + shift + noise - noise.mean())
-        study.add(pedestrians, "pid", completion_time=np.full(40, 20.0))
+        study.add(pedestrians, "mpc-paper", completion_time=20.0 + shift + noise - noise.mean())
+        study.add(pedestrians, "pid-paper", completion_time=np.full(40, 20.0))
     found = ours(study)
     assert list(found.columns) == [column.name for column in TABLE_2_COLUMNS]
     assert list(found["pedestrians"]) == [30] * 3 + [20] * 3 + [10] * 3
@@ -47,19 +49,23 @@ def test_each_number_stands_beside_the_same_one_of_ours(new_study) -> None:
 
 
 def test_other_factors_and_egos_have_a_table_each(new_study) -> None:
-    factors = {"crowd.pedestrians": [30], "speed": {"a": {}, "b": {}}, "controller": ["mpc", "pid"]}
+    factors = {
+        "crowd.pedestrians": [30],
+        "speed": {"a": {}, "b": {}},
+        "controller": ["mpc-paper", "pid-paper"],
+    }
     study = new_study(factors)
     for speed in ("a", "b"):
-        for controller in ("mpc", "pid"):
+        for controller in ("mpc-paper", "pid-paper"):
             study.add(30, speed, controller, completion_time=[1.0, 2.0, 3.0])
     found = ours(study)
     assert list(found["speed"]) == ["a"] * 9 + ["b"] * 9
 
 
 def test_another_study_has_no_such_table(new_study) -> None:
-    plain = new_study({"controller": ["mpc", "pid"]})
-    plain.add("mpc", stops=[1, 1, 1]).add("pid", stops=[1, 1, 1])
+    plain = new_study({"controller": ["mpc-paper", "pid-paper"]})
+    plain.add("mpc-paper", stops=[1, 1, 1]).add("pid-paper", stops=[1, 1, 1])
     assert ours(plain).empty
-    turned = paper_study(new_study, comparison={"baseline": "mpc"})
-    turned.add(30, "mpc", stops=[1, 1, 1]).add(30, "pid", stops=[1, 1, 1])
+    turned = paper_study(new_study, comparison={"baseline": "mpc-paper"})
+    turned.add(30, "mpc-paper", stops=[1, 1, 1]).add(30, "pid-paper", stops=[1, 1, 1])
     assert ours(turned).empty
