@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from giveway.validation.clips import Array
     from giveway.validation.protocol import Window
     from giveway.validation.validating import Validation
     from pedestrian_model import VciParameters
@@ -75,17 +74,13 @@ def write_validation(found: Validation, parameters: VciParameters, folder: Path)
 
 
 def _pictures(found: Validation, parameters: VciParameters) -> tuple[Figure, Figure, Figure]:
+    time = np.arange(1, found.protocol.longest + 1) / found.protocol.frame_rate
     people = f"{len(found.clips)} clips, {found.pedestrians} pedestrians"
     return (
-        growth_figure(_time(found), _curves(found), f"Prediction error, {people}"),
+        growth_figure(time, _curves(found), f"Prediction error, {people}"),
         _tracks(found, parameters),
         _places(found),
     )
-
-
-def _time(found: Validation) -> Array:
-    time: Array = found.protocol.time_step * np.arange(1, found.protocol.longest + 1)
-    return time
 
 
 def _curves(found: Validation) -> dict[str, dict[str, Curve]]:
