@@ -126,24 +126,27 @@ def _stop(
     commands: Array,
     boxes: Array,
 ) -> tuple[int, float]:
-    """Fill what the front may sweep in each step until the stop: steps, way [m]; -1 steps: none.
+    """Fill where the front may have been up to each instant: steps, way [m]; -1 steps: no stop.
 
-    In step j the front is between where it would be under full braking from now on and where it
-    is at most under ``force`` first: so the boxes grow with the force.
+    In each step the front is between where it would be under full braking from now on and where
+    it is at most under ``force`` first: so the boxes grow with the force. Row j is for the end of
+    step j - 1 and the start of step j, and keeps the clearance that both of them need; -1: it
+    stands in both, and nobody can be met.
     """
     dt, delay = c.time_step, commands.shape[0] - 1
     low = high = 0.0
     slowest = fastest = speed
-    for j in range(boxes.shape[0]):
+    _sweep(way, spacing, 0.0, 0.0, c.half_width, boxes[0])
+    boxes[0, 8] = -1.0
+    for j in range(boxes.shape[0] - 1):
         if fastest <= 0.0 and j > delay and _strongest(j, force, commands, c) <= 0.0:
             return j, high
         f = _strongest(j, force, commands, c)
         after = max(0.0, c.slowest_decay * fastest + f * (c.gain if f > 0.0 else c.braking_gain))
         travel = 0.5 * dt * (fastest + max(fastest, after))
-        boxes[j, 8] = -1.0  # it stands: nobody can meet it
-        if travel > 0.0:
-            _sweep(way, spacing, low, high + travel, c.half_width, boxes[j])
-            boxes[j, 8] = _clearance(travel, c)
+        clearance = _clearance(travel, c) if travel > 0.0 else -1.0
+        _sweep(way, spacing, low, high + travel, c.half_width, boxes[j + 1])
+        boxes[j, 8], boxes[j + 1, 8] = max(boxes[j, 8], clearance), clearance
         slower = c.fastest_decay * slowest - c.gain * c.force_limit
         if slowest > 0.0:
             low += _least_travel(slowest, slower, dt)
@@ -171,16 +174,16 @@ def _touches(box: Array, x: float, y: float, radius: float, slack: float, c: Lim
 def _may_meet(
     x: float, y: float, v_x: float, v_y: float, steps: int, slack: float, c: Limits, boxes: Array
 ) -> bool:
-    """Whether somebody now at (x, y) with velocity (v_x, v_y) can meet the front in any step.
+    """Whether somebody now at (x, y) with velocity (v_x, v_y) can meet the moving front.
 
     Who accelerates by at most a_max is within a_max t^2/2 of x + v t, and who walks at most at
     v_max is within v_max t of x.
     """
-    for j in range(steps):
+    for j in range(steps + 1):
         box = boxes[j]
         if box[8] < 0.0:
             continue
-        t = (j + 1) * c.time_step
+        t = j * c.time_step
         accelerated = 0.5 * c.walking_acceleration * t * t
         if not _touches(box, x + v_x * t, y + v_y * t, accelerated, slack, c):
             continue
@@ -207,7 +210,7 @@ def _is_safe(
     if steps < 0:
         return False
     widest = 0.0
-    for j in range(steps):
+    for j in range(steps + 1):
         widest = max(widest, boxes[j, 8])
     reach = travel + c.half_width + widest + slack + c.walking_speed * steps * c.time_step
     for i in range(position.shape[0]):
@@ -243,7 +246,7 @@ def largest_safe_force(
         velocity: (n, 2) [m/s].
         c: the limits.
         commands: (delay + 1,) [N] the forces of the past, the latest last; changed.
-        boxes: (longest stop, 9) scratch.
+        boxes: (longest stop [steps] + 1, 9) scratch.
     """
     v = speed if speed > _STANDSTILL else 0.0
     verdict, safe = LETS_THROUGH, force

@@ -100,7 +100,7 @@ class SafetyLayer:
             margin=p.margin,
             position_error=p.position_error,
         )
-        self._boxes = np.zeros((ceil(LONGEST_STOP / dt), 9))
+        self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
         delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
         self._commands = np.zeros(1 + max(delay, 0))
 
