@@ -34,14 +34,14 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_LOOKS: tuple[tuple[str, Any], ...] = (
-    (BLUE, "-"),
-    (SKY_BLUE, "--"),
-    (PURPLE, "-."),
-    (VERMILION, ":"),
-    (GREEN, (0, (5, 1))),
-    (ORANGE, (0, (1, 1))),
-)
+_LOOKS: dict[str, tuple[str, Any]] = {  # of each predictor in every picture
+    "VCI": (BLUE, "-"),
+    "VCI at own pace": (SKY_BLUE, "--"),
+    "VCI without f_v": (PURPLE, "-."),
+    "CV": (VERMILION, ":"),
+    "goalCV": (GREEN, (0, (5, 1))),
+}
+_OTHER: tuple[str, Any] = (ORANGE, (0, (1, 1)))
 _REACH = 8.0  # [m] round the vehicle
 _CELL = 1.0  # [m]
 _FEWEST = 3  # in a cell that is coloured
@@ -89,14 +89,15 @@ def growth_figure(time: Array, panels: Mapping[str, Mapping[str, Curve]], title:
     figure = Figure(figsize=(4.2 * len(panels), 3.6), layout="constrained")
     grid = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
     for axes, (group, curves) in zip(grid, panels.items(), strict=True):
-        for (colour, line), (name, curve) in zip(_LOOKS, curves.items(), strict=False):
+        for name, curve in curves.items():
+            colour, line = _LOOKS.get(name, _OTHER)
             axes.fill_between(time, curve.low, curve.high, color=colour, alpha=0.12, linewidth=0)
             axes.plot(time, curve.mean, color=colour, linestyle=line, label=name)
         axes.set_title(group)
         axes.set_xlabel("time ahead [s]")
         axes.set_xlim(0.0, time[-1])
-        axes.set_ylim(bottom=0.0)
         quiet_grid(axes)
+    grid[0].set_ylim(bottom=0.0)
     grid[0].set_ylabel("mean displacement error [m]")
     grid[0].legend(loc="upper left")
     figure.suptitle(title)
@@ -123,7 +124,8 @@ def tracks_figure(
     axes.plot(observed[:, :, 0], observed[:, :, 1], color=BLACK, linewidth=2.0, alpha=0.8)
     axes.plot(observed[0, :, 0], observed[0, :, 1], "o", color=BLACK, markersize=4)
     handles = [Line2D([], [], color=BLACK, linewidth=2.0, label="observed")]
-    for (colour, line), (name, tracks) in zip(_LOOKS, predicted.items(), strict=False):
+    for name, tracks in predicted.items():
+        colour, line = _LOOKS.get(name, _OTHER)
         axes.plot(tracks[:, :, 0], tracks[:, :, 1], color=colour, linestyle=line, linewidth=1.2)
         axes.plot(tracks[-1, :, 0], tracks[-1, :, 1], "x", color=colour, markersize=4)
         handles.append(Line2D([], [], color=colour, linestyle=line, label=name))
