@@ -152,7 +152,8 @@ def real_run(request: pytest.FixtureRequest) -> list[tuple[Observation, Decision
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Regulator, "control", note)
-        giveway.run({"scenario": "shared_space", "seed": request.param})
+        settings = {"scenario": "shared_space", "controller": "mpc-paper", "seed": request.param}
+        giveway.run(settings)
     return record
 
 

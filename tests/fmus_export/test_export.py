@@ -164,6 +164,9 @@ def test_the_sources_are_inside_and_named_for_those_who_compile() -> None:
 # ---- the command ----
 
 
+MPC = {"controller": "mpc-paper"}
+
+
 def export(settings: dict[str, Any], out: Path, **options: Any) -> int:
     from giveway.cli.export import export_command
 
@@ -174,6 +177,7 @@ def test_the_command_writes_the_effective_configuration(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     settings = {
+        "controller": "mpc-paper",
         "time_step": 0.1,
         "vehicle": {"mass": 1500.0, "friction": 50.0},
         "regulation": {"reference_speed": 3.0, "safe_distance": 6.0},
@@ -191,7 +195,7 @@ def test_the_command_writes_the_effective_configuration(
 
 def test_the_command_exports_the_pid_alone(tmp_path: Path) -> None:
     out = tmp_path / "pid.fmu"
-    assert export({"controller": "pid"}, out) == 0
+    assert export({"controller": "pid-paper"}, out) == 0
     start = {v.name: v.start for v in read_model_description(str(out)).modelVariables}
     assert start["mpc"] == "false"
 
@@ -200,17 +204,20 @@ def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
     out = tmp_path / "mpc.fmu"
     out.write_bytes(b"mine")
     with pytest.raises(ResultsError, match="exists; replace it with --force"):
-        export({}, out)
+        export(MPC, out)
     assert out.read_bytes() == b"mine"
-    assert export({}, out, force=True) == 0
+    assert export(MPC, out, force=True) == 0
     with pytest.raises(ResultsError, match=r"expected the name of an \.fmu file"):
-        export({}, tmp_path / "mpc.txt")
+        export(MPC, tmp_path / "mpc.txt")
     with pytest.raises(ResultsError, match="does not exist; create it first"):
-        export({}, tmp_path / "nowhere" / "mpc.fmu")
+        export(MPC, tmp_path / "nowhere" / "mpc.fmu")
     with pytest.raises(ConfigError, match=r"--fmi 1\.0: expected 2\.0 or 3\.0"):
-        export({}, tmp_path / "other.fmu", fmi="1.0")
+        export(MPC, tmp_path / "other.fmu", fmi="1.0")
     with pytest.raises(ConfigError, match="the configuration has no ego"):
-        export({"ego": {"none": True}}, tmp_path / "other.fmu")
+        export(MPC | {"ego": {"none": True}}, tmp_path / "other.fmu")
     with pytest.raises(ControlError, match="forward Euler is unstable"):
-        export({"vehicle": {"friction": 30000.0}}, tmp_path / "other.fmu")
+        export(MPC | {"vehicle": {"friction": 30000.0}}, tmp_path / "other.fmu")
+    for other in ("mpc", "pid-tuned"):
+        with pytest.raises(ConfigError, match=f"{other}: only the paper's .* --controller mpc-pap"):
+            export({"controller": other}, tmp_path / "other.fmu")
     assert not (tmp_path / "other.fmu").exists()

@@ -26,12 +26,12 @@ SEED = 4  # a crowd that makes the MPC give way, and fall back to the PID, witho
 
 @pytest.fixture(scope="module")
 def mpc_run(run_once: Run) -> RunResult:
-    return run_once(controller="mpc", seed=SEED)
+    return run_once(controller="mpc-paper", seed=SEED)
 
 
 @pytest.fixture(scope="module")
 def pid_run(run_once: Run) -> RunResult:
-    return run_once(controller="pid", seed=SEED)
+    return run_once(controller="pid-paper", seed=SEED)
 
 
 def positions(run: RunResult, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -138,14 +138,14 @@ def test_the_mpc_falls_back_to_the_pid_and_says_why(mpc_run: RunResult) -> None:
 
 
 def test_sumos_step_length_does_not_touch_the_result(run_once: Run, mpc_run: RunResult) -> None:
-    coarse = run_once(controller="mpc", seed=SEED, sumo={"step_length": 1.0})
+    coarse = run_once(controller="mpc-paper", seed=SEED, sumo={"step_length": 1.0})
     assert np.array_equal(coarse.ego_track.position, mpc_run.ego_track.position)
     assert np.array_equal(coarse.crowd_track.x, mpc_run.crowd_track.x)
     assert np.array_equal(coarse.crowd_track.y, mpc_run.crowd_track.y)
 
 
 def test_fmi_2_and_fmi_3_drive_alike(run_once: Run, mpc_run: RunResult) -> None:
-    other = run_once(controller="mpc", seed=SEED, vehicle={"fmu": "fmi3"})
+    other = run_once(controller="mpc-paper", seed=SEED, vehicle={"fmu": "fmi3"})
     assert np.array_equal(other.ego_track.position, mpc_run.ego_track.position)
     assert (
         other.manifest["vehicles"]["ego"]["sha256"] != mpc_run.manifest["vehicles"]["ego"]["sha256"]
@@ -153,7 +153,7 @@ def test_fmi_2_and_fmi_3_drive_alike(run_once: Run, mpc_run: RunResult) -> None:
 
 
 def test_an_empty_plaza_takes_ten_seconds_by_mpc() -> None:
-    result = giveway.run({"crowd": {"pedestrians": 0}})
+    result = giveway.run({"controller": "mpc-paper", "crowd": {"pedestrians": 0}})
     assert result.summary["completion_time"] == pytest.approx(10.0, abs=0.01)
     assert result.summary["mpc_feasibility_rate"] == 1.0
     assert len(result.pedestrians) == 0
@@ -161,7 +161,7 @@ def test_an_empty_plaza_takes_ten_seconds_by_mpc() -> None:
 
 def test_an_empty_plaza_takes_the_pid_its_steady_state_error_longer() -> None:
     # 10.39 s: e decays from alpha v_r / (K_p + alpha) = 0.16 m/s with (K_p + alpha) / K_i = 250 s
-    result = giveway.run({"controller": "pid", "crowd": {"pedestrians": 0}})
+    result = giveway.run({"controller": "pid-paper", "crowd": {"pedestrians": 0}})
     assert result.summary["completion_time"] == pytest.approx(10.39, abs=0.01)
 
 
@@ -185,14 +185,14 @@ def test_two_sided_crowds_come_from_both_sides(run_once: Run) -> None:
 
 
 def test_the_time_limit_ends_a_run_that_does_not_arrive(run_once: Run) -> None:
-    result = run_once(time_limit=2.0, seed=SEED)
+    result = run_once(controller="mpc-paper", time_limit=2.0, seed=SEED)
     assert result.ending is Ending.TIME_LIMIT
     assert result.ego_track.time[-1] == pytest.approx(2.0)
     assert np.isnan(result.summary["completion_time"])
 
 
 def test_the_street_has_traffic_of_its_own(run_once: Run) -> None:
-    result = run_once(scenario="street", seed=SEED)
+    result = run_once(controller="mpc-paper", scenario="street", seed=SEED)
     kinds = set(result.trajectories["type"])
     assert {"ego", "pedestrian"} < kinds
     cars = result.trajectories[~result.trajectories["type"].isin({"ego", "pedestrian"})]
@@ -234,7 +234,7 @@ def street_vehicles(run: RunResult, k: int, *, cars: bool) -> Vehicles:
 
 @pytest.mark.parametrize("cars", [True, False])
 def test_the_streets_crowd_feels_its_cars(run_once: Run, cars: bool) -> None:
-    run = run_once(scenario="street", seed=SEED)
+    run = run_once(controller="mpc-paper", scenario="street", seed=SEED)
     model = CrowdModel(SIM, TIME_STEP)
     walking, position, velocity = positions(run, 0)
     goals = [point[None] + (0, 10) for point in position]
@@ -250,8 +250,10 @@ def test_the_streets_crowd_feels_its_cars(run_once: Run, cars: bool) -> None:
 
 
 def test_the_gap_may_start_at_the_centre(run_once: Run) -> None:
-    bumper = run_once(controller="pid", seed=3, time_limit=8.0)
-    centre = run_once(controller="pid", seed=3, time_limit=8.0, regulation={"gap_from": "centre"})
+    bumper = run_once(controller="pid-paper", seed=3, time_limit=8.0)
+    centre = run_once(
+        controller="pid-paper", seed=3, time_limit=8.0, regulation={"gap_from": "centre"}
+    )
     k = int(np.argmax(np.isfinite(bumper.ego_track.gap)))  # until then they drive alike
     assert np.isfinite(bumper.ego_track.gap[k])
     assert centre.ego_track.gap[k] == pytest.approx(bumper.ego_track.gap[k] + LENGTH / 2)

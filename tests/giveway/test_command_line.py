@@ -36,13 +36,22 @@ def refused(*words: object, cwd: Path, code: int = 2) -> str:
 
 
 def test_the_readmes_run(tmp_path: Path) -> None:
-    words = ["run", "shared_space", "--pedestrians", "30", "--controller", "mpc", "--seed", "1"]
+    words = [
+        "run",
+        "shared_space",
+        "--pedestrians",
+        "30",
+        "--seed",
+        "1",
+        "--controller",
+        "mpc-paper",
+    ]
     done = giveway(*words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "Time to the goal" in done.stdout
     assert len(done.stdout.splitlines()) < 40  # one screen
     (folder,) = (tmp_path / "results").iterdir()
-    assert folder.name == "shared_space_mpc_30ped_seed1"
+    assert folder.name == "shared_space_mpc-paper_30ped_seed1"
     assert (folder / "trajectories.csv").stat().st_size > 100_000
     assert not done.stderr
 

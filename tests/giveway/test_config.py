@@ -86,7 +86,7 @@ def test_later_layers_win_key_by_key() -> None:
             ["study.toml: [crowd] pedestrians", "-3", "equal to 0", "persons"],
         ),
         ({"seed": "a"}, ["study.toml: seed", "'a'", "integer"]),
-        ({"controller": "mcp"}, ["'mcp'", "'mpc' or 'pid'"]),
+        ({"controller": "mcp"}, ["'mcp'", "'mpc'", "'pid-tuned'", "'pid-paper'"]),
         ({"mpc": {"horizon": float("nan")}}, ["[mpc] horizon", "nan", "finite"]),
         ({"vehicle": {"mass": 0.0}}, ["[vehicle] mass", "greater than 0", "kg"]),
         ({"ego": {"initial_speed": 1e9}}, ["[ego] initial_speed", "m/s"]),
@@ -150,8 +150,12 @@ def test_a_contradiction_between_keys_names_their_table() -> None:
 
 
 def test_speeds_outside_of_the_mpcs_limits_are_refused() -> None:
-    assert "[mpc] speed_min and speed_max" in explain({"mpc": {"speed_max": 3}})
-    assert "[ego] initial_speed = 30" in explain({"ego": {"initial_speed": 30}})
+    assert "[mpc] speed_min and speed_max" in explain(
+        {"controller": "mpc-paper", "mpc": {"speed_max": 3}}
+    )
+    assert "[ego] initial_speed = 30" in explain(
+        {"controller": "mpc-paper", "ego": {"initial_speed": 30}}
+    )
     build_config([Layer("", {"controller": "pid", "ego": {"initial_speed": 30}})])
 
 
@@ -177,7 +181,7 @@ def test_an_ego_entry_overrides_its_own_keys_only() -> None:
     )
     first, second = config.each_ego()
     assert (first.ego_id, first.controller, first.vehicle.mass) == ("a", "mpc", 1200.0)
-    assert (second.ego_id, second.controller, second.vehicle.friction) == ("b", "pid", 50.0)
+    assert (second.ego_id, second.controller, second.vehicle.friction) == ("b", "pid-paper", 50.0)
     assert second.vehicle.mass == 1200.0
     again = build_config([Layer("dump", tomllib.loads(dump_toml(config)))])
     assert again.each_ego() == config.each_ego()

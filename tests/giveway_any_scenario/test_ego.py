@@ -175,7 +175,7 @@ def test_several_egos_of_all_kinds_each_with_its_own_driver(
         time_limit=12.0,
         egos=(
             {"ego": {"take_over": "bus"}, "vehicle": {"mass": 12000.0}, "controller": "pid"},
-            {"ego": {"take_over": "truck"}, "vehicle": {"fmu": "fmi3"}},
+            {"ego": {"take_over": "truck"}, "vehicle": {"fmu": "fmi3"}, "controller": "mpc-paper"},
             {"ego": {"take_over": "bicycle"}, "regulation": {"reference_speed": 5.0}},
             {"ego": {"take_over": "flow.3"}},
             {"ego": {"id": "own", "route": ["D0C0", "C0B0"], "depart_time": 4.0}},

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 SETTINGS: dict[str, Any] = {
     "scenario": "shared_space",
     "seed": 3,
+    "controller": "mpc-paper",
     "time_limit": 7.0,
     "record": {"predictions": 0.25},
 }

@@ -14,7 +14,7 @@ import giveway as library
 def remarks(zoo, tmp_path, own_temp):
     """The remarks of a short run of a car about how it answered."""
 
-    def run(values=None, vehicle=None, controller="mpc", **model):
+    def run(values=None, vehicle=None, controller="mpc-paper", **model):
         car = zoo.car(values=values or {})
         profile = zoo.profile(car)
         if model:

@@ -184,6 +184,7 @@ def test_files_named_in_flags_or_python_are_relative_to_here(profile, zoo, tmp_p
 def test_the_mpc_keeps_what_the_model_is_wrong_by(profile):
     config, _ = load([flags(profile=str(profile(**IDENTIFIED)))])
     plain, _ = load([flags(profile=str(profile("plain.toml")))])
+    config, plain = (c.model_copy(update={"controller": "mpc-paper"}) for c in (config, plain))
     kept, usual = (make_regulator(c, H).mpc.parameters.safe_distance for c in (config, plain))
     margin = model_margin(config, H)
     assert margin >= 0.7
