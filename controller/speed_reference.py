@@ -10,6 +10,7 @@ from controller.parameters import require, require_not_negative, require_positiv
 
 ProfileName = Literal["braking-curve", "linear"]
 
+_OTHERS_CURVE = 4.0  # [m/s^2] that following a limit may take; no curve to a stop line is as steep
 _STANDS = 0.005  # [m/s] a reference that falls this low ends: the brake holds
 
 
@@ -21,11 +22,11 @@ class ReferenceParameters:
     safe_distance: float = 8.0  # d_safe [m]
     profile: ProfileName = "braking-curve"
     buffer_distance: float = 10.0  # d_buffer [m] of the linear profile
-    deceleration: float = 2.0  # b [m/s^2] of the braking curve, and of braking in comfort
+    deceleration: float = 1.0  # b [m/s^2] of the braking curve, and of braking in comfort
     approach_lag: float = 0.5  # tau [s]: near d_safe the braking curve is the line (gap-d_safe)/tau
-    acceleration: float = 2.0  # a [m/s^2] of driving off
-    jerk: float = 5.0  # j [m/s^3] of a change of acceleration in comfort
-    last_distance: float = 4.0  # d_last [m] before which it stops, however hard that is
+    acceleration: float = 3.0  # a [m/s^2] of driving off
+    jerk: float = 10.0  # j [m/s^3] of a change of acceleration in comfort
+    last_distance: float = 2.0  # d_last [m]: it stops before that, however hard that is
     creep_speed: float = 0.1  # [m/s] a lower target is a stop: nobody is followed in inches
 
     def __post_init__(self) -> None:
@@ -128,7 +129,7 @@ class SpeedReference:
         p = self.parameters
         comfort = self._down
         if limit < inf:  # stop lines and vehicles come with a curve of their own: keep to it
-            comfort = min(2.0 * comfort, self._strongest)
+            comfort = min(max(comfort, _OTHERS_CURVE), self._strongest)
         room = gap - p.last_distance - speed * self._build_up
         needed = speed * speed / (2.0 * room) if room > 0.0 else inf
         return min(max(comfort, needed), self._strongest)
@@ -140,7 +141,7 @@ class SpeedReference:
             return 0.0
         if wanted == limit:
             change = (limit - self._limit) / self.time_step
-            return change if abs(change) <= 2.0 * self._down else 0.0  # else it has just appeared
+            return change if abs(change) <= _OTHERS_CURVE else 0.0  # else it has just appeared
         if p.profile == "linear":
             return -speed * p.reference_speed / p.buffer_distance
         return -speed * self._down / (wanted + self._down * p.approach_lag)

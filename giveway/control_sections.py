@@ -67,15 +67,15 @@ class TunedPidConfig(Section):
         10.0, "m", "over which the linear profile rises to v_r", gt=0, le=1e4
     )
     deceleration: float = option(
-        2.0, "m/s^2", "b of the braking curve, and of braking in comfort", gt=0, le=10
+        1.0, "m/s^2", "b of the braking curve, and of braking in comfort", gt=0, le=10
     )
     approach_lag: float = option(
         0.5, "s", "near d_safe the braking curve is the line (gap - d_safe)/tau", gt=0, le=10
     )
-    acceleration: float = option(2.0, "m/s^2", "of driving off", gt=0, le=10)
-    jerk: float = option(5.0, "m/s^3", "of a change of acceleration in comfort", gt=0, le=200)
+    acceleration: float = option(3.0, "m/s^2", "of driving off", gt=0, le=10)
+    jerk: float = option(10.0, "m/s^3", "of a change of acceleration in comfort", gt=0, le=200)
     last_distance: float = option(
-        4.0, "m", "it stops before this distance however hard that is", ge=0, le=1e4
+        2.0, "m", "it stops before this distance however hard that is", ge=0, le=1e4
     )
     bandwidth: float = option(2.5, "rad/s", "omega of the closed loop's poles", gt=0, le=100)
     damping: float = option(0.85, None, "zeta of the closed loop's poles", gt=0, le=10)
