@@ -6,7 +6,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from giveway.reports.study import baseline_label, compared_labels, context_key, contexts
+from giveway.reports.study import (
+    baseline_label,
+    compared_labels,
+    context_key,
+    contexts,
+    level_label,
+)
 from giveway.reports.tables import Cell, Table
 from giveway.reports.wording import number, pretty_unit
 from giveway.studies.statistics import metric
@@ -101,10 +107,9 @@ def _rows(study: Study, context: Context) -> Iterator[Row]:
     frame, verdicts = study.levels, _verdicts(study, context)
     here = [row for row in frame.to_dict("records") if context_key(study, row) == context.key]
     several = frame["ego"].nunique() > 1
-    title = next(iter(context.levels.values())) if len(context.levels) == 1 else context.short
+    title = _title(study, context)
     for label in compared_labels(study):
-        own = [row for row in here if study.design.factor(compared).level(row[compared])
-               is study.design.factor(compared).level(label)]  # fmt: skip
+        own = [row for row in here if level_label(row[compared]) == label]
         for ego in dict.fromkeys(str(row["ego"]) for row in own):
             by_metric = {row["metric"]: row for row in own if str(row["ego"]) == ego}
             means = [
@@ -112,6 +117,16 @@ def _rows(study: Study, context: Context) -> Iterator[Row]:
             ]
             means += _times(study, context.cells[label])
             yield Row(title, f"{label} ({ego})" if several else label, tuple(means))
+
+
+def _title(study: Study, context: Context) -> str:
+    """What the block is called: a name that a level has of its own says enough."""
+    if len(context.levels) == 1:
+        name, label = next(iter(context.levels.items()))
+        level = study.design.factor(name).level(label)
+        if level is not None and isinstance(level.value, str):
+            return label
+    return context.short
 
 
 def _verdicts(study: Study, context: Context) -> dict[tuple[str, str, str], str]:

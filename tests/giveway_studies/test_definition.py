@@ -48,7 +48,9 @@ def test_the_papers_study_is_twelve_thousand_runs():
     assert len(planned) == 12_000
     labels = [planned.cell.label for planned in planned.cells]
     assert labels == [
-        f"crowd.pedestrians = {n}, controller = {c}" for n in (30, 20, 10) for c in ("mpc", "pid")
+        f"crowd.pedestrians = {n}, controller = {c}-paper"
+        for n in (30, 20, 10)
+        for c in ("mpc", "pid")
     ]
 
 
@@ -234,7 +236,9 @@ def test_a_cell_that_cannot_be_run_is_found_before_anything_runs(text, said):
 
 
 def test_an_unknown_study_names_the_known_ones():
-    with pytest.raises(ConfigError, match=r"expected a \.toml file or one of paper, readings"):
+    with pytest.raises(
+        ConfigError, match=r"expected a \.toml file or one of controllers, paper, readings"
+    ):
         find_study("papper")
 
 
@@ -256,3 +260,18 @@ def test_without_a_controller_among_them_the_last_factor_is_compared():
     text = 'name = "mine"\n[factors]\n"crowd.pedestrians" = [1, 2]\n"mpc.horizon" = [15, 30]\n'
     comparison = plan(parsed(text), "mine.toml").definition.comparison
     assert (comparison.factor, comparison.baseline) == ("mpc.horizon", "30")
+
+
+def test_the_study_of_controllers_compares_all_of_them_in_every_scene():
+    from giveway.studies.plan import plan
+
+    planned = plan(read_definition(find_study("controllers")), "controllers")
+    scene, controller = planned.design.factors
+    assert [level.label for level in controller.levels] == [
+        "mpc",
+        "pid-tuned",
+        "mpc-paper",
+        "pid-paper",
+    ]
+    assert len(planned.cells) == len(scene.levels) * 4 == 64
+    assert planned.definition.table == "levels"

@@ -87,11 +87,14 @@ def test_the_folder_names_the_cells_as_they_were_run(study_of, tmp_path):
         "two" = { crowd = { pedestrians = 2 } }
         "none" = { crowd = { pedestrians = 0 } }
         [factors]
-        controller = ["mpc", "pid"]
+        controller = ["mpc-paper", "pid-paper"]
     """
     study = study_of(text, tmp_path / "order")
     rows = study.runs.set_index("run")
-    for name, crowd, controller in (("c2-s1", "two", "pid"), ("c3-s1", "none", "mpc")):
+    for name, crowd, controller in (
+        ("c2-s1", "two", "pid-paper"),
+        ("c3-s1", "none", "mpc-paper"),
+    ):
         assert (rows["crowd_of"][name], rows["controller"][name]) == (crowd, controller)
         again = rerun(study, name, None)
         assert again.config.controller == controller
