@@ -26,6 +26,7 @@ class ReferenceParameters:
     approach_lag: float = 0.5  # tau [s]: near d_safe the braking curve is the line (gap-d_safe)/tau
     acceleration: float = 3.0  # a [m/s^2] of driving off
     jerk: float = 10.0  # j [m/s^3] of a change of acceleration in comfort
+    firm_deceleration: float = 3.0  # [m/s^2] that keeping d_safe may take; if not enough, d_last
     last_distance: float = 2.0  # d_last [m]: it stops before that, however hard that is
     creep_speed: float = 0.1  # [m/s] a lower target is a stop: nobody is followed in inches
 
@@ -39,6 +40,7 @@ class ReferenceParameters:
         require_positive("approach_lag", self.approach_lag, "s")
         require_positive("acceleration", self.acceleration, "m/s^2")
         require_positive("jerk", self.jerk, "m/s^3")
+        require_not_negative("firm_deceleration", self.firm_deceleration, "m/s^2")
         require_not_negative("last_distance", self.last_distance, "m")
         require_not_negative("creep_speed", self.creep_speed, "m/s")
 
@@ -109,9 +111,11 @@ class SpeedReference:
         """
         dt, now, before = self.time_step, self.speed, self.acceleration
         wanted = self.target(gap, limit)
-        down = self._braking(speed, gap, limit)
+        needed = self._braking(speed, gap)
+        # Stop lines and vehicles come with a curve of their own, which is to be kept to.
+        down = needed if limit == inf else min(max(needed, _OTHERS_CURVE), self._strongest)
         away = wanted - now
-        jerk = self._jerk if away >= 0.0 else min(self._sharpest, down / self._build_up)
+        jerk = self._jerk if away >= 0.0 else min(self._sharpest, needed / self._build_up)
         a = self._slope(speed, wanted, limit)
         a += copysign(stoppable(abs(away), jerk, self._lag), away)
         a = min(max(a, -down), self._up)
@@ -124,15 +128,19 @@ class SpeedReference:
         self.speed, self.acceleration = now + dt * a, a
         return now, a
 
-    def _braking(self, speed: float, gap: float, limit: float) -> float:
-        """How hard it may brake [m/s^2]: in comfort, or as hard as a stop at d_last takes."""
+    def _braking(self, speed: float, gap: float) -> float:
+        """How hard it may brake [m/s^2]: in comfort, or as hard as a stop in time takes."""
         p = self.parameters
-        comfort = self._down
-        if limit < inf:  # stop lines and vehicles come with a curve of their own: keep to it
-            comfort = min(max(comfort, _OTHERS_CURVE), self._strongest)
-        room = gap - p.last_distance - speed * self._build_up
-        needed = speed * speed / (2.0 * room) if room > 0.0 else inf
-        return min(max(comfort, needed), self._strongest)
+        needed = self._to_stop(speed, gap - p.last_distance)
+        in_time = self._to_stop(speed, gap - p.safe_distance)
+        if in_time <= p.firm_deceleration:
+            needed = max(needed, in_time)
+        return min(max(self._down, needed), self._strongest)
+
+    def _to_stop(self, speed: float, room: float) -> float:
+        """The deceleration [m/s^2] that stops within ``room`` [m] once the brakes have built up."""
+        left = room - speed * self._build_up
+        return speed * speed / (2.0 * left) if left > 0.0 else inf
 
     def _slope(self, speed: float, wanted: float, limit: float) -> float:
         """The target's own slope [m/s^2], while the vehicle approaches who stands in front."""

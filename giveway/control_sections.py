@@ -74,6 +74,13 @@ class TunedPidConfig(Section):
     )
     acceleration: float = option(3.0, "m/s^2", "of driving off", gt=0, le=10)
     jerk: float = option(10.0, "m/s^3", "of a change of acceleration in comfort", gt=0, le=200)
+    firm_deceleration: float = option(
+        3.0,
+        "m/s^2",
+        "that keeping d_safe may take; where it is not enough, last_distance",
+        ge=0,
+        le=10,
+    )
     last_distance: float = option(
         2.0, "m", "it stops before this distance however hard that is", ge=0, le=1e4
     )
@@ -106,6 +113,13 @@ class PlannerConfig(Section):
         0.4,
         None,
         "seconds of delay that one person-second with less than 1.5 s to a collision is worth",
+        ge=0,
+        le=1e3,
+    )
+    threat_weight: float = option(
+        3.0,
+        None,
+        "seconds of delay that a second is worth in which somebody could force an emergency stop",
         ge=0,
         le=1e3,
     )

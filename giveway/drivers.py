@@ -110,6 +110,7 @@ def _tuned_pid(config: RunConfig, time_step: float) -> TunedPid:
                 approach_lag=tuned.approach_lag,
                 acceleration=tuned.acceleration,
                 jerk=tuned.jerk,
+                firm_deceleration=tuned.firm_deceleration,
                 last_distance=tuned.last_distance,
             ),
         ),
@@ -139,6 +140,7 @@ def _planning(config: RunConfig, time_step: float) -> PlanningRegulator:
             deceleration=planner.deceleration,
             minimum_distance=planner.minimum_distance + margin,
             conflict_weight=planner.conflict_weight,
+            threat_weight=planner.threat_weight if config.safety_layer else 0.0,
         ),
     )
     model = LongitudinalModel(config.vehicle.mass, config.vehicle.friction, time_step)

@@ -116,6 +116,13 @@ def test_who_steps_in_closely_is_braked_for_hard(gap, mass):
     assert gap + 4.0 - positions[-1] > 0.5
 
 
+def test_firm_braking_keeps_the_safe_distance_where_it_can():
+    """Somebody 12 m ahead: comfort alone would end 4 m too near."""
+    positions, speeds, _ = drive(TunedPid(), 4.0, 10.0, standing_at(12.0))
+    assert 12.0 - positions[-1] > 7.9
+    assert -np.diff(speeds).min() / DT < 3.5
+
+
 def test_the_later_somebody_steps_in_the_harder_it_brakes():
     def strongest(gap):
         _, speeds, _ = drive(TunedPid(), 4.0, 6.0, standing_at(gap))
