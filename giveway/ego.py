@@ -168,6 +168,8 @@ class Ego:
             growth=planner.margin_growth,
             conflict_time=driver.regulator.planner.parameters.manoeuvres.conflict_time,
             planned_speed=planner.planned_speed,
+            clearance=self.config.safety.margin,
+            braking=self.config.mpc.force_limit / self.config.vehicle.mass,
         )
 
     @property

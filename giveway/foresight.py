@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -39,6 +39,8 @@ class CrowdForesight:
         growth: of it with the look-ahead, on each side [m/s].
         conflict_time: time to collision of a conflict [s].
         planned_speed: people are predicted under the manoeuvre, else under the present speed.
+        clearance: [m] that the safety layer keeps to people's bodies.
+        braking: [m/s^2] of the ego at most.
     """
 
     def __init__(
@@ -51,6 +53,8 @@ class CrowdForesight:
         growth: float,
         conflict_time: float,
         planned_speed: bool,
+        clearance: float,
+        braking: float,
     ) -> None:
         N = predictor.horizon
         self._predictor = predictor
@@ -60,9 +64,11 @@ class CrowdForesight:
         self._growth = growth
         self._conflict_time = conflict_time
         self._planned_speed = planned_speed
+        self._clearance = clearance
+        self._braking = braking
         self._constant = np.arange(N + 1) * predictor.time_step
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
-        self._prospect = Prospect(np.empty(N), np.zeros(N))
+        self._prospect = Prospect(np.empty(N), np.zeros(N), np.zeros(N))
         self._predicted = np.empty((N, 0, 2))
         self._best = np.empty((N, 0, 2))
         self._stale, self._preferred = True, False
@@ -103,8 +109,8 @@ class CrowdForesight:
             np.multiply(self._constant, self._now, out=self._distance)
             self._speed[:] = self._now
             self._predict(self._distance, self._speed)
-        gap, conflicts = self._prospect
-        path = self._path
+        gap, conflicts, threats = self._prospect
+        path, people = self._path, self._predictor.parameters
         assess(
             path.vertices,
             path.stations,
@@ -115,13 +121,19 @@ class CrowdForesight:
             manoeuvre.speed,
             self._shape.length,
             self._shape.width,
-            self._predictor.parameters.body_radius,
             self._half_width,
             self._growth,
             self._conflict_time,
             self._predictor.time_step,
+            Alarm(
+                people.body_radius,
+                self._clearance,
+                people.max_acceleration,
+                self._braking,
+            ),
             gap,
             conflicts,
+            threats,
         )
         return self._prospect
 
@@ -170,6 +182,15 @@ def fill_planned_poses(
         poses[i, row, 3] = speeds[i]
 
 
+class Alarm(NamedTuple):
+    """The limits of bodies and brakes, as the kernels take them."""
+
+    radius: float  # of a body [m]
+    clearance: float  # kept to it by the safety layer [m]
+    walking_acceleration: float  # [m/s^2]
+    braking: float  # of the ego at most [m/s^2]
+
+
 @kernel
 def assess(
     vertices: Array,
@@ -181,20 +202,22 @@ def assess(
     speeds: Array,
     length: float,
     width: float,
-    radius: float,
     half_width: float,
     growth: float,
     conflict_time: float,
     time_step: float,
+    alarm: Alarm,
     gap: Array,
     conflicts: Array,
+    threats: Array,
 ) -> None:
-    """Fill the gap in front, and how many are on a collision course, at steps 1 ... N.
+    """Fill the gap in front, how many are on a collision course, and how many a threat, at 1 ... N.
 
-    Between two looks for conflicts the number is held.
+    Between two looks at people's courses the numbers are held.
     """
     N = predicted.shape[0]
     first, last = window(stations, front, PASSED + length)
+    conflicts[0] = threats[0] = 0.0
     for i in range(N):
         at = front + distance[i + 1]
         wide = half_width + growth * (i + 1) * time_step
@@ -202,9 +225,9 @@ def assess(
             vertices, stations, first, last, predicted[i], at - PASSED, wide, 0.0
         )
         gap[i] = closest - at
-        if i % _EVERY == 0 and i + 1 < N and speeds[i + 1] > _SLOW:
+        if i % _EVERY == 0 and i + 1 < N:
             x, y, heading = body_pose(vertices, stations, headings, at, length)
-            conflicts[i] = count_conflicts(
+            conflicts[i], threats[i] = courses(
                 predicted[i],
                 predicted[i + 1],
                 x,
@@ -213,18 +236,16 @@ def assess(
                 speeds[i + 1],
                 length / 2.0,
                 width / 2.0,
-                radius,
                 conflict_time,
                 time_step,
+                alarm,
             )
-        elif i % _EVERY == 0:
-            conflicts[i] = 0.0
-        else:
-            conflicts[i] = conflicts[i - 1]
+        elif i > 0:
+            conflicts[i], threats[i] = conflicts[i - 1], threats[i - 1]
 
 
 @kernel
-def count_conflicts(
+def courses(
     here: Array,
     there: Array,
     front_x: float,
@@ -233,24 +254,71 @@ def count_conflicts(
     speed: float,
     half_length: float,
     half_width: float,
-    radius: float,
     conflict_time: float,
     time_step: float,
-) -> float:
-    """Persons who would touch the ego within the conflict time if both kept their velocity."""
+    alarm: Alarm,
+) -> tuple[float, float]:
+    """Persons who would touch the ego within the conflict time, and who threaten an emergency stop.
+
+    The former if both kept their velocity; the latter if they did what they can, see
+    :func:`is_threat`.
+    """
+    if speed <= _SLOW:
+        return 0.0, 0.0
     c, s = np.cos(heading), np.sin(heading)
-    x_0, y_0 = front_x - half_length * c, front_y - half_length * s
-    far = half_length + half_width + radius + conflict_time * (speed + _WALKING)
-    count = 0.0
+    far = 2.0 * half_length + half_width + conflict_time * (speed + _WALKING)
+    conflicts = threats = 0.0
     for j in range(here.shape[0]):
-        d_x, d_y = here[j, 0] - x_0, here[j, 1] - y_0
+        d_x, d_y = here[j, 0] - front_x, here[j, 1] - front_y
         if d_x * d_x + d_y * d_y > far * far:
             continue
         x, y = to_frame(d_x, d_y, c, s)
         w_x = (there[j, 0] - here[j, 0]) / time_step
         w_y = (there[j, 1] - here[j, 1]) / time_step
         w_x, w_y = to_frame(w_x, w_y, c, s)
-        begin, end = contact_interval(x, y, w_x - speed, w_y, half_length, half_width, radius)
+        begin, end = contact_interval(
+            x + half_length, y, w_x - speed, w_y, half_length, half_width, alarm.radius
+        )
         if end >= 0.0 and begin < conflict_time:
-            count += 1.0
-    return count
+            conflicts += 1.0
+        if is_threat(x, y, w_x, w_y, speed, half_width, time_step, alarm):
+            threats += 1.0
+    return conflicts, threats
+
+
+@kernel
+def is_threat(
+    x: float,
+    y: float,
+    w_x: float,
+    w_y: float,
+    speed: float,
+    half_width: float,
+    time_step: float,
+    alarm: Alarm,
+) -> bool:
+    """Whether somebody could get before the front while the ego brakes fully from here on.
+
+    The safety layer would act then (controller/safety.py knows exactly; this is its outline).
+
+    Args:
+        x: ahead of the front's middle [m].
+        y: to the left of it [m].
+        w_x: the velocity along the ego's heading [m/s].
+        w_y: across it [m/s].
+        speed: of the ego [m/s].
+        half_width: of the ego [m].
+        time_step: [s] until the brake acts.
+        alarm: the limits.
+    """
+    stop = time_step + speed / alarm.braking
+    clear = alarm.radius + alarm.clearance
+    t = time_step
+    while t <= stop:
+        braked = t - time_step
+        front = speed * t - 0.5 * alarm.braking * braked * braked
+        reach = clear + 0.5 * alarm.walking_acceleration * t * t
+        if abs(x + w_x * t - front) <= reach and abs(y + w_y * t) <= half_width + reach:
+            return True
+        t += 2.0 * time_step
+    return False

@@ -58,10 +58,12 @@ class Prospect(NamedTuple):
     Attributes:
         gap: (N,) [m] to the closest person in front; inf: nobody.
         conflicts: (N,) persons who would be less than the conflict time from a collision.
+        threats: (N,) persons who could force an emergency stop, if they did what they can.
     """
 
     gap: Array
     conflicts: Array
+    threats: Array
 
 
 class Weights(NamedTuple):
@@ -77,6 +79,7 @@ class Weights(NamedTuple):
     nearness: float
     closeness: float
     conflict: float
+    threat: float
     final: float
     terminal: bool
 
@@ -94,6 +97,7 @@ class Weights(NamedTuple):
             m.nearness_weight,
             m.closeness_weight,
             m.conflict_weight,
+            m.threat_weight,
             m.final_weight,
             p.terminal,
         )
@@ -191,6 +195,7 @@ def cost(
     accelerations: Array,
     gap: Array,
     conflicts: Array,
+    threats: Array,
     allowed: Array,
     time_step: float,
     w: Weights,
@@ -203,6 +208,7 @@ def cost(
         accelerations: (N + 1,) [m/s^2].
         gap: (N,) [m] to the closest person in front at steps 1 ... N.
         conflicts: (N,) persons.
+        threats: (N,) persons.
         allowed: (N,) [m] that may be driven until then: vehicles, lights.
         time_step: [s].
         w: the weights.
@@ -217,7 +223,7 @@ def cost(
         v = speeds[i + 1]
         share = v / w.reference_speed
         own += w.time * max(0.0, 1.0 - share) + w.acceleration * accelerations[i] ** 2
-        others += w.conflict * conflicts[i]
+        others += w.conflict * conflicts[i] + w.threat * min(threats[i], 1.0)
         if gap[i] < w.safe_distance:
             others += w.nearness * (1.0 - max(gap[i], 0.0) / w.safe_distance) * share
             lacking = stopping_need(v, w) - gap[i]

@@ -31,6 +31,7 @@ class ManoeuvreParameters:
     nearness_weight: float = 0.3  # of the share of d_safe that is missing, times v / v_r
     closeness_weight: float = 20.0  # of a metre too little to stop in, times v / v_r
     conflict_weight: float = 0.4  # of a person with less than conflict_time to a collision
+    threat_weight: float = 3.0  # of driving where somebody could force an emergency stop
     final_weight: float = 1.0  # [s] of the missing speed at the horizon's end
     persistence: float = 0.02  # [s] that another manoeuvre must be better than the last plan
     conflict_time: float = 1.5  # [s] time to collision of a conflict (FHWA-HRT-08-051)
@@ -59,6 +60,7 @@ _WEIGHTS = (
     "nearness_weight",
     "closeness_weight",
     "conflict_weight",
+    "threat_weight",
     "final_weight",
     "persistence",
 )

@@ -83,7 +83,7 @@ class Planner:
         self._multipliers = np.zeros(count)
         self._last, self._trial, self._best = (Manoeuvre.empty(N) for _ in range(3))
         self._plan = Manoeuvre.empty(N)
-        self._gap, self._conflicts = np.full(N, inf), np.zeros(N)
+        self._gap, self._conflicts, self._threats = np.full(N, inf), np.zeros(N), np.zeros(N)
         self._corridor = np.empty(N)
         self._free, self._nobody = np.full(N, inf), np.zeros(N)
         self.reset()
@@ -216,11 +216,9 @@ class Planner:
     def _try(self, allowed: Array, foresight: Foresight | None, handicap: float) -> float:
         """Judge the trial, and keep it if it is the best; what others cost it [s]."""
         trial = self._trial
-        gap, conflicts = self._free, self._free
-        if foresight is None:
-            conflicts = self._nobody
-        else:
-            gap, conflicts = foresight.prospect(trial)
+        gap, conflicts, threats = self._free, self._nobody, self._nobody
+        if foresight is not None:
+            gap, conflicts, threats = foresight.prospect(trial)
             self._tried += 1
         whole, disturbed, missing = cost(
             trial.distance,
@@ -228,6 +226,7 @@ class Planner:
             trial.acceleration,
             gap,
             conflicts,
+            threats,
             allowed,
             self.model.time_step,
             self._weights,
@@ -236,7 +235,7 @@ class Planner:
         if self._is_best:
             self._lowest, self._missing = whole + handicap, missing
             self._best.copy_from(trial)
-            self._gap[:], self._conflicts[:] = gap, conflicts
+            self._gap[:], self._conflicts[:], self._threats[:] = gap, conflicts, threats
             if foresight is not None:
                 foresight.prefer()
         return disturbed
@@ -315,6 +314,7 @@ class Planner:
             plan.acceleration,
             self._gap + self._best.distance[1:] - plan.distance[1:],
             self._conflicts,
+            self._threats,
             allowed,
             self.model.time_step,
             self._weights,
