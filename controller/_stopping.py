@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 LETS_THROUGH, ACTS, UNAVOIDABLE = 0, 1, 2
-_RESOLUTION = 1.0  # [N] to which the largest safe force is found
+_RESOLUTION = 4.0  # [N] to which the largest safe force is found
 _SLACK = 1e-9  # [m] that a new plan keeps and the fallback need not: above rounding, below a hair
 _BETWEEN = 3  # poses of the front in a bend that a box is made to hold, besides the last
 _STANDSTILL = 1e-9  # [m/s] as in the regulator

@@ -5,7 +5,7 @@ stops the ego before its front could move into anybody, however people walk with
 acceleration and speed. Where that holds it holds again one step later, by braking fully: the
 fallback of the last step is still there (docs/safety.md has the proof). The idea is that of
 set-based online verification with a fail-safe manoeuvre (Althoff & Dolan, IEEE T-RO 2014; Pek &
-Althoff, ICRA 2018) and of the safe distances of RSS (Shalev-Shwartz et al., arXiv 1708.06374).
+Althoff, ITSC 2018) and of the safe distances of RSS (Shalev-Shwartz et al., arXiv 1708.06374).
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from controller import LongitudinalModel, ParameterError, SafetyLayer, SafetyPar
 MODEL = LongitudinalModel()
 EAST = np.array([[0.0, 0.0, 1.0, 0.0]])  # the front's middle at the origin, heading east
 NOBODY = np.zeros((0, 2))
-RESOLUTION = 1.0  # N
+RESOLUTION = 4.0  # N
 TO_HOLD_4_M_S = 400.0  # N
 
 
