@@ -36,10 +36,10 @@ run = { scenario = "shared_space" }
 
 [factors]
 "crowd.pedestrians" = [30, 10]
-controller = ["mpc", "pid"]
+controller = ["mpc-paper", "pid-paper"]
 
 [comparison]
-baseline = "pid"
+baseline = "pid-paper"
 resamples = 199
 minimum_pairs = 4
 """

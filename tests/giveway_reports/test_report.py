@@ -143,11 +143,15 @@ def test_the_same_study_gives_the_same_bytes(study, again, report):
 
 def test_hostile_names_are_text(changed, parsed):
     hostile = '</svg><img src=x onerror=alert(1)> $x_$ & "'
-    levels = f"{{ '{hostile}' = {{ controller = 'mpc' }}, '$$' = {{ controller = 'pid' }} }}"
+    levels = (
+        f"{{ '{hostile}' = {{ controller = 'mpc-paper' }}, '$$' = {{ controller = 'pid-paper' }} }}"
+    )
 
     def rename(text):
-        text = text.replace('controller = ["mpc", "pid"]', f"'<b>' = {levels}")
-        return text.replace('factor = "controller"', "factor = '<b>'").replace('"pid"', "'$$'")
+        text = text.replace('controller = ["mpc-paper", "pid-paper"]', f"'<b>' = {levels}")
+        return text.replace('factor = "controller"', "factor = '<b>'").replace(
+            '"pid-paper"', "'$$'"
+        )
 
     page = parsed(write_report(changed(lambda record: record, rename)))
     assert "img" not in dict(page.tags)
@@ -260,7 +264,7 @@ class TestChoice:
     def test_best_and_worst_are_the_extremes_of_the_first_context(self, study):
         runs = study.runs[study.runs["crowd.pedestrians"] == 30].set_index("seed")
         sides = {name: frame["completion_time"] for name, frame in runs.groupby("controller")}
-        difference = (sides["mpc"] - sides["pid"]).dropna()
+        difference = (sides["mpc-paper"] - sides["pid-paper"]).dropna()
         chosen = {pair.reason: pair for pair in example_pairs(study)}
         assert chosen["best"].difference == pytest.approx(difference.min())
         assert chosen["worst"].difference == pytest.approx(difference.max())
