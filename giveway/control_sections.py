@@ -102,7 +102,7 @@ class PlannerConfig(Section):
         True, None, "distances give way as far as braking cannot keep them; else the PID takes over"
     )
     terminal: bool = option(
-        True, None, "a comfortable stop stays possible at every step of the plan, its end included"
+        True, None, "a stop stays possible at every step of the plan, its end included"
     )
     planned_speed: bool = option(
         True, None, "people are predicted under the planned speeds; else under the present one"
@@ -110,14 +110,14 @@ class PlannerConfig(Section):
     effort_weight: float = option(0.02, "s", "of squared accelerations in the plan", ge=0, le=100)
     jerk_weight: float = option(0.02, "s^3", "of squared jerks in the plan", ge=0, le=100)
     conflict_weight: float = option(
-        0.4,
+        0.6,
         None,
         "seconds of delay that one person-second with less than 1.5 s to a collision is worth",
         ge=0,
         le=1e3,
     )
     threat_weight: float = option(
-        3.0,
+        1.0,
         None,
         "seconds of delay that a second is worth in which somebody could force an emergency stop",
         ge=0,
@@ -127,7 +127,10 @@ class PlannerConfig(Section):
         1.0, "m", "least distance to a person in front, at standstill", ge=0, le=100
     )
     deceleration: float = option(
-        2.0, "m/s^2", "a stop that is no harder stays possible", gt=0, le=10
+        6.0, "m/s^2", "a stop that is no harder stays possible", gt=0, le=10
+    )
+    calm_time: float = option(
+        0.5, "s", "of the plan in which nobody may be able to force an emergency stop", ge=0, le=10
     )
     margin_growth: float = option(
         0.0, "m/s", "what the corridor grows by per second of look-ahead, on each side", ge=0, le=5

@@ -140,7 +140,8 @@ def _planning(config: RunConfig, time_step: float) -> PlanningRegulator:
             deceleration=planner.deceleration,
             minimum_distance=planner.minimum_distance + margin,
             conflict_weight=planner.conflict_weight,
-            threat_weight=planner.threat_weight if config.safety_layer else 0.0,
+            threat_weight=planner.threat_weight,
+            calm_time=planner.calm_time,
         ),
     )
     model = LongitudinalModel(config.vehicle.mass, config.vehicle.friction, time_step)

@@ -170,6 +170,7 @@ class Ego:
             planned_speed=planner.planned_speed,
             clearance=self.config.safety.margin,
             braking=self.config.mpc.force_limit / self.config.vehicle.mass,
+            safety_layer=self.driver.safety is not None,
         )
 
     @property

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 PASSED = 0.3  # [m] behind the front bumper people still count as in front: they are squeezed past
 _SLOW = 0.2  # [m/s] the ego is no danger (Yang & Özgüner 2019: a standing vehicle is an obstacle)
 _EVERY = 2  # steps from one look for conflicts to the next
+_HALVINGS = 5  # of the interval in which the calm speed is looked for
 _WALKING = 2.5  # [m/s] that nobody exceeds
 
 
@@ -41,6 +42,7 @@ class CrowdForesight:
         planned_speed: people are predicted under the manoeuvre, else under the present speed.
         clearance: [m] that the safety layer keeps to people's bodies.
         braking: [m/s^2] of the ego at most.
+        safety_layer: whether there is one: only then it matters what it would do.
     """
 
     def __init__(
@@ -55,6 +57,7 @@ class CrowdForesight:
         planned_speed: bool,
         clearance: float,
         braking: float,
+        safety_layer: bool,
     ) -> None:
         N = predictor.horizon
         self._predictor = predictor
@@ -66,6 +69,7 @@ class CrowdForesight:
         self._planned_speed = planned_speed
         self._clearance = clearance
         self._braking = braking
+        self._layer = safety_layer
         self._constant = np.arange(N + 1) * predictor.time_step
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
         self._prospect = Prospect(np.empty(N), np.zeros(N), np.zeros(N))
@@ -109,7 +113,7 @@ class CrowdForesight:
             np.multiply(self._constant, self._now, out=self._distance)
             self._speed[:] = self._now
             self._predict(self._distance, self._speed)
-        gap, conflicts, threats = self._prospect
+        gap, conflicts, calm = self._prospect
         path, people = self._path, self._predictor.parameters
         assess(
             path.vertices,
@@ -130,10 +134,11 @@ class CrowdForesight:
                 self._clearance,
                 people.max_acceleration,
                 self._braking,
+                self._layer,
             ),
             gap,
             conflicts,
-            threats,
+            calm,
         )
         return self._prospect
 
@@ -189,6 +194,7 @@ class Alarm(NamedTuple):
     clearance: float  # kept to it by the safety layer [m]
     walking_acceleration: float  # [m/s^2]
     braking: float  # of the ego at most [m/s^2]
+    heeded: bool  # there is a safety layer that would act
 
 
 @kernel
@@ -209,15 +215,15 @@ def assess(
     alarm: Alarm,
     gap: Array,
     conflicts: Array,
-    threats: Array,
+    calm: Array,
 ) -> None:
-    """Fill the gap in front, how many are on a collision course, and how many a threat, at 1 ... N.
+    """Fill gaps in front, persons on a collision course, and calm speeds at steps 1 ... N.
 
     Between two looks at people's courses the numbers are held.
     """
     N = predicted.shape[0]
     first, last = window(stations, front, PASSED + length)
-    conflicts[0] = threats[0] = 0.0
+    conflicts[0], calm[0] = 0.0, np.inf
     for i in range(N):
         at = front + distance[i + 1]
         wide = half_width + growth * (i + 1) * time_step
@@ -227,7 +233,7 @@ def assess(
         gap[i] = closest - at
         if i % _EVERY == 0 and i + 1 < N:
             x, y, heading = body_pose(vertices, stations, headings, at, length)
-            conflicts[i], threats[i] = courses(
+            conflicts[i], calm[i] = courses(
                 predicted[i],
                 predicted[i + 1],
                 x,
@@ -241,7 +247,7 @@ def assess(
                 alarm,
             )
         elif i > 0:
-            conflicts[i], threats[i] = conflicts[i - 1], threats[i - 1]
+            conflicts[i], calm[i] = conflicts[i - 1], calm[i - 1]
 
 
 @kernel
@@ -258,16 +264,16 @@ def courses(
     time_step: float,
     alarm: Alarm,
 ) -> tuple[float, float]:
-    """Persons who would touch the ego within the conflict time, and who threaten an emergency stop.
+    """Persons who would touch the ego within the conflict time if both kept their velocity.
 
-    The former if both kept their velocity; the latter if they did what they can, see
-    :func:`is_threat`.
+    Also the speed [m/s] from which on nobody could force an emergency stop, see
+    :func:`is_threat`; inf: ``speed`` is slow enough.
     """
     if speed <= _SLOW:
-        return 0.0, 0.0
+        return 0.0, np.inf
     c, s = np.cos(heading), np.sin(heading)
     far = 2.0 * half_length + half_width + conflict_time * (speed + _WALKING)
-    conflicts = threats = 0.0
+    conflicts, calm = 0.0, speed
     for j in range(here.shape[0]):
         d_x, d_y = here[j, 0] - front_x, here[j, 1] - front_y
         if d_x * d_x + d_y * d_y > far * far:
@@ -281,9 +287,16 @@ def courses(
         )
         if end >= 0.0 and begin < conflict_time:
             conflicts += 1.0
-        if is_threat(x, y, w_x, w_y, speed, half_width, time_step, alarm):
-            threats += 1.0
-    return conflicts, threats
+        if alarm.heeded and is_threat(x, y, w_x, w_y, calm, half_width, time_step, alarm):
+            low, high = 0.0, calm
+            for _ in range(_HALVINGS):
+                middle = 0.5 * (low + high)
+                if is_threat(x, y, w_x, w_y, middle, half_width, time_step, alarm):
+                    high = middle
+                else:
+                    low = middle
+            calm = low
+    return conflicts, calm if calm < speed else np.inf
 
 
 @kernel
@@ -311,14 +324,21 @@ def is_threat(
         time_step: [s] until the brake acts.
         alarm: the limits.
     """
+    step = speed * time_step
     stop = time_step + speed / alarm.braking
-    clear = alarm.radius + alarm.clearance
-    t = time_step
-    while t <= stop:
-        braked = t - time_step
+    within = 0.5 * (step + _WALKING * time_step)  # a step's motion relative to the front, halved
+    clear = max(
+        alarm.radius + alarm.clearance, np.sqrt(alarm.radius * alarm.radius + within * within)
+    )
+    t = 0.0
+    while t < stop:
+        braked = max(0.0, t - time_step)
         front = speed * t - 0.5 * alarm.braking * braked * braked
         reach = clear + 0.5 * alarm.walking_acceleration * t * t
-        if abs(x + w_x * t - front) <= reach and abs(y + w_y * t) <= half_width + reach:
+        if (
+            abs(x + w_x * t - front) <= reach + 0.5 * step
+            and abs(y + w_y * t) <= half_width + reach
+        ):
             return True
-        t += 2.0 * time_step
+        t += time_step
     return False

@@ -58,12 +58,13 @@ class Prospect(NamedTuple):
     Attributes:
         gap: (N,) [m] to the closest person in front; inf: nobody.
         conflicts: (N,) persons who would be less than the conflict time from a collision.
-        threats: (N,) persons who could force an emergency stop, if they did what they can.
+        calm: (N,) [m/s] the speed up to which nobody could force an emergency stop, whatever
+            people did that they can; inf: the manoeuvre's is calm.
     """
 
     gap: Array
     conflicts: Array
-    threats: Array
+    calm: Array
 
 
 class Weights(NamedTuple):
@@ -108,6 +109,7 @@ def aim(
     speed: float,
     before: float,
     wanted: float,
+    slowest: float,
     fastest: float,
     jerk: float,
     time_step: float,
@@ -121,6 +123,7 @@ def aim(
         speed: now [m/s].
         before: the acceleration before [m/s^2].
         wanted: [m/s^2].
+        slowest: [m/s] where braking ends.
         fastest: [m/s] not exceeded by driving on.
         jerk: [m/s^3] of changes.
         time_step: [s].
@@ -135,7 +138,7 @@ def aim(
         if wanted > 0.0 or v > fastest:
             goal = min(wanted, (fastest - v) / _EASING)
         else:
-            goal = max(wanted, -v / _EASING)
+            goal = max(wanted, min(0.0, (slowest - v) / _EASING))
         a += min(max(goal - a, -most), most)
         after = max(v + time_step * a, 0.0)
         if after > fastest:
@@ -195,7 +198,7 @@ def cost(
     accelerations: Array,
     gap: Array,
     conflicts: Array,
-    threats: Array,
+    calm: Array,
     allowed: Array,
     time_step: float,
     w: Weights,
@@ -208,7 +211,7 @@ def cost(
         accelerations: (N + 1,) [m/s^2].
         gap: (N,) [m] to the closest person in front at steps 1 ... N.
         conflicts: (N,) persons.
-        threats: (N,) persons.
+        calm: (N,) [m/s].
         allowed: (N,) [m] that may be driven until then: vehicles, lights.
         time_step: [s].
         w: the weights.
@@ -223,7 +226,8 @@ def cost(
         v = speeds[i + 1]
         share = v / w.reference_speed
         own += w.time * max(0.0, 1.0 - share) + w.acceleration * accelerations[i] ** 2
-        others += w.conflict * conflicts[i] + w.threat * min(threats[i], 1.0)
+        others += w.conflict * conflicts[i]
+        others += w.threat * max(0.0, v - calm[i]) / w.reference_speed
         if gap[i] < w.safe_distance:
             others += w.nearness * (1.0 - max(gap[i], 0.0) / w.safe_distance) * share
             lacking = stopping_need(v, w) - gap[i]

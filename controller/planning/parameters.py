@@ -21,19 +21,21 @@ class ManoeuvreParameters:
         ParameterError: a value is not finite or out of range.
     """
 
-    accelerations: tuple[float, ...] = (1.5, 0.0, -1.0, -2.5, -5.0)  # [m/s^2] aimed at
+    accelerations: tuple[float, ...] = (2.5, 0.0, -1.5, -2.5, -2.5, -2.5, -5.0)  # [m/s^2] aimed at
+    slowest: tuple[float, ...] = (0.0, 0.0, 0.6, 0.35, 0.175, 0.0, 0.0)  # of v_r: braking ends
     jerk: float = 8.0  # [m/s^3] with which they are approached
-    deceleration: float = 2.0  # b [m/s^2]: a stop is kept possible that is no harder
+    deceleration: float = 6.0  # b [m/s^2]: a stop is kept possible that is no harder
     minimum_distance: float = 1.0  # [m] to a person in front at standstill
     headway: float = 0.1  # [s] more of it the faster
     time_weight: float = 1.0  # of the share of the reference speed that is not driven
     acceleration_weight: float = 0.05  # of (m/s^2)^2
     nearness_weight: float = 0.3  # of the share of d_safe that is missing, times v / v_r
     closeness_weight: float = 20.0  # of a metre too little to stop in, times v / v_r
-    conflict_weight: float = 0.4  # of a person with less than conflict_time to a collision
-    threat_weight: float = 3.0  # of driving where somebody could force an emergency stop
+    conflict_weight: float = 0.6  # of a person with less than conflict_time to a collision
+    threat_weight: float = 1.0  # of the speed beyond the calm one, over v_r
     final_weight: float = 1.0  # [s] of the missing speed at the horizon's end
     persistence: float = 0.02  # [s] that another manoeuvre must be better than the last plan
+    calm_time: float = 0.5  # [s] of the plan in which the calm speed is kept to
     conflict_time: float = 1.5  # [s] time to collision of a conflict (FHWA-HRT-08-051)
 
     def __post_init__(self) -> None:
@@ -45,12 +47,15 @@ class ManoeuvreParameters:
             self.accelerations,
             "finite numbers [m/s^2], the first of them > 0",
         )
+        matching = len(self.slowest) == len(self.accelerations)
+        require(matching, "slowest", self.slowest, "a share of v_r for each acceleration")
         require_positive("jerk", self.jerk, "m/s^3")
         require_positive("deceleration", self.deceleration, "m/s^2")
         require_not_negative("minimum_distance", self.minimum_distance, "m")
         require_not_negative("headway", self.headway, "s")
         for name in _WEIGHTS:
             require_not_negative(name, getattr(self, name), "-")
+        require_not_negative("calm_time", self.calm_time, "s")
         require_positive("conflict_time", self.conflict_time, "s")
 
 

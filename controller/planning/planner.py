@@ -77,13 +77,17 @@ class Planner:
         self.parameters = parameters = parameters or PlannerParameters()
         N = parameters.horizon
         self._weights = Weights.of(parameters, parameters.manoeuvres)
+        m, v_r = parameters.manoeuvres, parameters.reference_speed
+        self._kinds = [
+            (a, share * v_r) for a, share in zip(m.accelerations, m.slowest, strict=True)
+        ]
         self._problem = SmoothingProblem(model, parameters)
         count, n = self._problem.rows.shape
         self._z = np.empty(n)
         self._multipliers = np.zeros(count)
         self._last, self._trial, self._best = (Manoeuvre.empty(N) for _ in range(3))
         self._plan = Manoeuvre.empty(N)
-        self._gap, self._conflicts, self._threats = np.full(N, inf), np.zeros(N), np.zeros(N)
+        self._gap, self._conflicts, self._calm = np.full(N, inf), np.zeros(N), np.full(N, inf)
         self._corridor = np.empty(N)
         self._free, self._nobody = np.full(N, inf), np.zeros(N)
         self.reset()
@@ -100,6 +104,7 @@ class Planner:
         self._planned = False
         self._holds = True
         self._turn = 0
+        self._drives_on = True
         self._tried = 0
 
     @property
@@ -159,29 +164,38 @@ class Planner:
     ) -> str:
         """Search: driving on, what was planned, and the others in turn or all at once.
 
-        All of them are tried where the best two come too close to somebody, else one per step:
-        what is best changes slowly, and the search stays as quick as the loop.
+        All are tried where the best so far comes too close to somebody. Else, what is best
+        changes slowly: besides the plan, driving on and one of the others are tried by turns, so
+        that the search stays as quick as the loop.
         """
-        others = self.parameters.manoeuvres.accelerations
+        persistence = self.parameters.manoeuvres.persistence
+        kinds = self._kinds
+        others = [(a, least) for a, least in kinds[1:] if a >= 0.0 or speed > least]
         self._lowest, self._missing, self._tried = inf, inf, 0
-        self._aim(speed, before, others[0], fastest)
-        disturbed = self._try(allowed, foresight, self.parameters.manoeuvres.persistence)
-        name = "drive on"
-        if disturbed <= 0.0:
-            return "clear"
+        name = ""
+        self._turn += 1
+        drive_on = not self._planned or self._drives_on or self._turn % 2 == 1
+        if drive_on:
+            self._aim(speed, before, *kinds[0], fastest)
+            name = "drive on"
+            if self._try(allowed, foresight, persistence) <= 0.0:
+                self._drives_on = True
+                return "clear"
         if self._planned:
             self._shift(speed)
-            if self._try(allowed, foresight, 0.0) < inf and self._is_best:
-                name = "as planned"
-        rest = others[1:]
-        if self._planned and self._missing <= 0.0 and rest:
-            self._turn = (self._turn + 1) % len(rest)
-            rest = (rest[self._turn],)
-        for wanted in rest:
-            self._aim(speed, before, wanted, fastest)
-            self._try(allowed, foresight, self.parameters.manoeuvres.persistence)
+            self._try(allowed, foresight, 0.0)
             if self._is_best:
-                name = f"{wanted:+g} m/s^2"
+                name = "as planned"
+        if self._planned and self._missing <= 0.0:
+            others = [] if self._turn % 2 else [others[self._turn // 2 % len(others)]]
+        elif not drive_on:
+            others = [kinds[0], *others]
+        for wanted, least in others:
+            self._aim(speed, before, wanted, least, fastest)
+            self._try(allowed, foresight, persistence)
+            if self._is_best:
+                name = "drive on" if wanted > 0.0 else f"{wanted:+g} m/s^2 to {least:g} m/s"
+        self._drives_on = name == "drive on"
         return name
 
     def _follow(
@@ -197,15 +211,17 @@ class Planner:
         if self._planned:
             self._shift(speed)
         else:
-            self._aim(speed, before, 0.0, fastest)
+            self._aim(speed, before, 0.0, 0.0, fastest)
         disturbed = self._try(allowed, foresight, 0.0)
         return "clear" if disturbed <= 0.0 else "as planned"
 
-    def _aim(self, speed: float, before: float, wanted: float, fastest: float) -> None:
+    def _aim(
+        self, speed: float, before: float, wanted: float, slowest: float, fastest: float
+    ) -> None:
         trial, jerk = self._trial, self.parameters.manoeuvres.jerk
         dt = self.model.time_step
         to = (trial.distance, trial.speed, trial.acceleration)
-        aim(speed, before, wanted, fastest, jerk, dt, *to)
+        aim(speed, before, wanted, slowest, fastest, jerk, dt, *to)
 
     def _shift(self, speed: float) -> None:
         trial, b = self._trial, self.parameters.manoeuvres.deceleration
@@ -216,9 +232,9 @@ class Planner:
     def _try(self, allowed: Array, foresight: Foresight | None, handicap: float) -> float:
         """Judge the trial, and keep it if it is the best; what others cost it [s]."""
         trial = self._trial
-        gap, conflicts, threats = self._free, self._nobody, self._nobody
+        gap, conflicts, calm = self._free, self._nobody, self._free
         if foresight is not None:
-            gap, conflicts, threats = foresight.prospect(trial)
+            gap, conflicts, calm = foresight.prospect(trial)
             self._tried += 1
         whole, disturbed, missing = cost(
             trial.distance,
@@ -226,7 +242,7 @@ class Planner:
             trial.acceleration,
             gap,
             conflicts,
-            threats,
+            calm,
             allowed,
             self.model.time_step,
             self._weights,
@@ -235,7 +251,7 @@ class Planner:
         if self._is_best:
             self._lowest, self._missing = whole + handicap, missing
             self._best.copy_from(trial)
-            self._gap[:], self._conflicts[:], self._threats[:] = gap, conflicts, threats
+            self._gap[:], self._conflicts[:], self._calm[:] = gap, conflicts, calm
             if foresight is not None:
                 foresight.prefer()
         return disturbed
@@ -265,8 +281,12 @@ class Planner:
         wanted = best.speed[problem.nodes]
         if not p.gap_choice:
             wanted = np.full(len(problem.nodes), fastest)
+        soon = round(p.manoeuvres.calm_time / self.model.time_step)
+        self._calm[soon:] = inf
         problem.aim_at(wanted, speed, before)
-        if not problem.bound(speed, previous_force, fastest, self._corridor, soft=p.soft):
+        if not problem.bound(
+            speed, previous_force, fastest, self._corridor, self._calm, soft=p.soft
+        ):
             self._planned = False
             return Plan(0.0, False, "infeasible: cannot keep the distance", 0, chosen, self._tried)
         status, iterations = self._solve()
@@ -314,7 +334,7 @@ class Planner:
             plan.acceleration,
             self._gap + self._best.distance[1:] - plan.distance[1:],
             self._conflicts,
-            self._threats,
+            self._calm,
             allowed,
             self.model.time_step,
             self._weights,
@@ -322,7 +342,7 @@ class Planner:
         return missing > self._missing + _WORSE
 
     def _may_hold(self) -> bool:
-        """Whether a comfortable stop stays possible if the plan's last speed is kept on."""
+        """Whether a stop stays possible if the plan's last speed is kept on."""
         plan, dt = self._plan, self.model.time_step
         v = plan.speed[-1]
         gap = self._gap[-1] + self._best.distance[-1] - plan.distance[-1]

@@ -127,7 +127,14 @@ class SmoothingProblem:
         self.target += self._of_speed * speed + self._of_acceleration * acceleration
 
     def bound(
-        self, speed: float, previous_force: float, fastest: float, corridor: Array, *, soft: bool
+        self,
+        speed: float,
+        previous_force: float,
+        fastest: float,
+        corridor: Array,
+        calm: Array,
+        *,
+        soft: bool,
     ) -> bool:
         """Set the bounds.
 
@@ -136,6 +143,7 @@ class SmoothingProblem:
             previous_force: u(k-1) [N].
             fastest: [m/s] not exceeded unless it is already.
             corridor: (N,) [m] how far the plan may have driven at steps 1 ... N.
+            calm: (N,) [m/s] not exceeded as far as braking can help it.
             soft: the corridor gives way as far as braking cannot keep it.
 
         Returns:
@@ -146,6 +154,7 @@ class SmoothingProblem:
             previous_force,
             fastest,
             corridor,
+            calm,
             self.nodes,
             self.intervals,
             self.limits,
@@ -162,6 +171,7 @@ def fill(
     previous_force: float,
     fastest: float,
     corridor: Array,
+    calm: Array,
     nodes: Indices,
     intervals: Array,
     c: Limits,
@@ -180,6 +190,7 @@ def fill(
     hardest = c.gain * c.force / dt
     lower[:n] = 0.0
     upper[:n] = min(c.speed, max(fastest, speed))
+    most = min(most, max(least, calm[0]))
     lower[0], upper[0] = least, most
     lower[n : 2 * n - 1] = -hardest
     upper[n : 2 * n - 1] = hardest
@@ -189,9 +200,11 @@ def fill(
         slower = max(0.0, v - hardest * intervals[i])
         driven += intervals[i] * (v + slower) / 2.0
         v = slower
-        room = corridor[nodes[i] - 1]
+        room, slow = corridor[nodes[i] - 1], calm[nodes[i] - 1]
         for k in range(nodes[i - 1], nodes[i] - 1):
             room = min(room, corridor[k])  # nobody drives backwards: kept at the end, kept before
+            slow = min(slow, calm[k])
+        upper[i] = min(upper[i], max(v, slow))
         if driven > room:
             kept = False
             room = driven
