@@ -60,7 +60,7 @@ class RunConfig(Section):
     scenario: str = option("shared_space", None, "bundled name, folder or .sumocfg", min_length=1)
     seed: int = option(1, None, "seed of the crowd that giveway adds", ge=0, le=2**31 - 1)
     controller: ControllerName = option(
-        "mpc-paper",
+        "mpc",
         None,
         "who drives: mpc (plans ahead), pid-tuned, or the paper's: mpc-paper, pid-paper",
     )
