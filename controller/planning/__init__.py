@@ -2,8 +2,9 @@
 
 from controller.planning.manoeuvre import Manoeuvre, Prospect
 from controller.planning.parameters import ManoeuvreParameters, PlannerParameters
-from controller.planning.planner import Foresight, Plan, Planner
+from controller.planning.planner import Plan, Planner
 from controller.planning.regulator import PlanningRegulator, Situation
+from controller.planning.search import Foresight
 
 __all__ = [
     "Foresight",

@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from controller.planning.planner import Foresight, Planner
+    from controller.planning.planner import Planner
+    from controller.planning.search import Foresight
     from controller.tuned_pid import TunedPid
 
     Array = NDArray[np.float64]
