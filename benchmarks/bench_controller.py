@@ -66,7 +66,8 @@ def compare(horizon: int, decisions: int, seed: int) -> tuple[np.ndarray, float]
     """(n, 2) seconds of the FMU and of the regulator, and how far their forces differ [N]."""
     p, random = ControllerParameters(horizon=horizon), np.random.default_rng(seed)
     h = p.time_step
-    own = make_regulator(RunConfig.model_validate({"mpc": {"horizon": horizon}}), h)
+    settings = {"controller": "mpc-paper", "mpc": {"horizon": horizon}}
+    own = make_regulator(RunConfig.model_validate(settings), h)
     ahead = h * np.arange(1, horizon + 1)
     position, speed, apart = 0.0, 4.0, 0.0
     walker, walks, present = 30.0, 0.0, True

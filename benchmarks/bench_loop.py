@@ -60,7 +60,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=4, help="4 meets the crowd and keeps moving")
     parser.add_argument("--pairs", type=int, default=15, help="loop and baseline, in turn")
     options = parser.parse_args()
-    for controller in ("mpc-paper", "pid-paper"):
+    for controller in ("mpc", "pid-tuned", "mpc-paper", "pid-paper"):
         config, scenario = load([Layer("", {"controller": controller, "seed": options.seed})])
         simulate(config, scenario)  # compiles, and warms the file cache
         results, ratios = [], []

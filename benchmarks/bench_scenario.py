@@ -117,6 +117,7 @@ def run(city: City, case: Case, window: float, profile: cProfile.Profile | None 
     """Run giveway on the city."""
     settings: dict[str, Any] = {
         "scenario": str(city.config_file),
+        "controller": "mpc-paper",
         "time_limit": WARM_UP + window,
         "sumo": {"step_length": case.step_length},
         "ego": {"route": city.ego_route.split(","), "depart_position": 6.0},

@@ -27,10 +27,11 @@ if TYPE_CHECKING:
     from giveway.studies.execution import Executor
 
 BLOCK = 10
+CROWD = {"crowd": {"pedestrians": 30}}
 
 
 def task(seed: int) -> Task:
-    config, _ = load([Layer("", {"seed": seed, "crowd": {"pedestrians": 30}})])
+    config, _ = load([Layer("", {"seed": seed, "controller": "mpc-paper"} | CROWD)])
     return Task(f"c1-s{seed}", f"{seed:032x}", config.model_dump_json(), {}, software_identity())
 
 

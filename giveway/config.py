@@ -161,6 +161,14 @@ class RunConfig(Section):
         return not self.controller.endswith("-paper") if enabled is None else enabled
 
     @property
+    def buffer_distance(self) -> float:
+        """Over which the reference speed rises linearly to v_r beyond d_safe [m]; 0: not so."""
+        if self.controller.endswith("-paper"):
+            return self.pid.buffer_distance
+        linear = self.controller == "pid-tuned" and self.tuned_pid.profile == "linear"
+        return self.tuned_pid.buffer_distance if linear else 0.0
+
+    @property
     def corridor_margin(self) -> float:
         """What the corridor is wider than half the vehicle, on each side [m]."""
         return 0.25

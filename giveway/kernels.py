@@ -71,9 +71,13 @@ def _tiny_run() -> None:
     from giveway.simulation import Ending
 
     people = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
+    hard = {"soft": False, "gap_choice": False}  # nothing is planned then but braking by the PID
     for settings in (
         {"time_limit": 0.2, "crowd": {"pedestrians": 0}},
         {"time_limit": 0.2, "crowd": people},
+        {"time_limit": 0.2, "crowd": people, "planner": hard},
+        {"time_limit": 0.2, "crowd": {"pedestrians": 0}, "controller": "mpc-paper"},
+        {"time_limit": 0.2, "crowd": people, "controller": "mpc-paper"},
         {"time_limit": 1.2, "scenario": "street", "controller": "pid-paper"},
         {"time_limit": 0.3, "scenario": "junction", "crowd": {"walls": True}},
     ):

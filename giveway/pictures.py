@@ -52,7 +52,7 @@ def state_picture(result: RunResult, ego: EgoResult) -> Figure:
     return state_figure(
         ego.track,
         safe_distance=ego.config.regulation.safe_distance,
-        buffer_distance=ego.config.pid.buffer_distance,
+        buffer_distance=ego.config.buffer_distance,
         title=_title(result, ego),
     )
 

@@ -67,7 +67,7 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
     """The parameters of the egos' controller.
 
     Raises:
-        ConfigError: there is no ego, their controllers differ, or are not the paper's.
+        ConfigError: there is no ego, or their controllers differ or cannot be exported.
         ControlError: its parameters contradict each other.
     """
     exports = dict.fromkeys(_parameters(ego, time_step) for ego in config.each_ego())
@@ -84,6 +84,9 @@ def _parameters(config: RunConfig, time_step: float) -> ControllerParameters:
     if not config.controller.endswith("-paper") or not isinstance(regulator.pid, Pid):
         msg = f"controller = {config.controller}: only the paper's controllers can be exported"
         raise ConfigError(f"{msg}; choose --controller mpc-paper or pid-paper")
+    if config.safety_layer:
+        msg = "[safety] enabled = true: the safety layer is no part of an exported controller"
+        raise ConfigError(f"{msg}; leave it out with --no-safety")
     pid = regulator.pid.parameters
     model = config.vehicle if regulator.mpc is None else regulator.mpc.model
     try:

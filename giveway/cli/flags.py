@@ -75,9 +75,10 @@ def _annotation(option: Option) -> Any:
     remarks = "; ".join(part for part in (option.unit, known) if part)
     text = f"{option.field.description} ({remarks})" if remarks else option.field.description
     panel = _PANELS.get(option.location[0], "Run")
-    if option.field.annotation is bool and option.flag.startswith("--no-"):
+    switch = option.field.annotation in (bool, bool | None)
+    if switch and option.flag.startswith("--no-"):
         return Annotated[bool | None, typer.Option(option.flag, help=text, rich_help_panel=panel)]
-    if option.field.annotation is bool:
+    if switch:
         name = f"{option.flag}/--no-{option.flag.removeprefix('--')}"
         return Annotated[bool | None, typer.Option(name, help=text, rich_help_panel=panel)]
     return Annotated[

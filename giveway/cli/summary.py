@@ -23,6 +23,7 @@ _SHOWN = (
     ("Smallest post-encroachment time", "minimum_pet", "s"),
     ("Steps below the safe distance", "share_below_safe_distance", "%"),
     ("Steps in which the MPC acted", "mpc_feasibility_rate", "%"),
+    ("Steps in which the safety layer acted", "safety_share", "%"),
 )
 _LEDGER = (
     ("Pedestrians added", "added"),

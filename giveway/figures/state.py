@@ -55,7 +55,7 @@ def state_figure(
     Args:
         runs: the ego's track, or pairs of a label and a track.
         safe_distance: d_safe [m], drawn into the gap's panel.
-        buffer_distance: d_buffer [m], drawn on top of it.
+        buffer_distance: d_buffer [m], drawn on top of it; 0: not.
         title: of the whole figure.
 
     Raises:
@@ -125,10 +125,11 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
 
 def _draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: float) -> None:
     axes.axhline(safe_distance, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)), label="d_safe")
-    axes.axhline(
-        safe_distance + buffer_distance, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)),
-        label="d_safe + d_buffer",
-    )  # fmt: skip
+    if buffer_distance > 0.0:
+        axes.axhline(
+            safe_distance + buffer_distance, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)),
+            label="d_safe + d_buffer",
+        )  # fmt: skip
     somebody = np.isfinite(ego.gap)
     if not somebody.any():
         axes.text(
@@ -181,7 +182,7 @@ def _name_distances(axes: Axes, safe_distance: float, buffer_distance: float) ->
     """Name the two lines outside the right edge, where no curve passes."""
     names = ((safe_distance, "$d_{safe}$"), (buffer_distance, "$d_{safe} + d_{buffer}$"))
     height = 0.0
-    for distance, name in names:
+    for distance, name in names if buffer_distance > 0.0 else names[:1]:
         height += distance
         axes.annotate(
             f"{name}\n= {height:g} m", xy=(1.0, height), xytext=(4, 0), va="center", fontsize=8,

@@ -36,7 +36,7 @@ class PairSide:
         label: of the compared level.
         ego: its track.
         safe_distance: d_safe [m] of its controller.
-        buffer_distance: d_buffer [m] on top of it.
+        buffer_distance: d_buffer [m] on top of it; 0: it has none.
     """
 
     label: str
@@ -92,7 +92,10 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
 def _draw_gap(axes: Axes, side: PairSide) -> None:
     safe, whole = side.safe_distance, side.safe_distance + side.buffer_distance
     axes.axhline(safe, color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe")
-    axes.axhline(whole, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)), label="d_safe + d_buffer")
+    if whole > safe:
+        axes.axhline(
+            whole, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)), label="d_safe + d_buffer"
+        )  # fmt: skip
     gap = np.where(np.isfinite(side.ego.gap), side.ego.gap, np.nan)
     axes.plot(side.ego.time, gap, color=GREEN, label="gap", zorder=3)
     if not np.isfinite(gap).any():
@@ -120,10 +123,11 @@ def _legend(sides: Sequence[PairSide]) -> list[Artist]:
         Line2D([], [], color=BLACK, linewidth=0.9, linestyle=DASHES, label="reference speed"),
         Line2D([], [], color=GREEN, label="gap"),
         Line2D([], [], color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe"),
-        Line2D(
-            [], [], color=GREY, linewidth=0.9, linestyle=(0, (1, 2)), label="d_safe + d_buffer"
-        ),
-    ]  # fmt: skip
+    ]
+    if any(side.buffer_distance > 0.0 for side in sides):
+        dots = (0, (1, 2))
+        name = "d_safe + d_buffer"
+        handles.append(Line2D([], [], color=GREY, linewidth=0.9, linestyle=dots, label=name))
     acted = {str(name) for side in sides for name in np.unique(side.ego.acting)}
     for name, (colour, opacity) in SHADES.items():
         if name in acted:

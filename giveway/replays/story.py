@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,6 +27,12 @@ _REASONS = {
     "selected": "this run is driven by the PID alone",
     "infeasible": "no plan keeps all constraints",
 }
+_MANOEUVRES = {
+    "clear": "nobody is in the way of driving on",
+    "drive on": "driving on costs least, for all that people may answer to it",
+    "as planned": "nothing costs less than what was planned before",
+}
+_AIMED = re.compile(r"(?P<rate>[-+][\d.e+-]+ m/s\^2) to (?P<speed>[\d.e+-]+ m/s)")
 _SAFETY = {
     "safety layer": "the safety layer brakes: a stop must stay possible",
     "unavoidable": "the safety layer brakes: no braking is surely enough",
@@ -41,9 +48,20 @@ def why(reason: str, status: str) -> dict[str, Any]:
     """
     infeasible = reason.startswith("infeasible") or status.startswith("infeasible")
     text = _SAFETY.get(reason) or _INFEASIBLE.get(status) or _REASONS.get(reason)
+    text = text or _manoeuvre(reason)
     if text is None:
         text = f"the plan was rejected ({reason})" if reason.startswith("solver") else reason
     return {"text": text, "infeasible": infeasible}
+
+
+def _manoeuvre(name: str) -> str | None:
+    """Why the planning MPC chose a manoeuvre; None: it is none of its."""
+    aimed = _AIMED.fullmatch(name)
+    if aimed is None:
+        return _MANOEUVRES.get(name)
+    if float(aimed["rate"].split()[0]) == 0.0:
+        return "keeping the speed costs least"
+    return f"slowing down to {aimed['speed']} at {aimed['rate'].lstrip('-')} costs least"
 
 
 def events(rows: pd.DataFrame, people: pd.DataFrame, config: RunConfig) -> list[dict[str, Any]]:

@@ -53,7 +53,7 @@ def _side(result: RunResult, pair: ExamplePair, label: str) -> PairSide:
         label,
         ego.track,
         ego.config.regulation.safe_distance,
-        ego.config.pid.buffer_distance,
+        ego.config.buffer_distance,
     )
 
 

@@ -220,4 +220,6 @@ def test_the_command_refuses_in_one_line(tmp_path: Path) -> None:
     for other in ("mpc", "pid-tuned"):
         with pytest.raises(ConfigError, match=f"{other}: only the paper's .* --controller mpc-pap"):
             export({"controller": other}, tmp_path / "other.fmu")
+    with pytest.raises(ConfigError, match=r"\[safety\] enabled = true: .*with --no-safety"):
+        export(MPC | {"safety": {"enabled": True}}, tmp_path / "other.fmu")
     assert not (tmp_path / "other.fmu").exists()

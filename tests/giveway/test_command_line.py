@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -94,6 +95,14 @@ def test_absurd_values_are_refused_with_their_unit(tmp_path: Path) -> None:
     assert "--pedestrians = 'many'" in refused("run", "--pedestrians", "many", cwd=tmp_path)
     assert "[kg]" in refused("run", "--vehicle-mass", 0, cwd=tmp_path)
     assert "[s]" in refused("run", "--time-step", 0.03, cwd=tmp_path)
+
+
+def test_the_safety_layer_has_a_switch_like_any_other(tmp_path: Path) -> None:
+    for flag, value in (("--safety", True), ("--no-safety", False)):
+        run = giveway("config", "--controller", "mpc-paper", flag, cwd=tmp_path)
+        assert tomllib.loads(run.stdout)["safety"]["enabled"] is value
+    plain = giveway("config", "--controller", "mpc-paper", cwd=tmp_path)
+    assert "enabled" not in tomllib.loads(plain.stdout)["safety"]
 
 
 def test_a_broken_scenario_carries_sumos_own_reason(tmp_path: Path) -> None:

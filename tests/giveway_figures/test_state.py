@@ -50,6 +50,14 @@ def test_the_three_quantities_are_drawn_with_their_units(run):
     assert line(gap, "d_safe + d_buffer").get_ydata() == [18.0, 18.0]
 
 
+def test_a_controller_without_a_buffer_has_no_line_for_it(run):
+    ego, _ = run(30, 1, "mpc")
+    _, gap, _ = state_figure(ego, safe_distance=8.0, buffer_distance=0.0).axes
+    assert line(gap, "d_safe").get_ydata() == [8.0, 8.0]
+    assert "d_safe + d_buffer" not in [one.get_label() for one in gap.lines]
+    assert [text.get_text().splitlines()[0] for text in gap.texts] == ["$d_{safe}$"]
+
+
 def test_every_panel_is_shaded_where_each_controller_acted(run):
     ego, _ = run(30, 1, "mpc")
     assert {"mpc", "pid"} == set(ego.acting)

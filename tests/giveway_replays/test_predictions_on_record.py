@@ -18,7 +18,12 @@ from giveway.simulation import looks_ahead
 if TYPE_CHECKING:
     from pathlib import Path
 
-SETTINGS: dict[str, Any] = {"scenario": "shared_space", "seed": 3, "time_limit": 7.0}
+SETTINGS: dict[str, Any] = {
+    "scenario": "shared_space",
+    "seed": 3,
+    "controller": "mpc-paper",
+    "time_limit": 7.0,
+}
 
 
 def test_without_the_option_there_is_no_table_and_every_other_one_is_the_same(
@@ -72,9 +77,11 @@ def test_a_period_is_whole_control_steps(period: float | None, steps: int) -> No
     assert looks_ahead(period, 0.05) == steps
 
 
-def test_of_a_period_beyond_the_horizon_its_end_is_kept() -> None:
-    result = run({**SETTINGS, "time_limit": 6.0, "record": {"predictions": 99.0}})
-    assert result.predictions["look_ahead"].unique() == pytest.approx([0.75])
+@pytest.mark.parametrize(("controller", "horizon"), [("mpc-paper", 0.75), ("mpc", 3.0)])
+def test_of_a_period_beyond_the_horizon_its_end_is_kept(controller: str, horizon: float) -> None:
+    settings = {**SETTINGS, "time_limit": 6.0, "controller": controller}
+    result = run({**settings, "record": {"predictions": 99.0}})
+    assert result.predictions["look_ahead"].unique() == pytest.approx([horizon])
 
 
 def test_the_pid_alone_predicts_nothing() -> None:

@@ -16,7 +16,7 @@ from giveway.cli.replay import replay_command
 from giveway.errors import ResultsError
 from giveway.replays import write_replay
 from giveway.replays.packing import Frame, pack_tracks, thinning
-from giveway.replays.story import events
+from giveway.replays.story import events, why
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -169,6 +169,23 @@ def test_thinning_keeps_the_ends_of_every_track_and_far_people_whole() -> None:
     ends = sorted((x[a], x[b - 1], b - a) for a, b in itertools.pairwise(start))
     assert ends[0] == (0, 3000, 4)
     assert ends[1][:2] == (0, 10000)
+
+
+@pytest.mark.parametrize(
+    ("reason", "text"),
+    [
+        ("clear", "nobody is in the way"),
+        ("drive on", "driving on costs least"),
+        ("as planned", "what was planned before"),
+        ("+0 m/s^2 to 0 m/s", "keeping the speed costs least"),
+        ("-2.5 m/s^2 to 1.4 m/s", "slowing down to 1.4 m/s at 2.5 m/s^2 costs least"),
+        ("safety layer", "the safety layer brakes"),
+    ],
+)
+def test_what_the_planning_mpc_chose_is_told_in_words(reason: str, text: str) -> None:
+    told = why(reason, "solved")
+    assert text in told["text"]
+    assert not told["infeasible"]
 
 
 def test_events_are_stops_fallbacks_and_encounters(recorded: Path) -> None:
