@@ -237,7 +237,7 @@ def test_a_cell_that_cannot_be_run_is_found_before_anything_runs(text, said):
 
 def test_an_unknown_study_names_the_known_ones():
     with pytest.raises(
-        ConfigError, match=r"expected a \.toml file or one of controllers, paper, readings"
+        ConfigError, match=r"expected a \.toml file or one of ablation, controllers, paper, readings"
     ):
         find_study("papper")
 
