@@ -116,6 +116,13 @@ class PlannerConfig(Section):
         ge=0,
         le=1e3,
     )
+    nearness_weight: float = option(
+        0.3,
+        None,
+        "seconds of delay that a second at v_r right before somebody is worth, none at d_safe",
+        ge=0,
+        le=1e3,
+    )
     threat_weight: float = option(
         1.0,
         None,

@@ -36,7 +36,17 @@ NO_LEADER = Leader(math.inf, 0.0)
 
 
 class Corridor:
-    """The corridor about a path; its arrays are allocated once and handed out again and again."""
+    """The corridor about a path; its arrays are allocated once and handed out again and again.
+
+    Args:
+        path: the ego's.
+        half_width: [m].
+        horizon: N [steps].
+        time_step: [s].
+        walking_speed_limit: [m/s] that nobody exceeds on foot.
+        body_length: of the ego [m].
+        straight: steps for which vehicles beside the path are taken to go straight on; None: N.
+    """
 
     def __init__(
         self,
@@ -47,11 +57,13 @@ class Corridor:
         time_step: float,
         walking_speed_limit: float,
         body_length: float = 5.0,
+        straight: int | None = None,
     ) -> None:
         self.path = path
         self.half_width = half_width
         self.time_step = time_step
         self.body_length = body_length
+        self._straight = horizon if straight is None else straight
         self._reach = walking_speed_limit * horizon * time_step  # [m] walked within the horizon
         self._ahead = np.full(horizon, np.inf)
         self._vehicles_ahead = np.full(horizon, np.inf)
@@ -118,6 +130,7 @@ class Corridor:
             speed * self.time_step,
             self.time_step,
             self.half_width,
+            self._straight,
             ahead,
         )
         return Leader(station, along), ahead

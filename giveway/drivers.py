@@ -139,6 +139,7 @@ def _planning(config: RunConfig, time_step: float) -> PlanningRegulator:
         manoeuvres=ManoeuvreParameters(
             deceleration=planner.deceleration,
             minimum_distance=planner.minimum_distance + margin,
+            nearness_weight=planner.nearness_weight,
             conflict_weight=planner.conflict_weight,
             threat_weight=planner.threat_weight,
             calm_time=planner.calm_time,

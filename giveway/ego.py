@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 _KEPT = 0.5  # [m] that the approach to a vehicle ends before the safe distance
 _BEYOND = 0.5  # [m] beyond the stopping place no plan may lead
 _RECOVERY = 2.0  # [s] in which a safe distance that is lost is to be regained
+_STRAIGHT = 1.0  # [s] of a long horizon in which others go straight on; then the road may bend
 _PREDICT_ALL = 150  # persons; of a larger crowd only who matters to the ego is predicted
 _INTERACTION = 8.0  # [m] the VCI model's radius of interaction
 
@@ -75,6 +76,11 @@ class Driver:
             self.vehicle.start(position=0.0, speed=speed)
         except FmuError as error:
             raise VehicleError(str(error)) from error
+
+    @property
+    def clearance(self) -> float:
+        """What the safety layer keeps to people's bodies [m]."""
+        return 0.0 if self.safety is None else self.safety.margin + self.safety.position_error
 
     @property
     def horizon(self) -> int:
@@ -143,6 +149,7 @@ class Ego:
             time_step=time_step,
             walking_speed_limit=driver.walking_speed_limit,
             body_length=shape.length,
+            straight=round(_STRAIGHT / time_step) if config.controller == "mpc" else None,
         )
         self._span = driver.horizon * time_step  # [s]
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
@@ -168,7 +175,7 @@ class Ego:
             growth=planner.margin_growth,
             conflict_time=driver.regulator.planner.parameters.manoeuvres.conflict_time,
             planned_speed=planner.planned_speed,
-            clearance=self.config.safety.margin,
+            clearance=self.driver.clearance,
             braking=self.config.mpc.force_limit / self.config.vehicle.mass,
             safety_layer=self.driver.safety is not None,
         )

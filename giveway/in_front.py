@@ -169,13 +169,15 @@ def vehicles_in_front(
     advance: float,
     time_step: float,
     half_width: float,
+    straight: int,
     ahead: Array,
 ) -> tuple[float, float]:
     """The closest vehicle now (station, speed along the path); fills ``ahead`` for 1 ... N.
 
     One that is in the corridor now is taken to follow the path at its present speed, any other
-    one to go straight on: so a car ahead in a bend stays ahead, and one from the side comes. One
-    that is in the corridor behind the front bumper stays behind: it does not drive through us.
+    one to go straight on, for ``straight`` steps: so a car ahead in a bend stays ahead, and one
+    from the side comes. One that is in the corridor behind the front bumper stays behind: it does
+    not drive through us.
     """
     N = ahead.shape[0]
     first, last = window(stations, front, _BEHIND)
@@ -197,14 +199,14 @@ def vehicles_in_front(
             for k in range(N):
                 ahead[k] = min(ahead[k], station + (k + 1) * time_step * along)
             continue
-        reach = N * (advance + abs(vehicle[3]) * time_step) + size + half_width
+        reach = min(N, straight) * (advance + abs(vehicle[3]) * time_step) + size + half_width
         if away > reach:
             continue  # it cannot meet the ego within the horizon
         rear = front - reach
         begin = segment_at(stations, rear)
         if outline_in_front(vertices, stations, begin, last, vehicle, rear, half_width) < np.inf:
             continue
-        for k in range(1, min(N, poses.shape[0] - 1) + 1):
+        for k in range(1, min(N, straight, poses.shape[0] - 1) + 1):
             at = front + k * advance
             station = outline_in_front(vertices, stations, first, last, poses[k, j], at, half_width)
             ahead[k - 1] = min(ahead[k - 1], station)
