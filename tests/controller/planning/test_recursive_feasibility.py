@@ -31,7 +31,7 @@ from controller.regulator import STANDSTILL
 MODEL = LongitudinalModel()
 N, DT, V_R = 60, MODEL.time_step, 4.0
 STEPS = 200  # 10 s
-BOUGHT = 0.15  # [m]
+BOUGHT = 0.2  # [m]
 
 
 @dataclass(frozen=True)

@@ -168,7 +168,6 @@ def test_no_plan_is_better_under_a_penalty_beyond_the_largest_multiplier(plain_p
 @pytest.mark.parametrize("solver", ["osqp", "daqp"])
 def test_the_force_is_that_of_the_plain_problems_optimum(plain_problem, seed, solver):
     plain = drawn(plain_problem, seed, parameters=replace(FOLLOWING, solver=solver))
-    problem, _ = bounded(plain)
     G, lower, upper = plain.rows()
     D, room = plain.distances()
     each, _ = plain.unavoidable()
