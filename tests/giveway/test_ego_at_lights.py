@@ -60,7 +60,7 @@ def drive(
 
 
 @given(
-    controller=st.sampled_from(["mpc-paper", "pid-paper", "pid-tuned"]),
+    controller=st.sampled_from(["mpc", "mpc-paper", "pid-paper", "pid-tuned"]),
     speed=st.floats(3.0, 16.0),
     share=st.floats(0.0, 1.0),
     distance=st.floats(0.3, 120.0),

@@ -1,0 +1,230 @@
+"""What the planner is told of the crowd, against plain geometry and the safety layer."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+
+from controller import LongitudinalModel, SafetyLayer, SafetyParameters
+from controller.planning import Manoeuvre
+from giveway.courses import Alarm, is_threat
+from giveway.ego_path import EgoPath
+from giveway.foresight import PASSED, CrowdForesight, assess
+from giveway.tracks import VehicleShape
+from pedestrian_model import OPEN_GROUND, SIM, Crowd, Predictor
+
+N, DT = 20, 0.05
+LENGTH, WIDTH, RADIUS = 5.0, 2.0, SIM.body_radius
+HALF_WIDTH, CONFLICT_TIME = 1.25, 1.5
+FRONT = 20.0  # [m]
+ALARM = Alarm(RADIUS, 0.05, SIM.max_acceleration, 8.0, heeded=True)
+EDGE = 1e-6
+
+angles = np.linspace(-np.pi / 2, np.pi / 2, 200)
+STRAIGHT = EgoPath.through([(0.0, 0.0), (60.0, 0.0)])
+BEND = EgoPath.through(np.column_stack([20.0 * np.cos(angles), 20.0 * np.sin(angles)]))
+PATHS = {"straight": STRAIGHT, "bend": BEND}
+
+
+def walkers(g, path, count=25):
+    """(N, n, 2) people about the path ahead, each at a constant velocity."""
+    middle = np.array(path.pose(FRONT + 3.0)[:2])
+    start = middle + g.uniform(-7.0, 7.0, (count, 2))
+    velocity = g.uniform(-1.6, 1.6, (count, 2))
+    return start + DT * np.arange(1, N + 1)[:, None, None] * velocity
+
+
+def manoeuvre(speed, acceleration=0.0):
+    m = Manoeuvre.empty(N)
+    m.acceleration[:] = acceleration
+    m.speed[:] = np.maximum(speed + acceleration * DT * np.arange(N + 1), 0.0)
+    m.distance[1:] = DT * np.cumsum(m.speed[:-1])
+    return m
+
+
+def assessed(path, people, m, *, growth=0.0, alarm=ALARM):
+    out = np.empty(N), np.empty(N), np.empty(N)
+    assess(
+        path.vertices,
+        path.stations,
+        path.headings,
+        people,
+        FRONT,
+        m.distance,
+        m.speed,
+        LENGTH,
+        WIDTH,
+        HALF_WIDTH,
+        growth,
+        CONFLICT_TIME,
+        DT,
+        alarm,
+        *out,
+    )
+    return out
+
+
+def touching_courses(path, people, m, i):
+    """Persons at step i + 1 on a course that touches the ego's body, and those on the edge."""
+    x, y, heading = path.pose(FRONT + m.distance[i + 1], LENGTH)
+    towards = np.array([np.cos(heading), np.sin(heading)])
+    left = np.array([-towards[1], towards[0]])
+    front = np.array([x, y])
+    corners = [
+        front - back * LENGTH * towards + side * WIDTH / 2 * left
+        for back, side in ((0, 1), (0, -1), (1, -1), (1, 1))
+    ]
+    body = shapely.Polygon(corners)
+    relative = (people[i + 1] - people[i]) / DT - m.speed[i + 1] * towards
+    courses = [
+        shapely.LineString([p, p + w * CONFLICT_TIME])
+        for p, w in zip(people[i], relative, strict=True)
+    ]
+    distance = shapely.distance(body, courses)
+    return (distance < RADIUS - EDGE).sum(), (np.abs(distance - RADIUS) <= EDGE).sum()
+
+
+@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("name", PATHS)
+@pytest.mark.parametrize("growth", [0.0, 0.4])
+def test_the_gap_is_to_the_closest_person_in_the_corridor(name, seed, growth):
+    path, g = PATHS[name], np.random.default_rng(seed)
+    people, m = walkers(g, path), manoeuvre(g.uniform(0.0, 6.0), g.uniform(-3.0, 1.0))
+    line = shapely.LineString(path.vertices)
+    gaps, _, _ = assessed(path, people, m, growth=growth)
+    for i in range(N):
+        at = FRONT + m.distance[i + 1]
+        points = shapely.points(people[i])
+        station, aside = line.project(points), line.distance(points)
+        wide = HALF_WIDTH + growth * (i + 1) * DT
+        if (np.abs(aside - wide) < 2e-3).any() or (np.abs(station - at + PASSED) < 2e-2).any():
+            continue  # the edge
+        inside = (aside < wide) & (station > at - PASSED)
+        expected = np.min(station[inside] - at, initial=np.inf)
+        assert gaps[i] == pytest.approx(expected, abs=1e-9 if name == "straight" else 5e-2)
+
+
+@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("name", PATHS)
+def test_conflicts_are_people_on_a_course_into_the_ego(name, seed):
+    path, g = PATHS[name], np.random.default_rng(100 + seed)
+    people, m = walkers(g, path), manoeuvre(g.uniform(1.0, 6.0), g.uniform(-3.0, 1.0))
+    _, conflicts, _ = assessed(path, people, m)
+    for i in range(0, N - 1, 2):
+        if m.speed[i + 1] > 0.2:
+            surely, perhaps = touching_courses(path, people, m, i)
+            assert surely <= conflicts[i] <= surely + perhaps
+    assert np.array_equal(conflicts[1::2], conflicts[::2])  # held between two looks
+
+
+def test_who_stands_is_in_nobodys_way():
+    people = walkers(np.random.default_rng(0), STRAIGHT)
+    _, conflicts, calm = assessed(STRAIGHT, people, manoeuvre(0.1))
+    assert not conflicts.any()
+    assert np.isinf(calm).all()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_up_to_the_calm_speed_somebody_is_no_threat_and_beyond_it_is(seed):
+    g = np.random.default_rng(seed)
+    people, v = walkers(g, STRAIGHT, count=1), g.uniform(1.0, 6.0)
+    m = manoeuvre(v)
+    _, _, calm = assessed(STRAIGHT, people, m)
+
+    def threatened(i, speed):
+        return any(
+            is_threat(x - FRONT - m.distance[i + 1], y, *w, speed, WIDTH / 2, DT, ALARM)
+            for (x, y), w in zip(people[i], (people[i + 1] - people[i]) / DT, strict=True)
+        )
+
+    for i in range(0, N - 1, 2):
+        if np.isinf(calm[i]):
+            assert not threatened(i, v)
+        else:
+            assert threatened(i, v)
+            assert threatened(i, min(v, calm[i] + v / 32.0 + 1e-9))  # five halvings
+            assert calm[i] == 0.0 or not threatened(i, calm[i])
+
+
+def test_without_a_safety_layer_every_speed_is_calm():
+    people = walkers(np.random.default_rng(3), STRAIGHT)
+    _, _, calm = assessed(STRAIGHT, people, manoeuvre(4.0), alarm=ALARM._replace(heeded=False))
+    assert np.isinf(calm).all()
+
+
+def test_threats_outline_when_the_safety_layer_would_act():
+    # Not a bound: docs/planner.md says in which cases the outline errs, and in which direction.
+    g, layer = np.random.default_rng(0), SafetyLayer(LongitudinalModel(), SafetyParameters())
+    seen = np.zeros((2, 2))
+    for _ in range(6000):
+        v, x, y = g.uniform(0.3, 6.0), g.uniform(0.3, 8.0), g.uniform(-4.0, 4.0)
+        pace, towards = g.uniform(0.0, 2.2), g.uniform(-np.pi, np.pi)
+        w = pace * np.array([np.cos(towards), np.sin(towards)])
+        layer.reset()
+        way, here = np.array([[0.0, 0.0, 1.0, 0.0]]), np.array([[x, y]])
+        acted = layer.filter(100.0 * v, v, way, 0.1, here, w[None]).acted
+        seen[int(acted), int(is_threat(x, y, *w, v, WIDTH / 2, DT, ALARM))] += 1
+    assert seen[1].sum() > 300
+    assert seen[1, 1] / seen[1].sum() > 0.92  # of the acts
+    assert seen[0, 1] / seen[0].sum() < 0.03  # false alarms
+
+
+# --- the crowd under a manoeuvre ------------------------------------------------------------------
+
+
+def foresight(**changes):
+    settings = {
+        "half_width": HALF_WIDTH,
+        "growth": 0.0,
+        "conflict_time": CONFLICT_TIME,
+        "planned_speed": True,
+        "clearance": 0.05,
+        "braking": 8.0,
+        "safety_layer": True,
+    }
+    shape = VehicleShape(LENGTH, WIDTH)
+    return CrowdForesight(Predictor(SIM, DT, N), STRAIGHT, shape, **(settings | changes))
+
+
+def look(ahead, *, speed=4.0):
+    """Somebody beside the corridor who wants to cross before the ego."""
+    crowd = Crowd.create([(FRONT + 6.0, -2.0)], [(0.0, 1.3)], 1.3, [[(FRONT + 6.0, 10.0)]])
+    poses = np.zeros((N, 1, 7))
+    poses[:, :, 4:] = LENGTH / 2, LENGTH / 2, WIDTH
+    ahead.look(crowd, OPEN_GROUND, poses, 0, FRONT, speed)
+
+
+def test_people_answer_to_the_manoeuvre():
+    ahead = foresight()
+    look(ahead)
+    crossings = []
+    for m in (manoeuvre(4.0), manoeuvre(4.0, -4.0)):
+        ahead.prospect(m)
+        ahead.prefer()
+        crossings.append(ahead.best[-1, 0, 1])
+    assert abs(crossings[1] - crossings[0]) > 0.01
+
+
+def test_under_the_present_speed_people_do_the_same_whatever_is_tried():
+    ahead = foresight(planned_speed=False)
+    look(ahead)
+    best = []
+    for m in (manoeuvre(4.0), manoeuvre(4.0, -4.0)):
+        ahead.prospect(m)
+        ahead.prefer()
+        best.append(ahead.best.copy())
+    assert np.array_equal(*best)
+
+
+def test_the_best_is_remembered_while_others_are_tried_and_forgotten_at_the_next_look():
+    ahead = foresight()
+    look(ahead)
+    assert ahead.best is None
+    ahead.prospect(manoeuvre(4.0))
+    ahead.prefer()
+    preferred = ahead.best.copy()
+    ahead.prospect(manoeuvre(4.0, -4.0))
+    assert np.array_equal(ahead.best, preferred)
+    look(ahead)
+    assert ahead.best is None
