@@ -7,6 +7,7 @@ from contextlib import ExitStack
 import numpy as np
 import pytest
 
+from controller.planning import Manoeuvre
 from giveway.config import RunConfig
 from giveway.drivers import make_driver, make_regulator
 from giveway.ego import Ego
@@ -16,12 +17,13 @@ from giveway.tracks import VehicleShape
 from pedestrian_model import OPEN_GROUND, Crowd
 
 BEND = [(-50.0, 0.0), (0.0, 0.0), (30.0, 0.0), (60.0, 20.0), (100.0, 60.0)]
-CONFIG = RunConfig()
+CONFIG = RunConfig(controller="mpc-paper")
+PLANNING = RunConfig(controller="mpc")
 
 
-def crowd(rng: np.random.Generator) -> Crowd:
+def crowd(rng: np.random.Generator, widest: float = 60.0) -> Crowd:
     """200 to 1,500 people in a square of 50 to 120 m about the ego, walking anywhere."""
-    count, size = int(rng.integers(200, 1500)), rng.uniform(25, 60)
+    count, size = int(rng.integers(200, 1500)), rng.uniform(25, widest)
     position, destination = rng.uniform(-size, size, (2, count, 2))
     speed = rng.uniform(0.5, 2.0, count)
     way = destination - position
@@ -57,3 +59,36 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
         assert seen[0][matters] == pytest.approx(seen[1][matters], abs=1e-6)
     assert left_out > 15
     assert in_reach > 15
+
+
+def test_who_is_left_out_changes_nothing_that_a_manoeuvre_would_lead_to(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rng = np.random.default_rng(2)
+    shape, left_out, met = VehicleShape(), 0, 0
+    for _ in range(12):
+        speed = rng.uniform(1.0, 10.0)
+        people = crowd(rng, widest=150.0)
+        seen = []
+        for predict_all in (150, 10**9):
+            monkeypatch.setattr("giveway.ego._PREDICT_ALL", predict_all)
+            with ExitStack() as stack:
+                driver = make_driver(PLANNING, make_regulator(PLANNING, 0.05), 0.05, stack)
+                driver.start(speed)
+                lights = Lights((), comfortable=2.0, hardest=8.0)
+                ego = Ego(driver, EgoPath.through(BEND), 50.0, shape, lights, 100.0, 0.05)
+                N = driver.horizon
+                poses = np.zeros((N, 1, 7))
+                poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
+                ego.corridor.fill_poses(poses, 0, ego.front, speed)
+                look = ego.look(0, poses, people, OPEN_GROUND)
+                assert look.foresight is not None
+                left_out += look.whom is not None and not look.whom.all()
+                way = speed * 0.05 * np.arange(N + 1)
+                steady = Manoeuvre(way, np.full(N + 1, speed), np.zeros(N + 1))
+                seen.append([column.copy() for column in look.foresight.prospect(steady)])
+        met += int(np.isfinite(seen[0][0]).any() and seen[0][1].any())
+        for few, all_of_them in zip(*seen, strict=True):
+            assert few == pytest.approx(all_of_them, abs=1e-6)
+    assert left_out > 6
+    assert met > 6
