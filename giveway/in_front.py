@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.ego_path import body_pose, segment_at
+from giveway.ego_path import body_pose, project, segment_at
 from giveway.jit import kernel
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 SIGHT = 100.0  # [m] along the path
 _BEHIND = 10.0  # [m] so far back, or as far as people walk in the horizon, they are looked for
+_ONCOMING = -0.8  # cosine of the angle to the ego's way there
 _OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
 _FINEST_OUTLINE = 0.1  # [m] and at least
 
@@ -176,8 +177,9 @@ def vehicles_in_front(
 
     One that is in the corridor now is taken to follow the path at its present speed, any other
     one to go straight on, for ``straight`` steps: so a car ahead in a bend stays ahead, and one
-    from the side comes. One that is in the corridor behind the front bumper stays behind: it does
-    not drive through us.
+    from the side comes. Over a horizon longer than that, oncoming cars are taken to keep to the
+    lane beside. One that is in the corridor behind the front bumper stays behind: it does not
+    drive through us.
     """
     N = ahead.shape[0]
     first, last = window(stations, front, _BEHIND)
@@ -199,6 +201,11 @@ def vehicles_in_front(
             for k in range(N):
                 ahead[k] = min(ahead[k], station + (k + 1) * time_step * along)
             continue
+        if straight < N:
+            nearest_to_it, _ = project(vertices, stations, vehicle[0], vehicle[1])
+            i = segment_at(stations, nearest_to_it)
+            if np.cos(vehicle[2] - headings[i]) < _ONCOMING:
+                continue  # on the lane beside ours, which bends as ours does
         reach = min(N, straight) * (advance + abs(vehicle[3]) * time_step) + size + half_width
         if away > reach:
             continue  # it cannot meet the ego within the horizon
