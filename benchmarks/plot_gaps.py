@@ -47,9 +47,7 @@ def draw(axis: Axes, controller: str, seed: int) -> None:
     track, crowd, length = ego.track, ego.crowd, ego.shape.length
     time = track.time - track.time[0]
     inside = np.abs(crowd.y) <= HALF_WIDTH
-    axis.plot(
-        time[crowd.step[inside]], crowd.x[inside], ".", ms=2, color=VERMILION, label="person"
-    )
+    axis.plot(time[crowd.step[inside]], crowd.x[inside], ".", ms=2, color=VERMILION, label="person")
     axis.fill_between(time, track.front_x - length, track.front_x, color=SKY_BLUE, alpha=0.5)
     axis.plot(time, track.front_x, color="black", lw=1.2, label="ego's front")
     acts = track.acting == "safety"
