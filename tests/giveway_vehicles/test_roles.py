@@ -115,7 +115,9 @@ def require_physics(rows: pd.DataFrame, options: dict, tolerance: float) -> None
 def test_the_ego_moves_as_the_fmus_physics_says(zoo, own_temp, name):
     car = zoo.car(**CARS[name])
     vehicle = {"fmu": str(car), "profile": str(car.with_suffix(".toml"))}
-    result = library.run({"seed": SEED, "ego": {"initial_speed": 2.0}, "vehicle": vehicle})
+    result = library.run(
+        {"controller": "mpc-paper", "seed": SEED, "ego": {"initial_speed": 2.0}, "vehicle": vehicle}
+    )
     assert result.ego["force"].min() == pytest.approx(-8000.0, abs=1e-3)
     tolerance = 1e-4 if "Exchange" in name else 1e-5 if "Float32" in name else 1e-9
     require_physics(result.ego, CARS[name], tolerance)
@@ -149,7 +151,9 @@ def test_elements_of_arrays_play_the_parts(zoo, profiled, array):
         },
     )
     vehicle = {"fmu": str(car), "profile": str(profile)}
-    result = library.run({"seed": SEED, "ego": {"initial_speed": 2.0}, "vehicle": vehicle})
+    result = library.run(
+        {"controller": "mpc-paper", "seed": SEED, "ego": {"initial_speed": 2.0}, "vehicle": vehicle}
+    )
     require_physics(result.ego, {"role": "force"}, 1e-9)
 
 
