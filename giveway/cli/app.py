@@ -61,7 +61,7 @@ def _with_flags(
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        from giveway import __version__
+        from giveway._version import __version__
 
         typer.echo(f"giveway {__version__}")
         raise typer.Exit
