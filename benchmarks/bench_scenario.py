@@ -34,8 +34,8 @@ from giveway.configfile import Layer
 from giveway.exchange import Exchange
 from giveway.loading import load
 from giveway.mirror import Mirror
+from giveway.records.tracks import Timings
 from giveway.sumo import SumoSession
-from giveway.tracks import Timings
 from giveway.yielding import Yielding
 
 if TYPE_CHECKING:

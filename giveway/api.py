@@ -18,6 +18,7 @@ from giveway.journal import Journal
 from giveway.loading import as_layer, load
 from giveway.manifest import manifest
 from giveway.recorder import Recorder
+from giveway.records.progress import Ending, Progress, Watcher
 from giveway.results import (
     release_folder,
     require_parquet,
@@ -27,7 +28,7 @@ from giveway.results import (
     write_results,
 )
 from giveway.run_result import RunResult, results_of_egos
-from giveway.simulation import Ending, Loop, Progress, Watcher
+from giveway.simulation import Loop
 from giveway.supervised import STDERR_FILE
 from giveway.vehicles import model_margin
 

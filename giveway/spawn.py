@@ -12,7 +12,7 @@ from giveway.errors import CrowdError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.ego_path import EgoPath, Pose
+    from giveway.geometry.path import EgoPath, Pose
     from giveway.sections import CrowdConfig
 
     Array = NDArray[np.float64]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from giveway.ego_path import EgoPath
 from giveway.errors import CrowdError
+from giveway.geometry.path import EgoPath
 from giveway.sections import CrowdConfig
 from giveway.spawn import spawn
 
