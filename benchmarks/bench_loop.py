@@ -17,9 +17,9 @@ import numpy as np
 
 from giveway.api import RunResult, simulate
 from giveway.assembly import assemble
-from giveway.configfile import Layer
+from giveway.config.layers import Layer
+from giveway.config.loading import load
 from giveway.geometry.angles import headings_to_angles
-from giveway.loading import load
 from giveway.records.tracks import Timings
 
 

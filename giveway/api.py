@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from giveway import mismatch
 from giveway.assembly import Parts, assemble
-from giveway.configfile import dump_toml
+from giveway.config.layers import dump_toml
+from giveway.config.loading import as_layer, load
 from giveway.errors import GivewayError
 from giveway.heartbeat import Phase
 from giveway.interrupts import DeferredInterrupt
 from giveway.journal import Journal
-from giveway.loading import as_layer, load
 from giveway.manifest import manifest
 from giveway.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher

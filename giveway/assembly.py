@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.config.presets import parameters_of
 from giveway.departures import Departures
 from giveway.drivers import make_driver, make_regulator
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.exchange import Exchange
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.population import Population
-from giveway.presets import parameters_of
 from giveway.scenario_files import StartOptions, free_prefix, read_scenario
 from giveway.spawn import PREFIX, Spawned, spawn
 from giveway.sumo import SumoSession

@@ -6,6 +6,7 @@ import difflib
 import math
 from typing import TYPE_CHECKING
 
+from giveway.config.sections import DEFAULT_SPEED
 from giveway.ego import Ego
 from giveway.errors import ConfigError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from giveway.sumo import SumoSession
     from giveway.sumo_vehicles import VehicleState
 
-DEFAULT_SPEED = 4.0  # [m/s] of an inserted ego: the paper's
 LONGEST_WAIT = 86_400.0  # [s] for a departure in a scenario that never ends
 _ON_THE_LINE = 0.01  # [m]
 _MERGE = 20.0  # [m] along which a vehicle beside its lane's centre line joins it

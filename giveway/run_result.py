@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from giveway.configfile import dump_toml
+from giveway.config.layers import dump_toml
+from giveway.config.presets import parameters_of
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
     PEDESTRIAN_FIELDS,
@@ -17,7 +18,6 @@ from giveway.metrics import (
     pedestrian_metrics,
     summarise,
 )
-from giveway.presets import parameters_of
 from giveway.records.columns import (
     EGO_COLUMNS,
     PREDICTION_COLUMNS,

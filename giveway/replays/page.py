@@ -12,10 +12,10 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from shapely import LineString
 
+from giveway.config.presets import parameters_of
 from giveway.errors import ResultsError
 from giveway.geometry.angles import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
-from giveway.presets import parameters_of
 from giveway.replays.contours import influence_contours
 from giveway.replays.packing import (
     Frame,

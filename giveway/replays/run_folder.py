@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from giveway.configfile import build_config, read_toml
+from giveway.config.layers import build_config, read_toml
 from giveway.errors import ConfigError, ResultsError
 from giveway.records.columns import EGO_COLUMNS, PREDICTION_COLUMNS, TRAJECTORY_COLUMNS
 from giveway.records.scene import Scene

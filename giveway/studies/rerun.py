@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from giveway.api import run_layers
-from giveway.configfile import Layer
+from giveway.config.layers import Layer
+from giveway.config.loading import load
 from giveway.errors import GivewayError
-from giveway.loading import load
 from giveway.records.progress import Ending
 from giveway.studies.performing import rows_of
 

@@ -8,7 +8,7 @@ from typing import get_args
 import pytest
 
 from fmus import VehicleProfile, make_profile
-from giveway.configfile import options
+from giveway.config.layers import options
 from giveway.metrics import PEDESTRIAN_FIELDS, SUMMARY_FIELDS
 from giveway.records.columns import (
     EGO_COLUMNS,

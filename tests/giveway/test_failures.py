@@ -9,12 +9,12 @@ import pytest
 
 import giveway
 from giveway.assembly import Parts, assemble
-from giveway.configfile import Layer
+from giveway.config.layers import Layer
+from giveway.config.loading import load
 from giveway.errors import ConfigError, GivewayError, SumoError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import Pose
 from giveway.interrupts import DeferredInterrupt
-from giveway.loading import load
 from giveway.recorder import Recorder
 from giveway.records.progress import Ending
 from giveway.scenario_files import StartOptions, read_scenario
