@@ -32,10 +32,10 @@ from cities import City, build_city
 from giveway.api import RunResult, simulate
 from giveway.config.layers import Layer
 from giveway.config.loading import load
-from giveway.exchange import Exchange
+from giveway.crowd.exchange import Exchange
 from giveway.mirror import Mirror
 from giveway.records.tracks import Timings
-from giveway.sumo import SumoSession
+from giveway.sumo.session import SumoSession
 from giveway.yielding import Yielding
 
 if TYPE_CHECKING:

@@ -234,7 +234,7 @@ def _result(
             scenario,
             config_text=dump_toml(parts.config),
             vehicles={driver.id: driver.description for driver in parts.drivers},
-            pedestrians=parts.population.ledger,
+            pedestrians=parts.roster.ledger,
             traffic={} if parts.yielding is None else parts.yielding.report,
             sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
             time_step=parts.time_step,

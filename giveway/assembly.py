@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.config.presets import parameters_of
+from giveway.crowd.exchange import Exchange
+from giveway.crowd.roster import Roster
+from giveway.crowd.spawn import PREFIX, Spawned, spawn
+from giveway.crowd.zone import Zone
 from giveway.departures import Departures
 from giveway.drivers import make_driver, make_regulator
 from giveway.errors import ConfigError, CrowdError, ScenarioError
-from giveway.exchange import Exchange
 from giveway.geometry.bodies import BODY, VehicleShape
-from giveway.population import Population
 from giveway.scenario_files import StartOptions, free_prefix, read_scenario
-from giveway.spawn import PREFIX, Spawned, spawn
-from giveway.sumo import SumoSession
-from giveway.sumo_types import all_types, inserted_type
+from giveway.sumo.session import SumoSession
+from giveway.sumo.types import all_types, inserted_type
 from giveway.vehicles import model_remark, require_vehicles
 from giveway.walkways import WalkNetwork
 from giveway.yielding import Yielding
-from giveway.zone import Zone
 from pedestrian_model import (
     OPEN_GROUND,
     Crowd,
@@ -59,7 +59,7 @@ class Parts:
     horizon: int  # steps that anybody looks ahead
     drivers: tuple[Driver, ...]
     departures: Departures
-    population: Population
+    roster: Roster
     crowd_model: CrowdModel
     exchange: Exchange | None  # None: the scenario's walkers stay SUMO's
     surroundings: Surroundings
@@ -140,18 +140,18 @@ def assemble(
     )
     departures = Departures(drivers, sumo, scenario.config_file, time_step)
     departures.run_until_first(goes_on)
-    population = _population(config, departures, sumo, files.net_file, network)
+    roster = _roster(config, departures, sumo, files.net_file, network)
     exchange = None
     if network is not None:
         exchange = Exchange(
-            sumo.module,
+            sumo,
             network,
             zone if walkers else Zone("none", 0.0),
-            population,
+            roster,
             walls=config.crowd.walls,
         )
     yielding = None
-    if config.traffic.yielding and (len(population) or walkers):
+    if config.traffic.yielding and (len(roster) or walkers):
         yielding = Yielding(sumo.vehicles, sumo.step_length, config.traffic.yield_distance)
     return Parts(
         config=config,
@@ -161,7 +161,7 @@ def assemble(
         horizon=max((driver.horizon for driver in drivers), default=1),
         drivers=drivers,
         departures=departures,
-        population=population,
+        roster=roster,
         crowd_model=CrowdModel(parameters_of(config.crowd.preset), time_step),
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
@@ -218,16 +218,16 @@ def _remarks_on(network: WalkNetwork, net_file: Path) -> list[str]:
     ]
 
 
-def _population(
+def _roster(
     config: RunConfig,
     departures: Departures,
     sumo: SumoSession,
     net_file: Path,
     network: WalkNetwork | None,
-) -> Population:
+) -> Roster:
     """The pedestrians that giveway adds."""
     if not config.crowd.pedestrians:
-        return Population()
+        return Roster()
     prefix = free_prefix(PREFIX, (file for file in sumo.start.read if file != net_file))
     spawned = spawn(config.crowd, departures.first_path, config.seed, prefix)
     for name in departures.names:
@@ -236,7 +236,7 @@ def _population(
             raise ConfigError(msg)
     host = config.crowd.host_edge or _host(config, network or WalkNetwork.read(net_file), net_file)
     sumo.add_persons(spawned.ids, host)
-    return Population(spawned.ids, _crowd(spawned))
+    return Roster(spawned.ids, _crowd(spawned))
 
 
 def _host(config: RunConfig, network: WalkNetwork, net_file: Path) -> str:

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from giveway.ego import Driver
-    from giveway.lanes import Way
-    from giveway.sumo import SumoSession
-    from giveway.sumo_vehicles import VehicleState
+    from giveway.sumo.lanes import Way
+    from giveway.sumo.session import SumoSession
+    from giveway.sumo.vehicles import VehicleState
 
 LONGEST_WAIT = 86_400.0  # [s] for a departure in a scenario that never ends
 _ON_THE_LINE = 0.01  # [m]

@@ -11,10 +11,10 @@ import numpy as np
 from controller import Observation, PlanningRegulator, Situation
 from fmus import FmuError
 from giveway.corridor import NO_LEADER, Corridor, Leader
+from giveway.crowd.perception import Perception
 from giveway.errors import ControlError, VehicleError
 from giveway.foresight import CrowdForesight
 from giveway.guard import Guard
-from giveway.perception import Perception
 from giveway.records.rows import EgoRow
 
 if TYPE_CHECKING:

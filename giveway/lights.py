@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from giveway.lanes import Light
+    from giveway.sumo.lanes import Light
 
 STOP_BEFORE = 1.0  # [m] before the line the front bumper is to stand
 _RED = frozenset("rRus")  # red, red with yellow, red with a green arrow (after a stop)

@@ -11,15 +11,15 @@ from giveway.errors import CrowdError, VehicleError
 from giveway.geometry.angles import angle_of_velocity
 from giveway.geometry.kernel import kernel
 from giveway.geometry.passage import SIGHT
-from giveway.traffic import NO_VEHICLES, BackgroundVehicles
+from giveway.sumo.background import NO_VEHICLES, BackgroundVehicles
 from pedestrian_model import Vehicles
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from giveway.crowd.roster import Roster
     from giveway.ego import Ego
-    from giveway.population import Population
-    from giveway.sumo import SumoSession
+    from giveway.sumo.session import SumoSession
 
 Array = NDArray[np.float64]
 
@@ -132,7 +132,7 @@ class Mirror:
 
     # --- to SUMO ------------------------------------------------------------------------------
 
-    def push(self, step: int, egos: Sequence[Ego], population: Population) -> None:
+    def push(self, step: int, egos: Sequence[Ego], roster: Roster) -> None:
         """Move everybody in SUMO to where they are at the control step ``step``, and step SUMO.
 
         Raises:
@@ -140,18 +140,18 @@ class Mirror:
             SumoError: SUMO failed or disagrees.
         """
         places = [(ego.id, ego.check_pose(step)) for ego in egos]
-        present, crowd = population.present, population.crowd
-        self._reserve(len(population.ids))
+        present, crowd = roster.present, roster.crowd
+        self._reserve(len(roster.ids))
         angles = self._row[: len(present)]
         bad = walking_angles(crowd.position, crowd.velocity, present, self._angles, angles)
         if bad >= 0:
             msg = (
-                f"pedestrian '{population.ids[present[bad]]}' at step {step}: position "
+                f"pedestrian '{roster.ids[present[bad]]}' at step {step}: position "
                 f"{crowd.position[bad].tolist()}; expected finite numbers"
             )
             raise CrowdError(msg)
         x, y = crowd.position.T.tolist()
-        self._session.mirror(places, population.names, x, y, angles.tolist())
+        self._session.mirror(places, roster.names, x, y, angles.tolist())
 
     def _reserve(self, people: int) -> None:
         if people > len(self._angles):

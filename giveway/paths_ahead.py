@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from giveway.sumo_vehicles import SumoVehicles
+    from giveway.sumo.vehicles import SumoVehicles
 
     Array = NDArray[np.float64]
     Indices = NDArray[np.int64]

@@ -16,7 +16,7 @@ from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, Predic
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from giveway.traffic import BackgroundVehicles
+    from giveway.sumo.background import BackgroundVehicles
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

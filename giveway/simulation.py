@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from controller import ControllerError
 from fmus import FmuError
-from giveway.disturbance import disturbance_of
+from giveway.crowd.disturbance import disturbance_of
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.heartbeat import Phase
 from giveway.mirror import Mirror
@@ -69,7 +69,7 @@ class Loop:
         self._start = parts.sumo.time
         self._time_step = parts.time_step
         self._k = 0
-        self._population = parts.population
+        self._roster = parts.roster
         self._egos: list[Ego] = []
         self.endings = {}
         self.remarks = []
@@ -105,12 +105,12 @@ class Loop:
 
     def _blame(self, error: PedestrianModelError) -> str:
         """Name the pedestrian whose state is not finite by its id."""
-        crowd, population = self._population.crowd, self._population
+        crowd, roster = self._roster.crowd, self._roster
         state = np.concatenate([crowd.position, crowd.velocity], axis=1)
         bad = np.flatnonzero(~np.isfinite(state).all(axis=1))
         if not len(bad):
             return f"crowd at step {self._k}: {error}"
-        name = population.ids[population.present[bad[0]]]
+        name = roster.ids[roster.present[bad[0]]]
         return (
             f"pedestrian '{name}' at step {self._k}: position and velocity "
             f"{state[bad[0]].tolist()}; expected finite numbers [m, m/s]"
@@ -154,7 +154,7 @@ class Loop:
         )
 
     def _progress(self, acting: str) -> Progress:
-        elapsed, people = self._k * self._time_step, len(self._population)
+        elapsed, people = self._k * self._time_step, len(self._roster)
         clock = self._start + elapsed
         if not self._egos:
             return Progress(elapsed, clock, np.nan, np.nan, np.nan, acting, people)
@@ -173,16 +173,16 @@ class Loop:
                 self._recorder.drive(ego.id, ego.shape, ego.goal)
         if parts.exchange is not None:
             parts.exchange.update(self._places())
-        people = self._population.crowd.position
+        people = self._roster.crowd.position
         self._mirror.read(self._egos, people)
         for ego in self._egos:
             if ego.lights.systems:
                 states = parts.sumo.light_states(ego.lights.systems)
                 ego.lights.update(states, ego.front, ego.vehicle.speed)
         if parts.yielding is not None:
-            parts.yielding.update(self._mirror.background, self._population.crowd)
+            parts.yielding.update(self._mirror.background, self._roster.crowd)
         self._record_background()
-        self._recorder.ledger(self._population.ledger)
+        self._recorder.ledger(self._roster.ledger)
 
     def _places(self) -> Array:
         """(e, 2) [m] the egos' front bumpers."""
@@ -202,7 +202,7 @@ class Loop:
         recorder, mirror = self._recorder, self._mirror
         recorder.instant(time)
         mirror.place(self._egos)
-        crowd, surroundings = self._population.crowd, self._parts.surroundings
+        crowd, surroundings = self._roster.crowd, self._parts.surroundings
         predicting = controlling = 0.0
         acting = ""
         for row, ego in enumerate(self._egos):
@@ -225,20 +225,18 @@ class Loop:
 
     def _record_crowd(self) -> None:
         """Everybody near an ego, and from time to time everybody."""
-        population = self._population
-        if len(population.ids) > self._named:
-            self._recorder.name_pedestrians(population.ids[self._named :])
-            self._named = len(population.ids)
-        crowd = population.crowd
+        roster = self._roster
+        if len(roster.ids) > self._named:
+            self._recorder.name_pedestrians(roster.ids[self._named :])
+            self._named = len(roster.ids)
+        crowd = roster.crowd
         within = self._near if self._k % self._far_steps else np.inf
-        self._recorder.crowd(
-            population.present, crowd.position, crowd.velocity, self._places(), within
-        )
+        self._recorder.crowd(roster.present, crowd.position, crowd.velocity, self._places(), within)
 
     def _record_predictions(
         self, ego_id: str, predicted: Array, whom: NDArray[np.bool_] | None
     ) -> None:
-        present = self._population.present
+        present = self._roster.present
         people = present if whom is None else present[whom]
         every = min(self._looks, len(predicted))  # of a period beyond the horizon, its end is kept
         kept = predicted[every - 1 :: every]
@@ -283,7 +281,7 @@ class Loop:
         if self._k % parts.substeps:
             mirror.carry_on()
         else:
-            mirror.push(self._k, self._egos, self._population)
+            mirror.push(self._k, self._egos, self._roster)
             parts.departures.note()
         ended = perf_counter()
         self._recorder.timing(
@@ -297,19 +295,19 @@ class Loop:
 
     def _step_crowd(self) -> None:
         """Move the crowd under the vehicles at t_k; who has arrived leaves."""
-        parts, population = self._parts, self._population
-        if not len(population.present):
+        parts, roster = self._parts, self._roster
+        if not len(roster.present):
             return
-        crowd, now = population.crowd, (self._mirror.vehicles, parts.surroundings)
+        crowd, now = roster.crowd, (self._mirror.vehicles, parts.surroundings)
         if self._disturbance is None:
             parts.crowd_model.advance(crowd, *now)
         else:
-            people = population.present, len(population.ids)
+            people = roster.present, len(roster.ids)
             self._disturbance.advance(crowd, *now, *people)
-        there = parts.arrived(population.crowd)
+        there = parts.arrived(roster.crowd)
         if not np.count_nonzero(there):
             return
-        names = population.release(there)  # they leave SUMO with its next step
+        names = roster.release(there)  # they leave SUMO with its next step
         ours = names if parts.exchange is None else parts.exchange.arrive(names)
         parts.sumo.remove_persons(ours)
-        population.count("arrived", len(ours))
+        roster.count("arrived", len(ours))

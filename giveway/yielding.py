@@ -16,8 +16,8 @@ import numpy as np
 from giveway.paths_ahead import PathsAhead, gaps_ahead, sort_people
 
 if TYPE_CHECKING:
-    from giveway.sumo_vehicles import SumoVehicles
-    from giveway.traffic import BackgroundVehicles
+    from giveway.sumo.background import BackgroundVehicles
+    from giveway.sumo.vehicles import SumoVehicles
     from pedestrian_model import Crowd
 
 _SIDE = 0.25  # [m] of the corridor beyond the car's body, as for the ego

@@ -13,11 +13,11 @@ from giveway.cli import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
 from giveway.config.layers import Layer, read_toml
 from giveway.config.loading import load
+from giveway.crowd.zone import Zone
 from giveway.errors import GivewayError
 from giveway.records.progress import Ending
 from giveway.results import check_folder, require_parquet
 from giveway.scenario_files import read_scenario
-from giveway.zone import Zone
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

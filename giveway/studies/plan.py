@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from giveway.assembly import control_step
 from giveway.config.loading import load
+from giveway.crowd.zone import Zone
 from giveway.errors import ConfigError, GivewayError
 from giveway.scenario_files import read_scenario
 from giveway.studies.design import design
@@ -14,7 +15,6 @@ from giveway.studies.identity import cell_digest, input_hashes, run_key, softwar
 from giveway.studies.record import Task, run_id
 from giveway.studies.statistics import metric
 from giveway.vehicles import require_vehicles
-from giveway.zone import Zone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -44,7 +44,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
         heartbeat = Heartbeat(Path(folder))
         from giveway.kernels import compile_kernels_once
         from giveway.studies import identity, performing  # noqa: F401 - no run is to wait for it
-        from giveway.sumo import import_libsumo
+        from giveway.sumo.library import import_libsumo
 
         import_libsumo()  # what every run would find missing is no run's failure
         compile_kernels_once()  # nor is half a minute of compiling a run's hang

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.noise import planar_noise
+from giveway.crowd.noise import planar_noise
 
 if TYPE_CHECKING:
     from giveway.config import RunConfig

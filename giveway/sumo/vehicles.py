@@ -9,8 +9,9 @@ import numpy as np
 
 from giveway.errors import ScenarioError, SumoError
 from giveway.geometry.angles import angle_to_heading, angles_to_headings
-from giveway.sumo_types import ego_type, inserted_type
-from giveway.traffic import NO_VEHICLES, BackgroundVehicles
+from giveway.sumo.background import NO_VEHICLES, BackgroundVehicles
+from giveway.sumo.library import direct
+from giveway.sumo.types import ego_type, inserted_type
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.geometry.bodies import VehicleShape
-    from giveway.lanes import Lanes
+    from giveway.sumo.lanes import Lanes
 
     Array = NDArray[np.float64]
 
@@ -56,16 +57,13 @@ class SumoVehicles:
         self._call = call
         self._lanes = lanes
         self._shapes: dict[str, tuple[str, float, float]] = {}
-        # The wrapper's methods only pass their arguments on, which takes as long as the answer.
-        direct = getattr(sumo.libsumo, "_libsumo", None)
-        vehicle = sumo.vehicle
-        self._id_list = getattr(direct, "vehicle_getIDList", vehicle.getIDList)
-        self._position = getattr(direct, "vehicle_getPosition", vehicle.getPosition)
-        self._angle = getattr(direct, "vehicle_getAngle", vehicle.getAngle)
-        self._speed = getattr(direct, "vehicle_getSpeed", vehicle.getSpeed)
-        self._lane_id = getattr(direct, "vehicle_getLaneID", vehicle.getLaneID)
-        self._lane_position = getattr(direct, "vehicle_getLanePosition", vehicle.getLanePosition)
-        self._route_id = getattr(direct, "vehicle_getRouteID", vehicle.getRouteID)
+        self._id_list = direct(sumo, "vehicle", "getIDList")
+        self._position = direct(sumo, "vehicle", "getPosition")
+        self._angle = direct(sumo, "vehicle", "getAngle")
+        self._speed = direct(sumo, "vehicle", "getSpeed")
+        self._lane_id = direct(sumo, "vehicle", "getLaneID")
+        self._lane_position = direct(sumo, "vehicle", "getLanePosition")
+        self._route_id = direct(sumo, "vehicle", "getRouteID")
         self.egos: set[str] = set()  # driven by giveway
         self.dropped_stops: dict[str, int] = {}  # of egos that were taken over
 

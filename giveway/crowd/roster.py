@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-class Population:
+class Roster:
     """The crowd and the names of those in it.
 
     Attributes:

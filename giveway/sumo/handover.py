@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from giveway.footpaths import Foot
+    from giveway.sumo.footpaths import Foot
 
 _WALKING = 2  # SUMO's stage type
 NOWHERE = -1000.0  # [m] on its lane: where a held person is in SUMO's books

@@ -1,11 +1,10 @@
-"""SUMO tries a scenario: ``python -m giveway.doctor.probe CONFIG``, prints one line of JSON.
+"""SUMO tries a scenario: ``python -m giveway.sumo.probe CONFIG``, prints one line of JSON.
 
 A process of its own, because SUMO may crash or hang, and holds one simulation per process.
 """
 
 from __future__ import annotations
 
-import importlib
 import json
 import sys
 import tempfile
@@ -14,7 +13,8 @@ from time import perf_counter
 from typing import Any
 
 from giveway.scenario_files import StartOptions, prepare_start, read_scenario
-from giveway.sumo_types import ROAD_CLASSES
+from giveway.sumo.library import import_libsumo
+from giveway.sumo.types import ROAD_CLASSES
 
 _LOOK = 3.0  # [s] of wall clock: long enough to see somebody depart, short enough to wait for
 _ENOUGH = 3  # vehicles seen
@@ -22,7 +22,7 @@ _ENOUGH = 3  # vehicles seen
 
 def look(config_file: Path) -> dict[str, Any]:
     """Load the scenario as a run would and let it run for a moment."""
-    sumo = importlib.import_module("libsumo")
+    sumo = import_libsumo()
     began = perf_counter()
     vehicles: dict[str, list[str]] = {}
     persons = 0

@@ -1,9 +1,9 @@
 """The scenario's own persons: taken over where they walk, handed back to SUMO afterwards.
 
-A person keeps everything in SUMO while we hold it: its plan, type, colour and parameters. Held, it
-is moved as a ghost (see giveway/sumo.py), and its place in SUMO's books lies far outside of its
-lane: otherwise SUMO's pedestrians would walk round the spot where it was taken over, and cars wait
-for ever at a crossing that it has long left.
+A person keeps everything in SUMO while we hold it: its plan, type, colour and parameters. A held
+person is moved as a ghost (see giveway/sumo/session.py), and its place in SUMO's books lies far
+outside of its lane: otherwise SUMO's pedestrians would walk round the spot where it was taken over,
+and cars would wait for ever at a crossing that it has long left.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from giveway.footpaths import Foot, FootPaths
 from giveway.geometry.angles import angle_to_heading
-from giveway.handover import Handover, Walk
-from giveway.walk_speeds import WalkSpeeds
+from giveway.sumo.footpaths import Foot, FootPaths
+from giveway.sumo.handover import Handover, Walk
+from giveway.sumo.library import direct
+from giveway.sumo.walk_speeds import WalkSpeeds
 
 if TYPE_CHECKING:
     from collections.abc import Container, Sequence
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 _WALKING = 2  # SUMO's stage type
 _SLOWEST = 0.1  # [m/s] nobody wants to walk more slowly
-_DETOUR = 5.0  # [m] so much farther may the walk's own edge be than the nearest one
+_DETOUR = 5.0  # [m] a person goes on along its own route if that is at most this much farther off
 
 
 class Arrival(enum.Enum):
@@ -41,7 +42,7 @@ class Arrival(enum.Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Walker:
+class Person:
     """A person as SUMO walks it, at SUMO's present instant."""
 
     id: str
@@ -57,7 +58,7 @@ class Walker:
     stages_left: int  # after this walk
 
 
-class ScenarioWalkers:
+class ScenarioPersons:
     """Who of the scenario's persons is SUMO's at present, and who is ours.
 
     Args:
@@ -85,9 +86,8 @@ class ScenarioWalkers:
         self._put_back: set[str] = set()  # since SUMO's last step
         self._paths = FootPaths(sumo)
         self._speeds = WalkSpeeds.of_running(sumo)
-        direct = getattr(sumo.libsumo, "_libsumo", None)  # without the wrapper's own call
         self._handover = Handover(sumo)
-        self._position = getattr(direct, "person_getPosition", sumo.person.getPosition)
+        self._position = direct(sumo, "person", "getPosition")
 
     # --- who is where -------------------------------------------------------------------------
 
@@ -162,7 +162,7 @@ class ScenarioWalkers:
 
     # --- taking over --------------------------------------------------------------------------
 
-    def take(self, ids: Sequence[str]) -> list[Walker]:
+    def take(self, ids: Sequence[str]) -> list[Person]:
         """Take over those of ``ids`` who walk right now; the others are passed over.
 
         So is who was handed back since SUMO's last step. From now on they are held: they must be
@@ -171,7 +171,7 @@ class ScenarioWalkers:
         walkers = map(self._take, ids)
         return [walker for walker in walkers if walker is not None]
 
-    def _take(self, name: str) -> Walker | None:
+    def _take(self, name: str) -> Person | None:
         person = self._sumo.person
         if name not in self._free or name in self._put_back:  # whose speed is the jump's
             return None
@@ -186,7 +186,7 @@ class ScenarioWalkers:
         own_speed = self._speeds.speed(name, stage, person.getRemainingStages(name))
         x, y = self._position(name)
         speed = float(person.getSpeed(name))
-        walker = Walker(
+        walker = Person(
             id=name,
             type=person.getTypeID(name),
             x=x,

@@ -21,18 +21,20 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from giveway.errors import InstallationError, ScenarioError, SumoError
-from giveway.footpaths import FootPaths
+from giveway.errors import ScenarioError, SumoError
 from giveway.geometry.angles import heading_to_angle
-from giveway.handover import NOWHERE
-from giveway.lanes import Lanes
-from giveway.native_stderr import NativeStderr
 from giveway.scenario_files import prepare_start
-from giveway.sumo_types import PEDESTRIAN_TYPE
-from giveway.sumo_vehicles import SumoVehicles
+from giveway.sumo.footpaths import FootPaths
+from giveway.sumo.handover import NOWHERE
+from giveway.sumo.lanes import Lanes
+from giveway.sumo.library import direct, import_libsumo
+from giveway.sumo.persons import ScenarioPersons
+from giveway.sumo.stderr import NativeStderr
+from giveway.sumo.types import PEDESTRIAN_TYPE
+from giveway.sumo.vehicles import SumoVehicles
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Container, Iterable, Sequence
     from types import TracebackType
 
     from giveway.geometry.path import Pose
@@ -74,7 +76,7 @@ class SumoSession:
         if SumoSession._running:
             msg = "SUMO: a simulation is already running; libsumo holds one per process, close it"
             raise SumoError(msg)
-        self.module = self._sumo = import_libsumo()
+        self._sumo = import_libsumo()
         self._config_file = scenario.config_file
         self._native_log = native_log
         self._extra = options.extra
@@ -86,14 +88,11 @@ class SumoSession:
             self._scratch.cleanup()
             raise
         SumoSession._running = True
-        # The wrapper's methods only pass their arguments on, which takes as long as a move.
-        direct = getattr(self._sumo.libsumo, "_libsumo", None)
-        person = self._sumo.person
-        self._move_person = getattr(direct, "person_moveToXY", person.moveToXY)
-        self._person_position = getattr(direct, "person_getPosition", person.getPosition)
-        vehicle = self._sumo.vehicle
-        self._move_vehicle = getattr(direct, "vehicle_moveToXY", vehicle.moveToXY)
-        self._vehicle_position = getattr(direct, "vehicle_getPosition", vehicle.getPosition)
+        self._move_person = direct(self._sumo, "person", "moveToXY")
+        self._person_position = direct(self._sumo, "person", "getPosition")
+        self._move_vehicle = direct(self._sumo, "vehicle", "moveToXY")
+        self._vehicle_position = direct(self._sumo, "vehicle", "getPosition")
+        self._light_state = direct(self._sumo, "trafficlight", "getRedYellowGreenState")
         self._moves_pending = False
         self.lanes = Lanes(self._sumo, self._config_file)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
@@ -154,10 +153,21 @@ class SumoSession:
         """Whether anybody is on the way or yet to depart."""
         return bool(self._sumo.simulation.getMinExpectedNumber() > 0)
 
+    def light_state(self, system: str) -> str:
+        """The state of a traffic light, one letter per movement."""
+        return str(self._light_state(system))
+
     def light_states(self, systems: Iterable[str]) -> dict[str, str]:
         """The state of each of these traffic lights, one letter per movement."""
-        read = self._sumo.trafficlight.getRedYellowGreenState
-        return {system: read(system) for system in systems}
+        return {system: self.light_state(system) for system in systems}
+
+    def persons(self, added: Container[str]) -> ScenarioPersons:
+        """The scenario's own persons, to take over and hand back.
+
+        Args:
+            added: ids of persons that giveway added, which are never touched.
+        """
+        return ScenarioPersons(self._sumo, added)
 
     # --- adding and removing ------------------------------------------------------------------
 
@@ -300,17 +310,3 @@ def _compare(
             f"expected at most {POSITION_TOLERANCE:g} m; is it moved by somebody else?"
         )
         raise SumoError(msg)
-
-
-def import_libsumo() -> Any:
-    """The module.
-
-    Raises:
-        InstallationError: it cannot be imported.
-    """
-    try:
-        import libsumo
-    except ImportError as error:
-        msg = f"libsumo cannot be imported ({error}); reinstall with: pip install giveway"
-        raise InstallationError(msg) from error
-    return libsumo

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.walkers import Arrival, ScenarioWalkers
+from giveway.sumo.persons import Arrival
 from pedestrian_model import Crowd, Surroundings, Walls
 
 if TYPE_CHECKING:
@@ -15,10 +15,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from giveway.population import Population
-    from giveway.walkers import Walker
+    from giveway.crowd.roster import Roster
+    from giveway.crowd.zone import Zone
+    from giveway.sumo.persons import Person
+    from giveway.sumo.session import SumoSession
     from giveway.walkways import WalkNetwork
-    from giveway.zone import Zone
 
     Array = NDArray[np.float64]
 
@@ -30,26 +31,27 @@ class Exchange:
     """Takes the scenario's walkers over in the zone and hands them back outside.
 
     Args:
-        sumo: the libsumo module.
+        session: the running simulation.
         network: where people can walk.
         zone: where they are ours.
-        population: our crowd.
+        roster: our crowd.
         walls: whether the edges of walkways hold people back.
     """
 
     def __init__(
-        self, sumo: Any, network: WalkNetwork, zone: Zone, population: Population, *, walls: bool
+        self,
+        session: SumoSession,
+        network: WalkNetwork,
+        zone: Zone,
+        roster: Roster,
+        *,
+        walls: bool,
     ) -> None:
-        direct = getattr(sumo.libsumo, "_libsumo", None)  # without the wrapper's own call
-        self._light = getattr(
-            direct,
-            "trafficlight_getRedYellowGreenState",
-            sumo.trafficlight.getRedYellowGreenState,
-        )
+        self._session = session
         self._network = network
         self._zone = zone
-        self._population = population
-        self._walkers = ScenarioWalkers(sumo, population.added)
+        self._roster = roster
+        self._walkers = session.persons(roster.added)
         self._states: dict[str, str] = {}
         self._crossings: dict[str, list[tuple[int, int]]] = {}  # of each light: signal, movement
         for number, signal in enumerate(network.signals):
@@ -72,11 +74,11 @@ class Exchange:
 
     def _read_lights(self) -> None:
         """A crossing whose light is not green is closed."""
-        if not len(self._population):
+        if not len(self._roster):
             return
         closed = self.surroundings.closed
         for system, crossings in self._crossings.items():
-            state = self._light(system)
+            state = self._session.light_state(system)
             if state != self._states.get(system):  # which is seldom
                 self._states[system] = state
                 for number, link in crossings:
@@ -91,9 +93,9 @@ class Exchange:
             return
         walkers = self._walkers.take([ids[i] for i in np.flatnonzero(inside)])
         if walkers:
-            self._population.take_in([walker.id for walker in walkers], self._crowd(walkers))
+            self._roster.take_in([walker.id for walker in walkers], self._crowd(walkers))
 
-    def _crowd(self, walkers: Sequence[Walker]) -> Crowd:
+    def _crowd(self, walkers: Sequence[Person]) -> Crowd:
         routes = [
             self._network.route(
                 walker.edges,
@@ -116,24 +118,24 @@ class Exchange:
 
     def _hand_back(self, egos: Array) -> None:
         """Those outside go back once they are on a lane; until then they walk on as ours."""
-        population = self._population
+        roster = self._roster
         if self._zone.everywhere or not self._walkers.held:
             return
-        outside = ~self._zone.keeps(population.crowd.position, egos)
+        outside = ~self._zone.keeps(roster.crowd.position, egos)
         if not outside.any():
             return
-        gone = np.zeros(len(population), dtype=np.bool_)
+        gone = np.zeros(len(roster), dtype=np.bool_)
         for i in np.flatnonzero(outside):
-            name = population.ids[population.present[i]]
+            name = roster.ids[roster.present[i]]
             if name not in self._walkers.held:
                 continue  # one that giveway added
-            x, y = population.crowd.position[i].tolist()
+            x, y = roster.crowd.position[i].tolist()
             lane = self._network.nearest_lane(x, y)
             if lane is None or lane.distance > HANDED_BACK_WITHIN:
                 continue
             gone[i] = self._walkers.hand_back(name, x, y, (lane.edge, lane.position))
         if gone.any():
-            population.count("handed_back", len(population.release(gone)))
+            roster.count("handed_back", len(roster.release(gone)))
 
     def arrive(self, names: Sequence[str]) -> list[str]:
         """Let walkers end their walk in SUMO's next step; those of ``names`` that are not its."""
@@ -143,5 +145,5 @@ class Exchange:
                 others.append(name)
                 continue
             arrival = self._walkers.arrive(name)
-            self._population.count("arrived" if arrival is Arrival.ARRIVED else "continued")
+            self._roster.count("arrived" if arrival is Arrival.ARRIVED else "continued")
         return others
