@@ -8,18 +8,20 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from giveway import mismatch
-from giveway.assembly import Parts, assemble
 from giveway.config.layers import dump_toml
 from giveway.config.loading import as_layer, load
+from giveway.cosimulation.assembly import Parts, assemble
+from giveway.cosimulation.loop import Loop
+from giveway.ego.vehicle import model_margin
 from giveway.errors import GivewayError
-from giveway.heartbeat import Phase
-from giveway.interrupts import DeferredInterrupt
-from giveway.journal import Journal
-from giveway.manifest import manifest
-from giveway.recorder import Recorder
+from giveway.processes.child import STDERR_FILE
+from giveway.processes.heartbeat import Phase
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.journal import Journal
+from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
-from giveway.results import (
+from giveway.results import mismatch
+from giveway.results.folder import (
     release_folder,
     require_parquet,
     sumo_folder,
@@ -27,16 +29,14 @@ from giveway.results import (
     write_pictures,
     write_results,
 )
-from giveway.run_result import RunResult, results_of_egos
-from giveway.simulation import Loop
-from giveway.supervised import STDERR_FILE
-from giveway.vehicles import model_margin
+from giveway.results.provenance import manifest
+from giveway.results.run_result import RunResult, results_of_egos
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from giveway.config import RunConfig
-    from giveway.run_result import EgoResult
+    from giveway.results.run_result import EgoResult
     from sumo_scenarios import Scenario
 
 __all__ = ["RunResult", "run", "run_layers", "simulate"]

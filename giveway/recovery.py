@@ -11,17 +11,17 @@ from giveway.api import keep
 from giveway.config.layers import read_toml_text
 from giveway.config.loading import load
 from giveway.errors import CrashError
-from giveway.journal_reader import read_journal
-from giveway.manifest import manifest
-from giveway.recorder import Tables
+from giveway.recording.journal_reader import read_journal
+from giveway.recording.recorder import Tables
 from giveway.records.progress import Ending
-from giveway.results import release_folder
-from giveway.run_result import RunResult, results_of_egos
+from giveway.results.folder import release_folder
+from giveway.results.provenance import manifest
+from giveway.results.run_result import RunResult, results_of_egos
 
 if TYPE_CHECKING:
     from giveway.config import RunConfig
-    from giveway.journal_reader import JournalContents
-    from giveway.supervisor import Verdict
+    from giveway.processes.supervisor import Verdict
+    from giveway.recording.journal_reader import JournalContents
     from sumo_scenarios import Scenario
 
 

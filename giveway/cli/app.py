@@ -103,7 +103,7 @@ def _run(
 ) -> None:
     """Drive the ego through a crowd once: summary, CSVs, pictures."""
     from giveway.cli.isolated import run_isolated, supervised
-    from giveway.supervised import take_journal_folder
+    from giveway.processes.child import take_journal_folder
 
     journal = take_journal_folder()
     if isolate and journal is None:

@@ -30,7 +30,7 @@ def report_command(study: Path, *, replays: bool, quiet: bool) -> int:
 
 def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> None:
     """Write the tables, unless those of the whole study are there, figures, replays, the report."""
-    from giveway.kernels import compile_kernels_once
+    from giveway.precompile import compile_kernels_once
     from giveway.studies.output import write_tables
     from giveway.studies.reporting import write_report_of
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from giveway.reports.choice import ExamplePair, WorstRun
     from giveway.reports.study import Study
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
 
 REPORT = "report.html"
 FIGURES = "figures"

@@ -15,7 +15,7 @@ from giveway.studies.rerun import rerun
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
     from giveway.studies.folder import StudyFolder
 
 REPLAYS = "replays"

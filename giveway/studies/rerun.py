@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from giveway.config import RunConfig
     from giveway.records.progress import Watcher
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
     from giveway.studies.folder import StudyFolder
     from giveway.studies.record import RunRecord, Scalar
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.errors import GivewayError
-from giveway.manifest import software_versions
+from giveway.results.provenance import software_versions
 from giveway.studies.claim import claimed, clear, forget_tables
 from giveway.studies.definition import dump_definition
 from giveway.studies.folder import DEFINITION, MANIFEST, StudyFolder

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 import giveway
-from giveway.assembly import Parts, assemble
 from giveway.config.layers import Layer
 from giveway.config.loading import load
+from giveway.cosimulation.assembly import Parts, assemble
+from giveway.cosimulation.loop import Loop
 from giveway.errors import ConfigError, GivewayError, SumoError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import Pose
-from giveway.interrupts import DeferredInterrupt
-from giveway.recorder import Recorder
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending
 from giveway.scenario_files import StartOptions, read_scenario
-from giveway.simulation import Loop
 from giveway.sumo.session import SumoSession
 from giveway.sumo.types import all_types, inserted_type
 from sumo_scenarios import find

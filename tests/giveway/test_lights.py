@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from giveway.lights import STOP_BEFORE, Lights
+from giveway.ego.lights import STOP_BEFORE, Lights
 from giveway.sumo.lanes import Light
 
 LINE = 100.0  # [m]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from giveway.recorder import Recorder
+from giveway.recording.recorder import Recorder
 
 EGOS = np.array([[0.0, 0.0], [100.0, 0.0]])
 PLACES = np.array([[3.0, 4.0], [50.0, 0.0], [100.0, -5.0], [5.1, 0.0]])

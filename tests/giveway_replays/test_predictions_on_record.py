@@ -11,9 +11,9 @@ import pytest
 from giveway import run
 from giveway.api import run_layers
 from giveway.config.loading import as_layer
-from giveway.journal_reader import read_journal
-from giveway.recorder import Tables
-from giveway.simulation import looks_ahead
+from giveway.cosimulation.loop import looks_ahead
+from giveway.recording.journal_reader import read_journal
+from giveway.recording.recorder import Tables
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from giveway.errors import ResultsError
-from giveway.heartbeat import Phase
-from giveway.journal import Journal
+from giveway.processes.heartbeat import Phase
+from giveway.recording.journal import Journal
 from giveway.studies.folder import StudyFolder
 from giveway.studies.performing import perform
 from giveway.studies.plan import plan

@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Final
 
 from giveway.errors import GivewayError
-from giveway.heartbeat import Heartbeat, Phase
-from giveway.journal import Journal
+from giveway.processes.child import TRACEBACK_FILE, die_with
+from giveway.processes.heartbeat import Heartbeat, Phase
+from giveway.recording.journal import Journal
 from giveway.studies.execution.wire import ERROR, READY, RECORD, REFUSED, Line
 from giveway.studies.record import Task
-from giveway.supervised import TRACEBACK_FILE, die_with
 
 SUMO_FILE: Final = "sumo"  # what SUMO has printed during the run
 _HIGH: Final = 200  # FMUs that close or write to files that are not theirs try low numbers
@@ -42,7 +42,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
     with (Path(folder) / TRACEBACK_FILE).open("w", encoding="utf-8") as file:
         faulthandler.enable(file)
         heartbeat = Heartbeat(Path(folder))
-        from giveway.kernels import compile_kernels_once
+        from giveway.precompile import compile_kernels_once
         from giveway.studies import identity, performing  # noqa: F401 - no run is to wait for it
         from giveway.sumo.library import import_libsumo
 

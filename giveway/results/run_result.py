@@ -28,7 +28,7 @@ from giveway.records.columns import (
 )
 from giveway.records.progress import Ending
 from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
-from giveway.tables import ego_table, prediction_table, timing_table, trajectory_table
+from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.config import RunConfig
-    from giveway.recorder import Tables
+    from giveway.recording.recorder import Tables
     from sumo_scenarios import Scenario
 
     Array = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""The kernels that find who is in front, as :mod:`giveway.corridor` defines it."""
+"""The kernels that find who is in front, as :mod:`giveway.ego.corridor` defines it."""
 
 from __future__ import annotations
 

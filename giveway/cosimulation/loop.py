@@ -24,20 +24,20 @@ from numpy.typing import NDArray
 
 from controller import ControllerError
 from fmus import FmuError
+from giveway.cosimulation.mirror import Mirror
+from giveway.cosimulation.standstill import Standstill
 from giveway.crowd.disturbance import disturbance_of
 from giveway.errors import ControlError, CrowdError, VehicleError
-from giveway.heartbeat import Phase
-from giveway.mirror import Mirror
+from giveway.processes.heartbeat import Phase
 from giveway.records.progress import Ending, Progress, Watcher
-from giveway.standstill import Standstill
 from pedestrian_model import PedestrianModelError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from giveway.assembly import Parts
-    from giveway.ego import Ego
-    from giveway.recorder import Recorder
+    from giveway.cosimulation.assembly import Parts
+    from giveway.ego.ego import Ego
+    from giveway.recording.recorder import Recorder
 
 Array = NDArray[np.float64]
 

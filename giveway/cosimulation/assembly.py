@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.config.presets import parameters_of
+from giveway.cosimulation.departures import Departures
+from giveway.cosimulation.yielding import Yielding
 from giveway.crowd.exchange import Exchange
 from giveway.crowd.roster import Roster
 from giveway.crowd.spawn import PREFIX, Spawned, spawn
 from giveway.crowd.zone import Zone
-from giveway.departures import Departures
-from giveway.drivers import make_driver, make_regulator
+from giveway.ego.controllers import make_driver, make_regulator
+from giveway.ego.vehicle import model_remark, require_vehicles
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.scenario_files import StartOptions, free_prefix, read_scenario
 from giveway.sumo.session import SumoSession
 from giveway.sumo.types import all_types, inserted_type
-from giveway.vehicles import model_remark, require_vehicles
 from giveway.walkways import WalkNetwork
-from giveway.yielding import Yielding
 from pedestrian_model import (
     OPEN_GROUND,
     Crowd,
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.config import RunConfig
-    from giveway.ego import Driver
+    from giveway.ego.ego import Driver
     from giveway.scenario_files import ScenarioFiles
     from sumo_scenarios import Scenario
 

@@ -7,18 +7,18 @@ import math
 from typing import TYPE_CHECKING
 
 from giveway.config.sections import DEFAULT_SPEED
-from giveway.ego import Ego
+from giveway.ego.ego import Ego
+from giveway.ego.lights import Lights
 from giveway.errors import ConfigError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.path import EgoPath
-from giveway.lights import Lights
 from giveway.scenario_files import declares, undeclared
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from giveway.ego import Driver
+    from giveway.ego.ego import Driver
     from giveway.sumo.lanes import Way
     from giveway.sumo.session import SumoSession
     from giveway.sumo.vehicles import VehicleState

@@ -13,7 +13,7 @@ from giveway.figures import (
     state_figure,
     top_view_figure,
 )
-from giveway.results import MARKS
+from giveway.results.folder import MARKS
 from pedestrian_model import Vehicles, vehicle_influence
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.geometry.bodies import VehicleShape
-    from giveway.run_result import EgoResult, RunResult
+    from giveway.results.run_result import EgoResult, RunResult
     from pedestrian_model import VciParameters
 
     Array = NDArray[np.float64]

@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.heartbeat import Heartbeat
+from giveway.processes.heartbeat import Heartbeat
 
 if TYPE_CHECKING:
     from io import FileIO

@@ -12,7 +12,7 @@ from fmus.checking.prediction import position_errors
 
 if TYPE_CHECKING:
     from giveway.records.tracks import EgoTrack
-    from giveway.run_result import EgoResult
+    from giveway.results.run_result import EgoResult
 
 _TOLERATED = 0.05  # [m] over the horizon
 _SURE = 0.1  # half width of M's 95 % interval, relative, up to which a fit is worth telling

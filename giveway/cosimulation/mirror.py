@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from giveway.crowd.roster import Roster
-    from giveway.ego import Ego
+    from giveway.ego.ego import Ego
     from giveway.sumo.session import SumoSession
 
 Array = NDArray[np.float64]

@@ -22,9 +22,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from giveway.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
-from giveway.process_ends import WINDOWS_CAUSES, cause_of_end, stood_still, text_in
-from giveway.supervised import JOURNAL_VARIABLE, STDERR_FILE, TRACEBACK_FILE
+from giveway.processes.causes import WINDOWS_CAUSES, cause_of_end, stood_still, text_in
+from giveway.processes.child import JOURNAL_VARIABLE, STDERR_FILE, TRACEBACK_FILE
+from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -106,8 +106,8 @@ def own_command() -> list[str]:
 def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG_LIMIT) -> Verdict:
     """Run ``command`` as a child on our own terminal and wait for its end.
 
-    The child enters :class:`giveway.supervised.Supervised`. Signals that ask us to end are passed
-    on; a second one 10 s later kills the child. Should we be killed, so is the child.
+    The child enters :class:`giveway.processes.child.Supervised`. Signals that ask us to end are
+    passed on; a second one 10 s later kills the child. Should we be killed, so is the child.
 
     Args:
         command: program and arguments; the child finds the journal in ``GIVEWAY_JOURNAL``.

@@ -10,11 +10,11 @@ import numpy as np
 
 from controller import Observation, PlanningRegulator, Situation
 from fmus import FmuError
-from giveway.corridor import NO_LEADER, Corridor, Leader
 from giveway.crowd.perception import Perception
+from giveway.ego.corridor import NO_LEADER, Corridor, Leader
+from giveway.ego.foresight import CrowdForesight
+from giveway.ego.safety import Guard
 from giveway.errors import ControlError, VehicleError
-from giveway.foresight import CrowdForesight
-from giveway.guard import Guard
 from giveway.records.rows import EgoRow
 
 if TYPE_CHECKING:
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from controller import Decision, Regulator, SafetyParameters
     from fmus import Vehicle
     from giveway.config import RunConfig
+    from giveway.ego.lights import Lights
     from giveway.geometry.bodies import VehicleShape
     from giveway.geometry.path import EgoPath, Pose
-    from giveway.lights import Lights
     from pedestrian_model import Crowd, Predictor, Surroundings
 
     Array = NDArray[np.float64]

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from controller.planning import Prospect
-from giveway.courses import Alarm, courses
+from giveway.ego.in_front import closest_in_front, window
+from giveway.ego.threats import Alarm, courses
 from giveway.geometry.kernel import kernel
 from giveway.geometry.path import body_pose
-from giveway.in_front import closest_in_front, window
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,7 +11,7 @@ from giveway.records.scene import Scene
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
 
     Array = NDArray[np.float64]
 

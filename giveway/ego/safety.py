@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from controller import LongitudinalModel, SafetyLayer, SafetyParameters
-from giveway.way_ahead import WayAhead
+from giveway.ego.way_ahead import WayAhead
 
 if TYPE_CHECKING:
     from controller import Decision

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.paths_ahead import PathsAhead, gaps_ahead, sort_people
+from giveway.cosimulation.paths_ahead import PathsAhead, gaps_ahead, sort_people
 
 if TYPE_CHECKING:
     from giveway.sumo.background import BackgroundVehicles

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Self
 
-from giveway.heartbeat import Heartbeat, Phase
+from giveway.processes.heartbeat import Heartbeat, Phase
 
 if TYPE_CHECKING:
     from types import FrameType, TracebackType

@@ -24,9 +24,9 @@ from controller import (
 )
 from fmus import FmuError
 from giveway.config.presets import parameters_of
-from giveway.ego import Driver
+from giveway.ego.ego import Driver
+from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
 from giveway.errors import ControlError, VehicleError
-from giveway.vehicles import identified_reaction_time, model_margin, open_for
 from pedestrian_model import Predictor
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from giveway.ego import Ego
+    from giveway.ego.ego import Ego
 
 LONGEST = 3600.0  # [s] without a move
 _MOVED = 0.1  # [m] from which on an ego has moved

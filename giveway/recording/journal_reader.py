@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.errors import ResultsError
-from giveway.heartbeat import Heartbeat, Pulse
-from giveway.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Kind
+from giveway.processes.heartbeat import Heartbeat, Pulse
+from giveway.recording.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

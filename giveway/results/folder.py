@@ -12,7 +12,7 @@ import numpy as np
 
 from giveway.errors import ResultsError
 from giveway.records.scene import SCENE_FILE
-from giveway.results_scene import scene_of
+from giveway.results.scene import scene_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from giveway.records.columns import Column
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
 
 SUMO_FOLDER = "sumo"
 MARKS = ("", *(f"_{number}" for number in range(2, 100)))
@@ -184,7 +184,7 @@ def write_pictures(result: RunResult, folder: Path) -> None:
     Raises:
         ResultsError: a file cannot be written.
     """
-    from giveway.pictures import save_run_pictures
+    from giveway.results.pictures import save_run_pictures
 
     try:
         save_run_pictures(result, folder)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import kernel
-from giveway.journal import Journal
+from giveway.recording.journal import Journal
 from giveway.records.rows import EGO_NUMBERS, LEDGER, EgoRow
 from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
 

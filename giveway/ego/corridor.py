@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from giveway.ego.in_front import closest_ahead, closest_in_sight, vehicles_in_front
 from giveway.geometry.kernel import kernel
 from giveway.geometry.path import body_pose
-from giveway.in_front import closest_ahead, closest_in_sight, vehicles_in_front
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
