@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 from giveway.cli.fmu import build_export, build_fmu
-from giveway.cli.recorded import add_recorded
 from giveway.cli.studies import add_studies
+from giveway.cli.validation import add_recorded
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
 

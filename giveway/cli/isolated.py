@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from giveway.cli import INTERRUPTED, fail
+from giveway.cli.exit import INTERRUPTED, fail
 from giveway.errors import GivewayError
 from giveway.processes.child import Supervised
 from giveway.processes.supervisor import journal_folder, own_command, supervise

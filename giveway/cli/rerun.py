@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.markup import escape
 
-from giveway.cli import INTERRUPTED, fail
+from giveway.cli.exit import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
 from giveway.cli.run import Outputs, show
 from giveway.precompile import compile_kernels_once

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.markup import escape
 
-from giveway.cli import INTERRUPTED, fail
+from giveway.cli.exit import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
 from giveway.config.layers import Layer, read_toml
 from giveway.config.loading import load

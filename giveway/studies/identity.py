@@ -34,7 +34,7 @@ _NAMING_FILES = (
     ("crowd", "preset"),
     ("perception", "preset"),
 )
-_ROWS = frozenset({"studies/performing.py", "studies/record.py"})  # but for what makes them
+_ROWS = frozenset({"studies/execution/perform.py", "studies/record.py"})  # but for what makes them
 _NO_MATTER = frozenset({"platform", "machine", "pandas", "python"})
 
 

@@ -10,7 +10,7 @@ from giveway.config.layers import Layer
 from giveway.config.loading import load
 from giveway.errors import GivewayError
 from giveway.records.progress import Ending
-from giveway.studies.performing import rows_of
+from giveway.studies.execution.perform import rows_of
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -17,7 +17,7 @@ from contextlib import suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final, Self
 
-from giveway.studies.execution.errand import Errand
+from giveway.studies.execution.cluster_runs import Errand
 from giveway.studies.execution.errors import WorkerError
 
 if TYPE_CHECKING:

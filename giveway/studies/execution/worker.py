@@ -43,7 +43,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
         faulthandler.enable(file)
         heartbeat = Heartbeat(Path(folder))
         from giveway.precompile import compile_kernels_once
-        from giveway.studies import identity, performing  # noqa: F401 - no run is to wait for it
+        from giveway.studies.execution import perform as performing  # noqa: F401 - no run is to wait for it
         from giveway.sumo.library import import_libsumo
 
         import_libsumo()  # what every run would find missing is no run's failure
@@ -60,7 +60,8 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
 
 def _answer(task: Task, heartbeat: Heartbeat, folder: Path) -> tuple[bytes, bytes]:
     """Make the run, and say so: a message's kind and payload."""
-    from giveway.studies import identity, performing
+    from giveway.studies import identity
+    from giveway.studies.execution import perform as performing
 
     try:
         identity.require_same(task)

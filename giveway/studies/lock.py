@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import filelock
 
 from giveway.errors import ResultsError
+from giveway.studies.atomic_files import finished_name
 from giveway.studies.folder import DEFINITION, MANIFEST
 from giveway.studies.output import PACKAGE, TABLES
 from giveway.studies.store import RECORDS
-from giveway.studies.whole_files import finished_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
