@@ -26,7 +26,6 @@ from giveway.results.folder import (
     require_parquet,
     sumo_folder,
     take_folder,
-    write_pictures,
     write_results,
 )
 from giveway.results.provenance import manifest
@@ -149,6 +148,8 @@ def keep(result: RunResult, folder: Path, *, parquet: bool, pictures: bool, take
     if len(result.time):
         write_results(result, folder, parquet=parquet)
         if pictures:
+            from giveway.results.pictures import write_pictures
+
             write_pictures(result, folder)
     elif taken:
         release_folder(folder)
@@ -213,8 +214,8 @@ def _result(
     elapsed: float,
 ) -> RunResult:
     """What the loop has left behind."""
-    tables = recorder.tables()
-    egos = results_of_egos(parts.config, tables, ending, loop.endings)
+    rows = recorder.rows()
+    egos = results_of_egos(parts.config, rows, ending, loop.endings)
     remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos))
     if recorder.journal.failure:
         remarks = (*remarks, recorder.journal.failure)
@@ -223,11 +224,11 @@ def _result(
         scenario=scenario,
         ending=ending,
         error=error,
-        time=tables.time,
+        time=rows.time,
         egos=egos,
-        crowd_track=tables.crowd_track(),
-        background_track=tables.background_track(),
-        timings=tables.timings(),
+        crowd_track=rows.crowd_track(),
+        background_track=rows.background_track(),
+        timings=rows.timings(),
         elapsed=elapsed,
         manifest=manifest(
             parts.config,

@@ -12,6 +12,7 @@ import numpy as np
 
 from giveway.errors import ResultsError
 from giveway.records.scene import SCENE_FILE
+from giveway.results.names import FILES, SUMO_FOLDER, TABLES
 from giveway.results.scene import scene_of
 
 if TYPE_CHECKING:
@@ -23,25 +24,6 @@ if TYPE_CHECKING:
     from giveway.records.columns import Column
     from giveway.results.run_result import RunResult
 
-SUMO_FOLDER = "sumo"
-MARKS = ("", *(f"_{number}" for number in range(2, 100)))
-"""Ends of the names of pictures: of the first ego, the second one, ..."""
-TABLES = ("ego", "trajectories", "pedestrians", "summary", "timing", "predictions")
-"""All that there can be; which of them a run has, its ``schemas`` say."""
-FILES = frozenset(
-    {
-        *(f"{name}{suffix}" for name in TABLES for suffix in (".csv", ".parquet")),
-        "config.toml",
-        "summary.json",
-        "manifest.json",
-        "datapackage.json",
-        SCENE_FILE,
-        "replay.html",
-        "sumo.log",
-        *(f"{name}{mark}.png" for name in ("state", "top_view") for mark in MARKS),
-        SUMO_FOLDER,
-    }
-)
 _RUNNING = '{"ending": "running"}\n'
 _DECIMALS = 6  # micrometres, microseconds: finer than anything that is compared
 
@@ -176,21 +158,6 @@ def sumo_folder(folder: Path) -> Path:
         )
         raise ResultsError(msg) from error
     return folder / SUMO_FOLDER
-
-
-def write_pictures(result: RunResult, folder: Path) -> None:
-    """Draw the state figure and the top view into ``folder``.
-
-    Raises:
-        ResultsError: a file cannot be written.
-    """
-    from giveway.results.pictures import save_run_pictures
-
-    try:
-        save_run_pictures(result, folder)
-    except OSError as error:
-        msg = f"{folder}: a picture cannot be written ({error.strerror}); free the disk"
-        raise ResultsError(msg) from error
 
 
 def require_parquet() -> None:

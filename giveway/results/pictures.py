@@ -13,7 +13,8 @@ from giveway.figures import (
     state_figure,
     top_view_figure,
 )
-from giveway.results.folder import MARKS
+from giveway.errors import ResultsError
+from giveway.results.names import MARKS
 from pedestrian_model import Vehicles, vehicle_influence
 
 if TYPE_CHECKING:
@@ -32,14 +33,22 @@ if TYPE_CHECKING:
 _CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
 
 
-def save_run_pictures(result: RunResult, folder: Path) -> None:
+def write_pictures(result: RunResult, folder: Path) -> None:
     """Write ``state.png`` and ``top_view.png`` of the first ego, ``state_2.png`` of the second ...
 
     Without an ego there are only the trajectories.
 
     Raises:
-        OSError: a file cannot be written.
+        ResultsError: a file cannot be written.
     """
+    try:
+        _write_pictures(result, folder)
+    except OSError as error:
+        msg = f"{folder}: a picture cannot be written ({error.strerror}); free the disk"
+        raise ResultsError(msg) from error
+
+
+def _write_pictures(result: RunResult, folder: Path) -> None:
     for ego, mark in zip(result.egos, MARKS, strict=False):
         save_figure(state_picture(result, ego), folder / f"state{mark}.png")
         save_figure(top_view_picture(result, ego), folder / f"top_view{mark}.png")

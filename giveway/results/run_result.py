@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.config import RunConfig
-    from giveway.recording.recorder import Tables
+    from giveway.recording.recorded import RecordedRows
     from sumo_scenarios import Scenario
 
     Array = NDArray[np.float64]
@@ -248,31 +248,31 @@ class RunResult:
 
 
 def results_of_egos(
-    config: RunConfig, tables: Tables, ending: Ending, endings: Mapping[str, Ending]
+    config: RunConfig, rows: RecordedRows, ending: Ending, endings: Mapping[str, Ending]
 ) -> tuple[EgoResult, ...]:
     """What each ego leaves behind.
 
     Args:
         config: the run's.
-        tables: its rows.
+        rows: the run's.
         ending: of the run.
         endings: of those egos whose drive ended by itself.
     """
-    crowd = tables.crowd_track()
-    configs = {ego.ego_id: ego for ego in config.each_ego()}
+    crowd = rows.crowd_track()
+    configs = {own.ego_id: own for own in config.each_ego()}
     return tuple(
         EgoResult(
-            config=configs[drive.id],
-            id=drive.id,
-            shape=drive.shape,
-            goal=drive.goal,
-            first=drive.first,
-            track=drive.track,
-            ending=endings.get(drive.id, ending),
-            crowd=crowd.during(drive.first, len(drive.track.time)),
-            predictions=drive.predictions,
+            config=configs[ego.id],
+            id=ego.id,
+            shape=ego.shape,
+            goal=ego.goal,
+            first=ego.first,
+            track=ego.track,
+            ending=endings.get(ego.id, ending),
+            crowd=crowd.during(ego.first, len(ego.track.time)),
+            predictions=ego.predictions,
         )
-        for drive in tables.drives()
+        for ego in rows.egos()
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import queue
 from collections import deque
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from giveway.studies.execution.errors import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS
@@ -13,7 +13,6 @@ from giveway.studies.record import CRASHED, Computing, RunRecord
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from giveway.studies.execution.cluster import ClusterExecutor
     from giveway.studies.record import Task
 
 Future = Any  # Dask's, most of whose methods have no types
@@ -23,16 +22,33 @@ _LOOK: Final = 1.0  # [s] between two looks at the cluster, and at Ctrl-C
 _FETCH: Final = 30.0  # [s] for a result to arrive, or its worker has died meanwhile
 
 
-class Errand:
-    """One call of :meth:`ClusterExecutor.run`.
+class Cluster(Protocol):
+    """What hands runs out to workers, and knows whether there are any."""
+
+    @property
+    def workers(self) -> int:
+        """How many runs are made at a time."""
+
+    def submit(self, task: Task, name: str) -> Future:
+        """Hand a run out; the future of its record."""
+
+    def is_there(self) -> bool:
+        """Whether somebody works; else, wait a little for them."""
+
+    def abandon(self, futures: Iterable[Future]) -> None:
+        """Take back runs, and end those that are being made."""
+
+
+class ClusterRuns:
+    """The runs of one call of :meth:`giveway.studies.execution.executor.Executor.run`.
 
     Args:
-        executor: hands runs out, and knows whether the cluster is there.
+        cluster: makes them.
         tasks: to be made.
     """
 
-    def __init__(self, executor: ClusterExecutor, tasks: Iterable[Task]) -> None:
-        self._executor = executor
+    def __init__(self, cluster: Cluster, tasks: Iterable[Task]) -> None:
+        self._cluster = cluster
         self._source = iter(tasks)
         self._again: deque[Task] = deque()
         self._killed: dict[str, int] = {}  # run: Dask workers that died of it, or so it seems
@@ -44,7 +60,7 @@ class Errand:
         """As :meth:`giveway.studies.execution.executor.Executor.run`."""
         try:
             while True:
-                there = self._executor.is_there()
+                there = self._cluster.is_there()
                 if there and not self._hand_out():
                     return
                 try:
@@ -59,18 +75,18 @@ class Errand:
                     yield record
         finally:
             if self._under_way:
-                self._executor.abandon(future for _, future in self._under_way.values())
+                self._cluster.abandon(future for _, future in self._under_way.values())
 
     def _hand_out(self) -> bool:
         """Fill the window; False: there is nothing more to do."""
-        while len(self._under_way) < _AHEAD * self._executor.workers:
+        while len(self._under_way) < _AHEAD * self._cluster.workers:
             task = self._again.popleft() if self._again else next(self._source, None)
             if task is None:
                 break
             self._number += 1
             name = f"{task.run}-{self._number}"
             try:
-                future = self._executor.submit(task, name)
+                future = self._cluster.submit(task, name)
             except Exception:  # Dask has many; the next look at the cluster tells what is wrong
                 self._again.append(task)
                 return True
