@@ -12,7 +12,7 @@ from fmus.controller_fmu.parameters import CONTROLLER_FILES, ControllerParameter
 from fmus.errors import FmuError
 from giveway.cli.run import layers_of
 from giveway.config.loading import load
-from giveway.cosimulation.assembly import control_step
+from giveway.cosimulation.preflight import control_step
 from giveway.ego.controllers import make_regulator
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ConfigError, ControlError, ResultsError
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig, RunConfig
 
 
 def export_command(
@@ -78,7 +78,7 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
     raise ConfigError(msg)
 
 
-def _parameters(config: RunConfig, time_step: float) -> ControllerParameters:
+def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
     """What giveway's own regulator of one ego is set to."""
     regulator = make_regulator(config, time_step)
     if not config.controller.endswith("-paper") or not isinstance(regulator.pid, Pid):

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.cosimulation.paths_ahead import PathsAhead, gaps_ahead, sort_people
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from giveway.sumo.vehicles import SumoVehicles
     from pedestrian_model import Crowd
 
-_SIDE = 0.25  # [m] of the corridor beyond the car's body, as for the ego
 _LOOK_AHEAD = 1.0  # [s] for which people are expected to walk on as they do
 _REACTION = 1.0  # [s] of SUMO's default driver
 
@@ -86,7 +86,7 @@ class Yielding:
                 numbers,
                 self._paths.ways,
                 sight,
-                cars.width / 2 + _SIDE,
+                cars.width / 2 + CORRIDOR_MARGIN,
                 people,
                 sort_people(people),
                 gaps,

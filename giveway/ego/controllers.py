@@ -32,17 +32,17 @@ from pedestrian_model import Predictor
 if TYPE_CHECKING:
     from contextlib import ExitStack
 
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig
 
 
 _WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut at two in x and in y
 
 
-def make_regulator(config: RunConfig, time_step: float) -> Regulator | PlanningRegulator:
+def make_regulator(config: EgoRunConfig, time_step: float) -> Regulator | PlanningRegulator:
     """The controller of one ego.
 
     Args:
-        config: of this ego alone.
+        config: of the ego.
         time_step: of the co-simulation [s].
 
     Raises:
@@ -91,7 +91,7 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator | PlanningR
     return Regulator(mpc, pid)
 
 
-def _tuned_pid(config: RunConfig, time_step: float) -> TunedPid:
+def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
     """The well-tuned PID, with the actuator's limits of the MPC."""
     regulation, tuned, vehicle = config.regulation, config.tuned_pid, config.vehicle
     return TunedPid(
@@ -118,7 +118,7 @@ def _tuned_pid(config: RunConfig, time_step: float) -> TunedPid:
     )
 
 
-def _planning(config: RunConfig, time_step: float) -> PlanningRegulator:
+def _planning(config: EgoRunConfig, time_step: float) -> PlanningRegulator:
     """The planning MPC, with the tuned PID where a hard corridor leaves it no plan."""
     regulation, planner, limits = config.regulation, config.planner, config.mpc
     margin = model_margin(config, time_step)
@@ -149,18 +149,21 @@ def _planning(config: RunConfig, time_step: float) -> PlanningRegulator:
     return PlanningRegulator(Planner(model, parameters), _tuned_pid(config, time_step))
 
 
-def plan_steps(config: RunConfig, time_step: float) -> int:
+def plan_steps(config: EgoRunConfig, time_step: float) -> int:
     """The planner's horizon in steps."""
     return max(4, round(config.planner.horizon / time_step))
 
 
 def make_driver(
-    config: RunConfig, regulator: Regulator | PlanningRegulator, time_step: float, stack: ExitStack
+    config: EgoRunConfig,
+    regulator: Regulator | PlanningRegulator,
+    time_step: float,
+    stack: ExitStack,
 ) -> Driver:
     """One ego's FMU, loaded, with its controller.
 
     Args:
-        config: of this ego alone.
+        config: of the ego.
         regulator: its controller.
         time_step: of the co-simulation [s].
         stack: closes the FMU.
@@ -184,11 +187,11 @@ def make_driver(
     return Driver(config, vehicle, description, regulator, predictor, fastest, safety)
 
 
-def safety_parameters(config: RunConfig, time_step: float) -> SafetyParameters:
+def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameters:
     """The limits that the safety layer counts on; the body's width is not known yet.
 
     Args:
-        config: of this ego alone.
+        config: of the ego.
         time_step: of the co-simulation [s].
     """
     safety, people = config.safety, parameters_of(config.crowd.preset)

@@ -10,6 +10,7 @@ import numpy as np
 
 from controller import Observation, PlanningRegulator, Situation
 from fmus import FmuError
+from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import NO_LEADER, Corridor, Leader
 from giveway.ego.foresight import CrowdForesight
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
     from controller import Decision, Regulator, SafetyParameters
     from fmus import Vehicle
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig
     from giveway.ego.lights import Lights
     from giveway.geometry.bodies import VehicleShape
     from giveway.geometry.path import EgoPath, Pose
@@ -43,12 +44,12 @@ class Driver:
     """A controller with its FMU, ready for its vehicle to depart.
 
     Attributes:
-        config: of this ego alone.
+        config: of the ego.
         description: of the FMU, for the manifest.
         predictor: None: the controller looks at the present only.
     """
 
-    config: RunConfig
+    config: EgoRunConfig
     vehicle: Vehicle
     description: dict[str, object]
     regulator: Regulator | PlanningRegulator
@@ -142,9 +143,7 @@ class Ego:
         half_width = config.regulation.corridor_half_width
         self.corridor = Corridor(
             path,
-            half_width=shape.width / 2 + config.corridor_margin
-            if half_width is None
-            else half_width,
+            half_width=shape.width / 2 + CORRIDOR_MARGIN if half_width is None else half_width,
             horizon=driver.horizon,
             time_step=time_step,
             walking_speed_limit=driver.walking_speed_limit,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from controller.planning import Manoeuvre
-from giveway.config import RunConfig
+from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_driver, make_regulator
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
@@ -17,8 +17,8 @@ from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, Crowd
 
 BEND = [(-50.0, 0.0), (0.0, 0.0), (30.0, 0.0), (60.0, 20.0), (100.0, 60.0)]
-CONFIG = RunConfig(controller="mpc-paper")
-PLANNING = RunConfig(controller="mpc")
+CONFIG = EgoRunConfig(controller="mpc-paper")
+PLANNING = EgoRunConfig(controller="mpc")
 
 
 def crowd(rng: np.random.Generator, widest: float = 60.0) -> Crowd:
