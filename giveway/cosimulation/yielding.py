@@ -32,13 +32,18 @@ class Yielding:
         vehicles: SUMO's.
         step_length: SUMO's step [s], in which a limit holds.
         distance: [m] the cars want to stop before a pedestrian.
+
+    Attributes:
+        limited: the speed [m/s] of those that yield at present, by their ids.
     """
+
+    limited: dict[str, float]
 
     def __init__(self, vehicles: SumoVehicles, step_length: float, distance: float) -> None:
         self._vehicles = vehicles
         self._reaction = max(step_length, _REACTION)
         self._distance = distance
-        self._limited: dict[str, float] = {}
+        self.limited = {}
         self._paths = PathsAhead(vehicles)
         self._ever: set[str] = set()
         self._step_length = step_length
@@ -56,10 +61,8 @@ class Yielding:
             cars: SUMO's own vehicles now.
             crowd: the pedestrians now.
         """
-        if not cars.ids and not self._limited:
-            return
         limits = self._limits(cars, crowd) if cars.ids and len(crowd) else {}
-        before = self._limited
+        before = self.limited
         if before and before.keys() - limits.keys():
             gone = before.keys() - set(cars.ids)
             for name in sorted(before.keys() - limits.keys() - gone):
@@ -67,7 +70,7 @@ class Yielding:
         for name, limit in limits.items():
             if before.get(name) != limit:
                 self._vehicles.limit(name, limit)
-        self._limited = limits
+        self.limited = limits
         self._ever.update(limits)
         self._time += self._step_length * len(limits)
 
