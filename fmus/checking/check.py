@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from fmus.checking.manoeuvres import Attempt, Opener, Trace
     from fmus.checking.self_check import Convergence
-    from fmus.profile import VehicleProfile
+    from fmus.profile.vehicle_profile import VehicleProfile
 
 GENTLE = 3.0  # [m/s2] of the manoeuvres, by the controller's model
 FASTEST_START = 4.0  # [m/s] of the rolling start where the run's own is 0

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fmus.profile import Axis
+from fmus.profile.vehicle_profile import Axis
 
 if TYPE_CHECKING:
-    from fmus.profile import FittedModel, VehicleProfile
+    from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
 
 @dataclass(frozen=True)

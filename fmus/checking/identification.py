@@ -17,7 +17,7 @@ from fmus.checking.prediction import position_errors, speed_errors
 from fmus.checking.remarks import fit_remarks, saturation_remarks
 from fmus.checking.saturation import force_limits
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
-from fmus.profile import FittedModel
+from fmus.profile.vehicle_profile import FittedModel
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fmus.errors import FmuError
-from fmus.vehicle_protocol import Vehicle
+from fmus.interfaces.vehicle import Vehicle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fmus.description.model import Value
 from fmus.isolation import open_vehicle
-from fmus.profile import Limits
+from fmus.profile.vehicle_profile import Limits
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
     from fmus.checking.manoeuvres import Opener
-    from fmus.profile import Value, VehicleProfile
-    from fmus.vehicle_protocol import Vehicle
+    from fmus.description.model import Value
+    from fmus.interfaces.vehicle import Vehicle
+    from fmus.profile.vehicle_profile import VehicleProfile
 
 
 UNGUARDED = Limits(speed=1e9, position_jump=1e9)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fmus.checking.manoeuvres import Trace
-    from fmus.profile import FittedModel
+    from fmus.profile.vehicle_profile import FittedModel
 
 POOR_FIT = 0.9  # of R squared, below which a remark says so
 

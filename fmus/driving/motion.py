@@ -9,8 +9,8 @@ from fmus.driving.guards import DRIVEN, Guard
 from fmus.errors import FmuOutputError
 
 if TYPE_CHECKING:
-    from fmus.preparation import Prepared
-    from fmus.wiring import Wiring
+    from fmus.profile.preparation import Prepared
+    from fmus.profile.wiring import Wiring
 
 
 _SLIP = 0.2  # share of its way by which a position may differ from what the speed accounts for

@@ -8,7 +8,7 @@ from fmus.errors import FmuStartError
 from fmus.text import printable
 
 if TYPE_CHECKING:
-    from fmus.vehicle import VehicleFmu
+    from fmus.driving.drivable import Drivable
 
 _NEAR = 0.01  # [m/s] of the speed wanted, and
 _SETTLED = 0.5  # [s] for so long
@@ -21,7 +21,7 @@ _STILL = 0.02  # [m/s] less is no motion
 _STRONGEST = 3.0  # [m/s2] that is asked for
 
 
-def run_up(vehicle: VehicleFmu, speed: float) -> float:
+def run_up(vehicle: Drivable, speed: float) -> float:
     """Drive ``vehicle`` until it keeps ``speed`` [m/s]; returns how long it took [s].
 
     Raises:
@@ -62,7 +62,7 @@ def run_up(vehicle: VehicleFmu, speed: float) -> float:
     raise FmuStartError(msg)
 
 
-def _idle(vehicle: VehicleFmu) -> str:
+def _idle(vehicle: Drivable) -> str:
     """The inputs that nobody drives, which keep their start values."""
     prepared = vehicle.prepared
     driven = {wire.channel.variable.name for wire in prepared.wiring.inputs}

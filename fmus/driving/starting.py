@@ -9,10 +9,9 @@ from fmus.driving.run_up import run_up
 from fmus.errors import FmuOutputError, FmuStartError, FmuStepError
 
 if TYPE_CHECKING:
-    from fmus.model import Channel
-    from fmus.preparation import Prepared
-    from fmus.profile import Value
-    from fmus.vehicle import VehicleFmu
+    from fmus.description.model import Channel, Value
+    from fmus.driving.drivable import Drivable
+    from fmus.profile.preparation import Prepared
 
 _FIT = 0.02  # [m/s] or [m], and share, by which the first state may differ from the one asked for
 
@@ -35,7 +34,7 @@ def start_values(prepared: Prepared, position: float, speed: float) -> dict[Chan
     return values
 
 
-def reach(vehicle: VehicleFmu, speed: float) -> float | None:
+def reach(vehicle: Drivable, speed: float) -> float | None:
     """Be at the speed asked for [m/s], or drive up to it.
 
     Returns:
@@ -71,7 +70,7 @@ def reach(vehicle: VehicleFmu, speed: float) -> float | None:
         raise type(error)(msg) from None
 
 
-def require_place(vehicle: VehicleFmu, position: float) -> None:
+def require_place(vehicle: Drivable, position: float) -> None:
     """Make sure that an FMU with a parameter for its first position [m] is there.
 
     Raises:

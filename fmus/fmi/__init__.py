@@ -8,23 +8,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fmus.binaries import this_platform
+from fmus.description.binaries import this_platform
+from fmus.description.model import Kind
 from fmus.errors import FmuInterfaceError, FmuPlatformError
 from fmus.fmi.co_simulation import CoSimulation
 from fmus.fmi.fmi1 import Fmi1Calls
 from fmus.fmi.fmi2 import Fmi2Calls
 from fmus.fmi.fmi3 import Fmi3Calls
 from fmus.fmi.library import Library
-from fmus.instance import Journal
-from fmus.model import Kind
+from fmus.interfaces.instance import Journal
 
 if TYPE_CHECKING:
     from pathlib import Path
     from typing import Literal
 
+    from fmus.description.model import Interface, Model
     from fmus.fmi.calls import Calls
-    from fmus.instance import Instance
-    from fmus.model import Interface, Model
+    from fmus.interfaces.instance import Instance
 
 __all__ = ["load"]
 

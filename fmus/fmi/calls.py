@@ -9,15 +9,15 @@ from ctypes import c_size_t, c_uint32, c_void_p
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from fmus.instance import ERROR, STATUS_NAMES, WARNING
+from fmus.interfaces.instance import ERROR, STATUS_NAMES, WARNING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
+    from fmus.description.model import Interface, Model
     from fmus.fmi.library import Function, Library
-    from fmus.instance import Journal
-    from fmus.model import Interface, Model
+    from fmus.interfaces.instance import Journal
 
 
 class CallFailedError(Exception):

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 from fmus.errors import FmuPlatformError
 from fmus.fmi.calls import CallFailedError
 from fmus.fmi.running import RunningInstance
-from fmus.instance import DISCARD, ENDED, WARNING
+from fmus.interfaces.instance import DISCARD, ENDED, WARNING
 
 if TYPE_CHECKING:
     from ctypes import c_void_p
 
     from fmus.fmi.calls import Calls
     from fmus.fmi.values import Transfer
-    from fmus.instance import Tick
+    from fmus.interfaces.instance import Tick
 
 HALVINGS = 6  # of a step that an FMU discards
 CONTINUATIONS = 100  # of a step from where the FMU came to

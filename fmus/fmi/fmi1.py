@@ -6,6 +6,7 @@ import ctypes
 from ctypes import Structure, byref, c_byte, c_char_p, c_double, c_int, c_void_p
 from typing import TYPE_CHECKING, ClassVar
 
+from fmus.description.model import Kind
 from fmus.fmi.calls import (
     Calls,
     CType,
@@ -17,16 +18,15 @@ from fmus.fmi.calls import (
     allocators,
 )
 from fmus.fmi.messages import formatted_receiver
-from fmus.instance import ERROR, WARNING
-from fmus.model import Kind
+from fmus.interfaces.instance import ERROR, WARNING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from fmus.description.model import Interface, Model
     from fmus.fmi.library import Library
-    from fmus.instance import Journal
-    from fmus.model import Interface, Model
+    from fmus.interfaces.instance import Journal
 
 _LAST_SUCCESSFUL_TIME = c_int(2)  # fmiStatusKind
 _LONGEST_WAIT = c_double(0.0)  # [ms] of a tool for its start; 0: as long as it takes

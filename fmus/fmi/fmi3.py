@@ -15,17 +15,17 @@ from ctypes import (
 )
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from fmus.description.model import Kind
 from fmus.fmi.calls import Calls, CType, EventInfo, NoInstanceError, Progress, Setting, Stepper
 from fmus.fmi.messages import plain_receiver
-from fmus.model import Kind
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from fmus.description.model import Interface, Model
     from fmus.fmi.library import Library
-    from fmus.instance import Journal
-    from fmus.model import Interface, Model
+    from fmus.interfaces.instance import Journal
 
 
 def _types() -> dict[str, CType]:

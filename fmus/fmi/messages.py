@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from fmus.instance import Journal
+    from fmus.interfaces.instance import Journal
 
 _LONGEST = 4096  # bytes that are read of a message
 _WIDEST = 200  # characters of a number's field

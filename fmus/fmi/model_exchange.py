@@ -16,12 +16,12 @@ from fmus.fmi.calls import CallFailedError
 from fmus.fmi.continuous import ContinuousSystem, IntegrationError, Solver, UndefinedError, locate
 from fmus.fmi.runge_kutta import RungeKutta
 from fmus.fmi.running import RunningInstance
-from fmus.instance import ENDED, ERROR, PENDING, WARNING
+from fmus.interfaces.instance import ENDED, ERROR, PENDING, WARNING
 
 if TYPE_CHECKING:
     from fmus.fmi.calls import Calls
     from fmus.fmi.values import Transfer
-    from fmus.instance import Tick
+    from fmus.interfaces.instance import Tick
 
 TOLERANCE = 1e-6  # relative
 RESOLUTION = 1e-12  # of times, relative to the greater of the time and 1 s

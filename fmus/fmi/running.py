@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Any
 from fmus.errors import FmuPlatformError, FmuStartError, FmuStateError
 from fmus.fmi.calls import CallFailedError, named
 from fmus.fmi.values import Transfer, settings
-from fmus.instance import ERROR, FATAL, PENDING, WARNING, Instance
+from fmus.interfaces.instance import ERROR, FATAL, PENDING, WARNING, Instance
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from fmus.description.model import Channel, Value
     from fmus.fmi.calls import Calls
-    from fmus.instance import Tick
-    from fmus.model import Channel
-    from fmus.profile import Value
+    from fmus.interfaces.instance import Tick
 
 
 class RunningInstance(Instance):

@@ -13,9 +13,8 @@ from fmus.text import printable
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
+    from fmus.description.model import Channel, Value, Variable
     from fmus.fmi.calls import Calls
-    from fmus.model import Channel, Variable
-    from fmus.profile import Value
 
 # ---- start values ----
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from fmus.errors import FmuCrashError
-from fmus.isolation.burial import PrintedTail
-from fmus.isolation.remains import scratch_of
+from fmus.isolation.cleanup import scratch_of
+from fmus.isolation.exit_report import PrintedTail
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

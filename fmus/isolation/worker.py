@@ -15,8 +15,10 @@ from pathlib import Path
 from time import sleep
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from fmus.description.model import Kind
+from fmus.driving.vehicle import VehicleFmu
 from fmus.errors import FmuError
-from fmus.isolation.protocol import (
+from fmus.isolation.wire import (
     DONE,
     FAILED,
     LOAD,
@@ -28,12 +30,10 @@ from fmus.isolation.protocol import (
     receive,
     reply,
 )
-from fmus.model import Kind
 from fmus.text import printable
-from fmus.vehicle import VehicleFmu
 
 if TYPE_CHECKING:
-    from fmus.preparation import Prepared
+    from fmus.profile.preparation import Prepared
 
 
 _WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: in JSON below its limit

@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import Final
 
-from fmus import build
+from fmus.sources import compiler
 
 SOURCE: Final = Path(__file__).parent / "source"
 COMMON: Final = ("car.c", "instance.c", "faults.c")
@@ -27,13 +27,13 @@ FLAGS: Final = (
 )
 
 
-def here() -> build.Target:
+def here() -> compiler.Target:
     """The platform that the tests run on."""
     machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(
         platform.machine().lower(), platform.machine().lower()
     )
     folder = f"{machine}-{platform.system().lower()}"
-    return next(target for target in build.TARGETS if target.folder == folder)
+    return next(target for target in compiler.TARGETS if target.folder == folder)
 
 
 def library(fmi: str, cache: Path) -> bytes:
@@ -44,7 +44,7 @@ def library(fmi: str, cache: Path) -> bytes:
         cache: a folder that processes may share; the name of a file in it tells its sources.
     """
     target = here()
-    digest = hashlib.sha256(f"{build.ZIG_VERSION} {target} {FLAGS}".encode())
+    digest = hashlib.sha256(f"{compiler.ZIG_VERSION} {target} {FLAGS}".encode())
     for path in sorted(SOURCE.iterdir()):
         digest.update(path.read_bytes())
     file = cache / f"car-fmi{fmi[0]}-{digest.hexdigest()[:16]}{target.suffix}"
@@ -66,7 +66,7 @@ def without(library_: bytes, function: str) -> bytes:
     return library_.replace(name, f"\0{function[:-1]}_\0".encode())
 
 
-def _compile(fmi: str, target: build.Target, output: Path) -> None:
+def _compile(fmi: str, target: compiler.Target, output: Path) -> None:
     spec = importlib.util.find_spec("fmpy")
     if spec is None or spec.origin is None:
         msg = "FMPy is not installed: the zoo needs its copy of the standard's headers"

@@ -16,7 +16,7 @@ from fmu_zoo import compiling
 from fmu_zoo.cars import Car, Fault, profile, settings
 from fmu_zoo.description import IDENTIFIER, describe
 from fmu_zoo.faults import FAULTS
-from fmus.packing import write_archive
+from fmus.archive.packing import write_archive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

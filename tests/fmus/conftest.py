@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from fmus import VehicleFmu, bundled_fmu, fmi, make_profile
-from fmus.fmi.reading import read_model
-from fmus.model import Channel, Kind
+from fmus.description.model import Channel, Kind
+from fmus.description.reading import read_model
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from fmus.instance import Instance
+    from fmus.interfaces.instance import Instance
 
 
 @pytest.fixture(params=["2.0", "3.0"], ids=["fmi2", "fmi3"], scope="session")

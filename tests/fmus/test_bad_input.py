@@ -9,7 +9,7 @@ import pytest
 
 import fmus
 from fmus import FmuError, VehicleFmu, describe
-from fmus.bundled import BUNDLED_PROFILE
+from fmus.profile.bundled import BUNDLED_PROFILE
 
 H = 0.05  # [s]
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from fmus import VehicleFmu
-from fmus.drafts.drafting import draft_profile
+from fmus.description.model import Interface, Kind, Model, Variable
 from fmus.errors import FmuStartError, FmuStepError
-from fmus.model import Interface, Kind, Model, Variable
-from fmus.profile import make_profile
+from fmus.profile.draft_profile import draft_profile
+from fmus.profile.vehicle_profile import make_profile
 
 
 def drafted(inputs=(), parameters=()):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from fmus.drafts.drafting import draft_profile
-from fmus.fmi.reading import read_model
+from fmus.description.reading import read_model
+from fmus.profile.draft_profile import draft_profile
 
 
 @pytest.fixture

@@ -101,7 +101,7 @@ def test_nothing_in_the_archive_depends_on_clock_or_zlib(fmu):
 
 @needs_compiler
 def test_a_rebuild_gives_the_shipped_bytes(tmp_path, monkeypatch):
-    from fmus.build import build
+    from fmus.sources.fmu_files import build
 
     monkeypatch.setenv("ZIG_LOCAL_CACHE_DIR", str(tmp_path / "cache"))  # really compile
     rebuilt = build(tmp_path / "elsewhere")

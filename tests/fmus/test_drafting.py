@@ -10,13 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fmus import bundled_fmu, units
-from fmus.drafts.drafting import draft_profile, require_confident
-from fmus.drafts.guessing import words_of
+from fmus import bundled_fmu
+from fmus.description import units
+from fmus.description.model import Interface, Kind, Model, Unit, Variable
+from fmus.description.reading import read_model
 from fmus.errors import FmuProfileError
-from fmus.fmi.reading import read_model
-from fmus.model import Interface, Kind, Model, Unit, Variable
-from fmus.profile import make_profile
+from fmus.profile.draft_profile import draft_profile, require_confident
+from fmus.profile.matching import words_of
+from fmus.profile.vehicle_profile import make_profile
 
 PATH = Path("car.fmu")
 CS = Interface(Kind.CO_SIMULATION, "car")

@@ -19,15 +19,18 @@ from fmus import (
     FmuStateError,
     FmuStepError,
     VehicleFmu,
-    build,
 )
+from fmus.archive.packing import write_archive
+from fmus.profile.bundled import MODEL
+from fmus.sources.compiler import TARGETS, compile_library
+from fmus.sources.fmu_files import FRONT_ENDS, SOURCE
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("ziglang") is None,
     reason="ziglang is not installed: pip install giveway[build]",
 )
 H = 0.05  # [s]
-HERE = next(target for target in build.TARGETS if target.folder == fmpy.platform_tuple)
+HERE = next(target for target in TARGETS if target.folder == fmpy.platform_tuple)
 
 
 @pytest.fixture
@@ -36,7 +39,7 @@ def operate(fmu, fmi_version, tmp_path):
 
     def operation(file, old, new):
         folder, path = tmp_path / "source", tmp_path / "operated.fmu"
-        shutil.copytree(build.SOURCE, folder)
+        shutil.copytree(SOURCE, folder)
         with zipfile.ZipFile(fmu) as archive:
             members = {
                 name: archive.read(name)
@@ -47,10 +50,10 @@ def operate(fmu, fmi_version, tmp_path):
         text = (folder / file).read_text(encoding="utf-8")
         assert text.count(old) == 1
         (folder / file).write_text(text.replace(old, new), encoding="utf-8")
-        sources = ("plant.c", "instance.c", build.FRONT_ENDS[fmi_version])
-        library = build.compile_library(folder, sources, HERE, build.MODEL)
-        members[f"binaries/{HERE.folder}/{build.MODEL}{HERE.suffix}"] = library
-        build.write_archive(path, members)
+        sources = ("plant.c", "instance.c", FRONT_ENDS[fmi_version])
+        library = compile_library(folder, sources, HERE, MODEL)
+        members[f"binaries/{HERE.folder}/{MODEL}{HERE.suffix}"] = library
+        write_archive(path, members)
         return path
 
     return operation
@@ -140,7 +143,7 @@ def test_an_fmu_that_cannot_be_instantiated_is_refused_without_a_word_of_its_own
 
 def test_a_binary_without_the_standards_functions_is_refused(operate, fmi_version):
     name = f"fmi{fmi_version[0]}Terminate"
-    path = operate(build.FRONT_ENDS[fmi_version], f"Status {name}(", f"Status not_{name}(")
+    path = operate(FRONT_ENDS[fmi_version], f"Status {name}(", f"Status not_{name}(")
     with pytest.raises(FmuPlatformError, match=f"no function {name}"):
         VehicleFmu(path, step_size=H)
 

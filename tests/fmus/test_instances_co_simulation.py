@@ -7,7 +7,7 @@ from math import exp, nan
 import pytest
 
 from fmus import FmuPlatformError, FmuStartError, FmuStateError, FmuVariableError, bundled_fmu
-from fmus.instance import ERROR
+from fmus.interfaces.instance import ERROR
 
 VERSIONS = ("1.0", "2.0", "3.0")
 SAVING = {"1.0": "", "2.0": "canGetAndSetFMUstate", "3.0": "canGetAndSetFMUState"}

@@ -9,10 +9,11 @@ import sys
 import fmpy
 import pytest
 
-from fmus import FmuPlatformError, build
+from fmus import FmuPlatformError
 from fmus.fmi.library import Library
+from fmus.sources.compiler import TARGETS
 
-HERE = next(target for target in build.TARGETS if target.folder == fmpy.platform_tuple)
+HERE = next(target for target in TARGETS if target.folder == fmpy.platform_tuple)
 
 needs_compiler = pytest.mark.skipif(
     importlib.util.find_spec("ziglang") is None or HERE.suffix != ".so",

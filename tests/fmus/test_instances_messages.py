@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmus.fmi.messages import DOUBLES, INTEGERS, SKIPPED, Arguments, expand, read_text
-from fmus.instance import Journal
+from fmus.interfaces.instance import Journal
 
 
 def passed(*values):

@@ -11,8 +11,9 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from fmus import FmuStartError, build
+from fmus import FmuStartError
 from fmus.fmi import cvode
+from fmus.sources.compiler import TARGETS, compile_library
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("ziglang") is None,
@@ -38,10 +39,10 @@ SOLVERS = ["rk4"] + ["cvode"] * cvode.available()
 
 @pytest.fixture(scope="session")
 def library(tmp_path_factory):
-    here = next(target for target in build.TARGETS if target.folder == fmpy.platform_tuple)
+    here = next(target for target in TARGETS if target.folder == fmpy.platform_tuple)
     folder = tmp_path_factory.mktemp("ball")
     shutil.copy(Path(__file__).with_name("fmi1_ball.c"), folder)
-    return here.suffix, build.compile_library(folder, ("fmi1_ball.c",), here, "ball")
+    return here.suffix, compile_library(folder, ("fmi1_ball.c",), here, "ball")
 
 
 @pytest.fixture

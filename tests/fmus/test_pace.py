@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmus import FmuProfileError, FmuStateError
-from fmus.driving.pace import Pace, between, make_pace
+from fmus.profile.pace import Pace, between, make_pace
 
 H = 0.05  # [s]
 

@@ -27,7 +27,7 @@ needs_compiler = pytest.mark.skipif(
 @pytest.fixture
 def rebuilt(fmi_version, remake, tmp_path):
     """The shipped FMU with a piece of its C source replaced."""
-    from fmus.build import TARGETS, compile_library
+    from fmus.sources.compiler import TARGETS, compile_library
 
     def make(file, old, new):
         folder = tmp_path / "source"

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 from fmus import FmuOutputError, open_vehicle
-from fmus.fmi.reading import read_model
-from fmus.profile import make_profile
+from fmus.description.reading import read_model
+from fmus.profile.vehicle_profile import make_profile
 
 STEP = 0.05  # [s]
 

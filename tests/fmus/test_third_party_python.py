@@ -11,9 +11,9 @@ import importlib.util
 import pytest
 
 from fmus import FmuProfileError, VehicleFmu, open_vehicle
+from fmus.description.reading import read_model
 from fmus.errors import FmuStepError
-from fmus.fmi.reading import read_model
-from fmus.profile import make_profile
+from fmus.profile.vehicle_profile import make_profile
 
 H = 0.05  # [s]
 PACKERS = {"2.0": "pythonfmu", "3.0": "pythonfmu3"}

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fmus import units
-from fmus.model import Unit
-from fmus.units import named, quantity, to_si
+from fmus.description import units
+from fmus.description.model import Unit
+from fmus.description.units import named, quantity, to_si
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from fmus import FmuInterfaceError, FmuProfileError, FmuVariableError, VehicleFmu, make_profile
-from fmus.fmi.reading import read_model
-from fmus.wiring import wire
+from fmus.description.reading import read_model
+from fmus.profile.wiring import wire
 
 SPEED = {"variable": "speed"}
 FORCE = {"variable": "force"}

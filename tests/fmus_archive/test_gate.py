@@ -11,7 +11,7 @@ import zipfile
 import pytest
 
 from fmus import bundled_fmu
-from fmus.archive import open_archive
+from fmus.archive.gate import open_archive
 from fmus.errors import FmuArchiveError, FmuFileError
 
 DESCRIPTION = b'<?xml version="1.0"?><fmiModelDescription fmiVersion="2.0"/>'

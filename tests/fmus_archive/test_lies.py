@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from fmus.archive import open_archive
+from fmus.archive.gate import open_archive
 from fmus.errors import FmuArchiveError
 
 DESCRIPTION = b'<?xml version="1.0"?><fmiModelDescription fmiVersion="2.0"/>'

@@ -11,7 +11,7 @@ from fmus.checking import check, opener_of
 from fmus.checking.fitting import fit, prepare
 from fmus.checking.identification import identify
 from fmus.checking.saturation import Resisted
-from fmus.profile import make_profile
+from fmus.profile.vehicle_profile import make_profile
 
 TRUCK = {"mass": 18_000.0, "friction": 50.0, "constant": 900.0, "lag": 0.8}
 

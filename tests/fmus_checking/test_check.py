@@ -3,9 +3,9 @@
 import pytest
 
 from fmus import bundled_fmu
-from fmus.bundled import BUNDLED_PROFILE
 from fmus.checking import check, opener_of, without_guards
-from fmus.profile import make_profile
+from fmus.profile.bundled import BUNDLED_PROFILE
+from fmus.profile.vehicle_profile import make_profile
 
 
 def checked(zoo, path, isolated=False, **changes):

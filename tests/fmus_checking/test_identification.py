@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from fmus import FmuOutputError, bundled_fmu
-from fmus.bundled import BUNDLED_PROFILE
 from fmus.checking import identify, opener_of
-from fmus.profile import make_profile
+from fmus.profile.bundled import BUNDLED_PROFILE
+from fmus.profile.vehicle_profile import make_profile
 
 PATH = Path("car.fmu")
 SLOW_AND_FAST = (0.0, 4.0, 12.0)  # [m/s]

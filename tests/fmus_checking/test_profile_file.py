@@ -5,9 +5,9 @@ import tomllib
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fmus.bundled import BUNDLED_PROFILE
 from fmus.checking.profile_file import profile_text, with_model
-from fmus.profile import FittedModel, make_profile
+from fmus.profile.bundled import BUNDLED_PROFILE
+from fmus.profile.vehicle_profile import FittedModel, make_profile
 
 TEXT = """# my car
 [inputs.force]

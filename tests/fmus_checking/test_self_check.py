@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from fmus import FmuCrashError, FmuOutputError, FmuStartError, bundled_fmu
-from fmus.bundled import BUNDLED_PROFILE
 from fmus.checking import (
     Trace,
     convergence,
@@ -16,7 +15,8 @@ from fmus.checking import (
     require_converged,
 )
 from fmus.checking.self_check import compare, manoeuvre
-from fmus.profile import make_profile
+from fmus.profile.bundled import BUNDLED_PROFILE
+from fmus.profile.vehicle_profile import make_profile
 
 STEP = 0.05
 PATH = Path("car.fmu")

@@ -23,12 +23,12 @@ from controller import (
     PidParameters,
     Regulator,
 )
-from fmus.controller_fmu.export import export_controller
+from fmus.sources.export import export_controller
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from fmus.controller_fmu.parameters import ControllerParameters
+    from fmus.sources.parameters import ControllerParameters
 
 FAR = 1e9  # nobody
 

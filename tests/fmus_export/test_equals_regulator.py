@@ -10,8 +10,8 @@ from numpy.random import Generator, default_rng
 
 import giveway
 from controller import Decision, Observation, Regulator
-from fmus.controller_fmu.export import bundled_controller
-from fmus.controller_fmu.parameters import ControllerParameters
+from fmus.sources.export import bundled_controller
+from fmus.sources.parameters import ControllerParameters
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -14,9 +14,9 @@ from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
 from fmus import describe
-from fmus.controller_fmu.export import bundled_controller, export_controller
-from fmus.controller_fmu.parameters import ControllerParameters
 from fmus.errors import FmuBuildError, FmuFileError, FmuVariableError
+from fmus.sources.export import bundled_controller, export_controller
+from fmus.sources.parameters import ControllerParameters
 from giveway.errors import ConfigError, ControlError, ResultsError
 
 if TYPE_CHECKING:
@@ -139,10 +139,10 @@ def test_what_cannot_be_exported_is_said(tmp_path: Path) -> None:
     reason="ziglang is not installed: pip install giveway[build]",
 )
 def test_a_rebuild_gives_the_shipped_bytes(tmp_path: Path, monkeypatch: Any) -> None:
-    from fmus.build import REGULATOR, build
+    from fmus.sources.fmu_files import CONTROLLER_RECIPE, build
 
     monkeypatch.setenv("ZIG_LOCAL_CACHE_DIR", str(tmp_path / "cache"))  # really compile
-    for path in build(tmp_path / "elsewhere", (REGULATOR,)):
+    for path in build(tmp_path / "elsewhere", (CONTROLLER_RECIPE,)):
         shipped = bundled_controller().parent / path.name
         digests = [hashlib.sha256(file.read_bytes()).hexdigest() for file in (path, shipped)]
         assert digests[0] == digests[1], path.name

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from controller import Observation, Regulator
-    from fmus.controller_fmu.parameters import ControllerParameters
+    from fmus.sources.parameters import ControllerParameters
 
     Seen = Callable[..., Observation]
     NewHost = Callable[..., Any]
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture
 def defaults() -> ControllerParameters:
-    from fmus.controller_fmu.parameters import ControllerParameters
+    from fmus.sources.parameters import ControllerParameters
 
     return ControllerParameters()
 
@@ -241,7 +241,7 @@ def test_the_horizon_can_be_shortened_at_run_time(
     regulator_of: Callable[[ControllerParameters], Regulator],
     seen: Seen,
 ) -> None:
-    from fmus.controller_fmu.parameters import ControllerParameters
+    from fmus.sources.parameters import ControllerParameters
 
     host = new_host(fmi_version, N=6)
     now = seen(speed=4.0, obstacle=8.9, horizon=6)

@@ -9,8 +9,8 @@ import pytest
 from fmpy import simulate_fmu
 
 from fmus import VehicleFmu, bundled_fmu
-from fmus.controller_fmu.export import bundled_controller
-from fmus.controller_fmu.parameters import ControllerParameters
+from fmus.sources.export import bundled_controller
+from fmus.sources.parameters import ControllerParameters
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from fmus.isolation import IsolatedVehicle
-from fmus.profile import make_profile
+from fmus.profile.vehicle_profile import make_profile
 
 STEP = 0.05  # [s]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from fmus.isolation.burial import Death, PrintedTail, decoded
+from fmus.isolation.exit_report import Death, PrintedTail, decoded
 
 
 def death(code, *, killed=False, oom=False, printed=""):

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from fmus import FmuCrashError, bundled_fmu
-from fmus.bundled import BUNDLED_PROFILE
 from fmus.isolation import IsolatedVehicle
-from fmus.isolation.remains import remove
+from fmus.isolation.cleanup import remove
+from fmus.profile.bundled import BUNDLED_PROFILE
 
 SOURCE = Path(__file__).parent / "escape.c"
 BINARY = "binaries/linux64/LongitudinalVehicle.so"

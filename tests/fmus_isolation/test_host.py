@@ -9,7 +9,7 @@ import pytest
 
 from fmus import FmuError, VehicleFmu, bundled_fmu, open_vehicle
 from fmus.isolation import IsolatedVehicle
-from fmus.profile import make_profile
+from fmus.profile.vehicle_profile import make_profile
 
 STEP = 0.05  # [s]
 

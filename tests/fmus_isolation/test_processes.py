@@ -13,8 +13,9 @@ from pathlib import Path
 import pytest
 
 from fmus import FmuCrashError, FmuError, FmuProfileError, bundled_fmu
-from fmus.isolation import IsolatedVehicle, keeper
-from fmus.isolation.plain import PlainKeeper
+from fmus.isolation import IsolatedVehicle
+from fmus.isolation import process_host as keeper
+from fmus.isolation.portable_host import PlainKeeper
 
 STEP = 0.05  # [s]
 SCRIPT = """

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmus.errors import FmuCrashError
-from fmus.isolation import protocol
-from fmus.isolation.protocol import DONE, REPLY, STEP, GarbledError, Line
+from fmus.isolation import wire as protocol
+from fmus.isolation.wire import DONE, REPLY, STEP, GarbledError, Line
 
 
 def answered(answer, timeout=0.02):

@@ -8,10 +8,10 @@ import zipfile
 import pytest
 
 from fmus import bundled_fmu
-from fmus.binaries import Platform, misfit, this_platform
+from fmus.description.binaries import Platform, binary_of, misfit, this_platform
+from fmus.description.model import Kind
+from fmus.description.reading import read_model
 from fmus.errors import FmuPlatformError
-from fmus.fmi.reading import binary_of, read_model
-from fmus.model import Kind
 
 # ---- binaries ----
 

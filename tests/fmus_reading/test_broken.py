@@ -6,8 +6,8 @@ import re
 
 import pytest
 
+from fmus.description.reading import read_model
 from fmus.errors import FmuFileError, FmuInterfaceError
-from fmus.fmi.reading import read_model
 
 # ---- broken descriptions ----
 

@@ -8,8 +8,9 @@ import re
 import pytest
 
 from fmus import bundled_fmu
-from fmus.fmi.reading import describe, findings, read_model
-from fmus.model import Kind, Unit
+from fmus.description.model import Kind, Unit
+from fmus.description.reading import describe, read_model
+from fmus.fmi.validation import findings
 
 STAND_ALONE = """<Implementation><CoSimulation_StandAlone>
  <Capabilities canHandleVariableCommunicationStepSize="true" maxOutputDerivativeOrder="2"

@@ -1,0 +1,1 @@
+"""What other floors may expect of a vehicle and of an FMU's instance."""
