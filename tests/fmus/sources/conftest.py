@@ -33,11 +33,6 @@ if TYPE_CHECKING:
 FAR = 1e9  # nobody
 
 
-@pytest.fixture(params=["2.0", "3.0"])
-def fmi_version(request: pytest.FixtureRequest) -> str:
-    return request.param
-
-
 class Host:
     """One instance of the controller, driven by hand."""
 

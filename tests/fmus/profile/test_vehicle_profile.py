@@ -11,7 +11,7 @@ from fmus import FmuProfileError, make_profile, read_profile
 
 FORCE = '[inputs.force]\nvariable = "F"\n'
 SPEED = '[outputs.speed]\nvariable = "v"\n'
-DOCUMENT = Path(__file__).parents[2] / "docs" / "vehicles.md"
+DOCUMENT = Path(__file__).parents[3] / "docs" / "vehicles.md"
 
 
 @pytest.fixture
