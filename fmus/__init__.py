@@ -2,7 +2,7 @@
 
 from fmus.description.model import FmuDescription
 from fmus.description.reading import describe
-from fmus.driving.vehicle import SavedState, VehicleFmu
+from fmus.driving.vehicle import VehicleFmu
 from fmus.errors import (
     FmuArchiveError,
     FmuBuildError,
@@ -45,7 +45,6 @@ __all__ = [
     "FmuStepError",
     "FmuVariableError",
     "IsolatedVehicle",
-    "SavedState",
     "Vehicle",
     "VehicleFmu",
     "VehicleProfile",

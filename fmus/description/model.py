@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -162,7 +162,6 @@ class Model:
     event_indicators: int
     default_step: float | None  # [s] of its default experiment
     default_tolerance: float | None
-    source: Any = field(default=None, repr=False)  # the reader's own object
 
     def unit_of(self, variable: Variable) -> Unit | None:
         """The unit of a variable; None without one."""

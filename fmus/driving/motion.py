@@ -54,14 +54,6 @@ class Motion:
         """Position, speed and acceleration."""
         return self.position, self.speed, self.acceleration
 
-    def save(self) -> tuple[float, ...]:
-        """What :meth:`restore` needs."""
-        return (*self.state, self._way, self._drift)
-
-    def restore(self, saved: tuple[float, ...]) -> None:
-        """Go back to a saved motion."""
-        self.position, self.speed, self.acceleration, self._way, self._drift = saved
-
     def begin(self, outputs: memoryview[float]) -> None:
         """Take over a first state as it is.
 

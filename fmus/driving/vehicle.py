@@ -4,42 +4,31 @@ from __future__ import annotations
 
 import tempfile
 from contextlib import ExitStack
-from dataclasses import dataclass, field
 from math import isclose, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, Self
+from typing import TYPE_CHECKING, NoReturn, Self
 
 from fmus.driving.motion import Motion
 from fmus.driving.starting import reach, require_place, start_values
+from fmus.driving.stepped import SteppedVehicle
 from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
 from fmus.fmi import load
-from fmus.interfaces.instance import STATUS_NAMES, WARNING
+from fmus.fmi.status import STATUS_NAMES, WARNING
 from fmus.profile.pace import between, step_to_run_with
 from fmus.profile.preparation import Prepared, prepare, unpack
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
-    from types import TracebackType
 
     from fmus.description.model import Value
     from fmus.profile.vehicle_profile import VehicleProfile
 
 
-@dataclass(frozen=True, eq=False)
-class SavedState:
-    """A state of a vehicle to return to."""
-
-    step: int
-    handle: Any = field(repr=False)
-    motion: tuple[float, ...] = field(repr=False)
-
-
-class VehicleFmu:
+class VehicleFmu(SteppedVehicle):
     """Runs a vehicle FMU in this process, in steps of fixed size.
 
-    ``position`` [m], ``speed`` [m/s], ``acceleration`` [m/s2] and ``time`` [s] are plain floats, as
-    of the last step. The time after k steps is k times the step size, never a running sum.
+    Its position, speed, acceleration and time are those of :class:`SteppedVehicle`.
 
     Args:
         path: the .fmu file.
@@ -81,19 +70,15 @@ class VehicleFmu:
         return vehicle
 
     def _set_up(self, prepared: Prepared, folder: Path, stack: ExitStack) -> None:
-        self.path = prepared.path
+        super().__init__(prepared.path)
         self.prepared = prepared
-        self.position = self.speed = self.acceleration = self.time = 0.0
         self._step_size = prepared.step_size
         self._pace = prepared.pace
         self._command = prepared.command
         self._motion = Motion(prepared)
         self._ends = ((0.0, 0.0), (0.0, 0.0))  # position, speed round an FMU step that is longer
         self._steps = self._earlier = 0  # since time 0, and in the run-up before it
-        self._saved: set[SavedState] = set()
         self._closed = False
-        self._refusal = ""
-        self._refuse("has not been started; call start() first")
         self._instance = load(
             prepared.model,
             prepared.wiring.interface,
@@ -135,7 +120,7 @@ class VehicleFmu:
             if not isfinite(value):
                 msg = f"{self.path}: start at a {quantity} of {value}; expected a finite number"
                 raise FmuStartError(msg)
-        self._stop()
+        self._instance.stop()
         self._refuse("has not started; call start() again")
         self._steps = self._earlier = 0
         self.time = 0.0
@@ -191,11 +176,7 @@ class VehicleFmu:
             FmuOutputError: an output is not a number that a car can have.
             FmuStateError: the vehicle is not running.
         """
-        if self._refusal:
-            raise FmuStateError(self._refusal)
-        if not isfinite(force):
-            msg = f"{self.path}: force {force} N at {self.time:.10g} s; expected a finite number"
-            raise FmuStepError(msg)
+        self._require_step(force)
         motion, done, stretch = self._motion, self._earlier + self._steps, self._pace.stretch
         if stretch == 1 or done % stretch == 0:
             self._drive(force, done)
@@ -234,59 +215,6 @@ class VehicleFmu:
     def _show(self, motion: Motion) -> None:
         self.position, self.speed, self.acceleration = motion.state
 
-    # --- saved states --------------------------------------------------------------------------
-
-    def save_state(self) -> SavedState:
-        """The complete state of the FMU now, to return to with :meth:`restore_state`.
-
-        Raises:
-            FmuStateError: the vehicle is not running, or the FMU cannot save its state.
-        """
-        if self._refusal:
-            raise FmuStateError(self._refusal)
-        if not self.prepared.wiring.interface.saves_state:
-            msg = f"{self.path}: the FMU cannot save its state; expected canGetAndSetFMUstate"
-            raise FmuStateError(msg)
-        if not self.between_steps:
-            msg = f"{self.path}: within a step of the FMU its state cannot be saved; step on"
-            raise FmuStateError(msg)
-        state = SavedState(self._steps, self._instance.save(), self._motion.save())
-        self._saved.add(state)
-        return state
-
-    def restore_state(self, state: SavedState) -> None:
-        """Return to a saved state; also after a step that failed.
-
-        Raises:
-            FmuStateError: the state is another vehicle's, or has been freed.
-        """
-        self._require_saved(state)
-        self._instance.restore(state.handle)
-        self._refusal = ""
-        self._steps = state.step
-        self.time = state.step * self._step_size
-        self._motion.restore(state.motion)
-        self._show(self._motion)
-        self._ends = ((0.0, 0.0), (self.position, self.speed))
-
-    def free_state(self, state: SavedState) -> None:
-        """Free a saved state; :meth:`start` and :meth:`close` free those that are left.
-
-        Raises:
-            FmuStateError: the state is another vehicle's, or has been freed.
-        """
-        self._require_saved(state)
-        self._saved.remove(state)
-        self._instance.free_state(state.handle)
-
-    def _require_saved(self, state: SavedState) -> None:
-        if state not in self._saved:
-            msg = (
-                f"{self.path}: the saved state of step {state.step} is not this vehicle's or has "
-                "been freed (start() frees all); save a new one"
-            )
-            raise FmuStateError(msg)
-
     # --- end -----------------------------------------------------------------------------------
 
     def close(self) -> None:
@@ -294,31 +222,8 @@ class VehicleFmu:
         if not self._closed:
             self._closed = True
             self._refuse("has been closed; make a new one")
-            self._stop()
+            self._instance.stop()
             self._resources.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.close()
-
-    def _stop(self) -> None:
-        for state in self._saved:
-            self._instance.free_state(state.handle)
-        self._saved.clear()
-        self._instance.stop()
-
-    def _refuse(self, reason: str) -> None:
-        self._refusal = f"{self.path}: the vehicle {reason}"
-
-    def _fail(self) -> None:
-        self._refuse(f"failed at {self.time:.10g} s; start it again or restore a saved state")
 
     def _own_step(self) -> str:
         """The step that the FMU may be made for, where it can do only one."""
@@ -332,7 +237,7 @@ class VehicleFmu:
 
     def _step_failed(self, force: float, status: int) -> NoReturn:
         self._fail()
-        said = self._instance.journal.take() or "without a message"
+        said = self._instance.messages.take() or "without a message"
         end = (self._steps + self._pace.stretch) * self._step_size
         msg = (
             f"{self.path}: no step from {self.time:.10g} s to {end:.10g} s under {force:g} N: the "

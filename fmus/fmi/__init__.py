@@ -16,7 +16,7 @@ from fmus.fmi.fmi1 import Fmi1Calls
 from fmus.fmi.fmi2 import Fmi2Calls
 from fmus.fmi.fmi3 import Fmi3Calls
 from fmus.fmi.library import Library
-from fmus.interfaces.instance import Journal
+from fmus.fmi.messages import MessageLog
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from fmus.description.model import Interface, Model
     from fmus.fmi.calls import Calls
-    from fmus.interfaces.instance import Instance
+    from fmus.fmi.running import Instance
 
 __all__ = ["load"]
 
@@ -61,7 +61,7 @@ def load(
     (folder / "resources").mkdir(exist_ok=True)  # named to the FMU even where it has none
     library = Library(_binary(model, interface, folder), model.path)
     try:
-        calls = _CALLS[model.fmi_version](library, model, interface, folder, Journal())
+        calls = _CALLS[model.fmi_version](library, model, interface, folder, MessageLog())
         if interface.kind == Kind.MODEL_EXCHANGE:
             from fmus.fmi.model_exchange import ModelExchange  # its numpy is not always needed
 

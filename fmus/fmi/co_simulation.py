@@ -6,27 +6,28 @@ the state before the step comes back and the step is done in halves, quarters, .
 
 from __future__ import annotations
 
+from contextlib import suppress
 from ctypes import c_double
 from typing import TYPE_CHECKING
 
 from fmus.errors import FmuPlatformError
 from fmus.fmi.calls import CallFailedError
-from fmus.fmi.running import RunningInstance
-from fmus.interfaces.instance import DISCARD, ENDED, WARNING
+from fmus.fmi.running import Instance
+from fmus.fmi.status import DISCARD, ENDED, FATAL, WARNING
 
 if TYPE_CHECKING:
     from ctypes import c_void_p
 
     from fmus.fmi.calls import Calls
+    from fmus.fmi.running import Tick
     from fmus.fmi.values import Transfer
-    from fmus.interfaces.instance import Tick
 
 HALVINGS = 6  # of a step that an FMU discards
 CONTINUATIONS = 100  # of a step from where the FMU came to
 NEGLIGIBLE = 1e-9  # share of a step that is taken for nothing
 
 
-class CoSimulation(RunningInstance):
+class CoSimulation(Instance):
     """An FMU that steps by itself.
 
     Args:
@@ -103,7 +104,7 @@ class CoSimulation(RunningInstance):
                 else ("and cannot return to the state before it")
             )
             advice = "try a smaller `step` under [fmu] of the profile"
-            self.journal.add(DISCARD, f"it discards the step, {tried}; {advice}")
+            self.messages.add(DISCARD, f"it discards the step, {tried}; {advice}")
         return status
 
     def _continue(self, status: int, time: float, end: float, size: float) -> int:
@@ -130,7 +131,8 @@ class CoSimulation(RunningInstance):
         return self.look(self._stepper.do_step(*self._stepper.arguments))
 
     def stop(self) -> None:  # noqa: D102
-        if self._before is not None:
-            self.free_state(self._before)
-            self._before = None
+        before, self._before = self._before, None
+        if before is not None and self.calls.component and self._worst != FATAL:
+            with suppress(CallFailedError, FmuPlatformError):  # a state that stays does no harm
+                self.calls.free_state(before)
         super().stop()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from fmus.fmi.calls import CallFailedError
-from fmus.interfaces.instance import DISCARD, WARNING
+from fmus.fmi.status import DISCARD, WARNING
 
 if TYPE_CHECKING:
     from collections.abc import Callable

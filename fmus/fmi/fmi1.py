@@ -18,7 +18,7 @@ from fmus.fmi.calls import (
     allocators,
 )
 from fmus.fmi.messages import formatted_receiver
-from fmus.interfaces.instance import ERROR, WARNING
+from fmus.fmi.status import ERROR, WARNING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from fmus.description.model import Interface, Model
     from fmus.fmi.library import Library
-    from fmus.interfaces.instance import Journal
+    from fmus.fmi.messages import MessageLog
 
 _LAST_SUCCESSFUL_TIME = c_int(2)  # fmiStatusKind
 _LONGEST_WAIT = c_double(0.0)  # [ms] of a tool for its start; 0: as long as it takes
@@ -74,12 +74,21 @@ class Fmi1Calls(Calls):
         "Boolean": CType(c_byte, "Boolean"),
         "String": CType(c_char_p, "String"),
     }
+    exchange: ClassVar[dict[str, str]] = Calls.exchange | {
+        "get_nominals": "GetNominalContinuousStates"
+    }
 
     def __init__(
-        self, library: Library, model: Model, interface: Interface, folder: Path, journal: Journal
+        self,
+        library: Library,
+        model: Model,
+        interface: Interface,
+        folder: Path,
+        messages: MessageLog,
     ) -> None:
-        super().__init__(library, model, interface, folder, journal)
-        self._receiver = formatted_receiver(journal)
+        super().__init__(library, model, interface, folder, messages)
+        self.prefix = f"{interface.identifier}_fmi"
+        self._receiver = formatted_receiver(messages)
         self._exchange = interface.kind == Kind.MODEL_EXCHANGE
         logger = ctypes.cast(self._receiver, c_void_p)
         self._callbacks: Structure = (
@@ -120,10 +129,6 @@ class Fmi1Calls(Calls):
             raise NoInstanceError(self._make)
         self.component = c_void_p(component)
 
-    def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102
-        for one in setting:
-            self.apply(one)
-
     def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:  # noqa: D102
         self.configure(inputs)
         if not self._exchange:
@@ -137,16 +142,6 @@ class Fmi1Calls(Calls):
 
     def terminate(self) -> None:  # noqa: D102
         self.call(self._terminate)
-
-    def free(self) -> None:  # noqa: D102
-        self._free(self.component)
-        self.component = None
-
-    def name(self, verb: str, suffix: str = "") -> str:  # noqa: D102
-        return f"{self.interface.identifier}_fmi{verb}{suffix}"
-
-    def state_names(self) -> tuple[str, str, str]:  # noqa: D102
-        return self.name("GetFMUstate"), self.name("SetFMUstate"), self.name("FreeFMUstate")
 
     # ---- Co-Simulation ----
 
@@ -186,13 +181,3 @@ class Fmi1Calls(Calls):
         event = c_byte()
         self.call(self.name("CompletedIntegratorStep"), byref(event))
         return bool(event.value), False
-
-    def exchange_names(self) -> Mapping[str, str]:  # noqa: D102
-        return {
-            "set_time": self.name("SetTime"),
-            "set_states": self.name("SetContinuousStates"),
-            "get_states": self.name("GetContinuousStates"),
-            "get_derivatives": self.name("GetDerivatives"),
-            "get_indicators": self.name("GetEventIndicators"),
-            "get_nominals": self.name("GetNominalContinuousStates"),
-        }

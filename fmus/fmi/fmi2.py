@@ -18,7 +18,7 @@ from fmus.fmi.calls import (
     allocators,
 )
 from fmus.fmi.messages import formatted_receiver
-from fmus.interfaces.instance import DISCARD, WARNING
+from fmus.fmi.status import DISCARD, WARNING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from fmus.description.model import Interface, Model
     from fmus.fmi.library import Library
-    from fmus.interfaces.instance import Journal
+    from fmus.fmi.messages import MessageLog
 
 _LAST_SUCCESSFUL_TIME = c_int(2)  # fmi2StatusKind
 _TERMINATED = c_int(3)
@@ -65,10 +65,15 @@ class Fmi2Calls(Calls):
     }
 
     def __init__(
-        self, library: Library, model: Model, interface: Interface, folder: Path, journal: Journal
+        self,
+        library: Library,
+        model: Model,
+        interface: Interface,
+        folder: Path,
+        messages: MessageLog,
     ) -> None:
-        super().__init__(library, model, interface, folder, journal)
-        self._receiver = formatted_receiver(journal)
+        super().__init__(library, model, interface, folder, messages)
+        self._receiver = formatted_receiver(messages)
         logger = ctypes.cast(self._receiver, c_void_p)
         self._callbacks = _Callbacks(logger, *allocators(), None, None)
         self._instantiate = library.instantiator("fmi2Instantiate")
@@ -93,10 +98,6 @@ class Fmi2Calls(Calls):
             raise NoInstanceError(msg)
         self.component = c_void_p(component)
 
-    def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102
-        for one in setting:
-            self.apply(one)
-
     def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:  # noqa: D102
         self.call(
             "fmi2SetupExperiment",
@@ -107,22 +108,8 @@ class Fmi2Calls(Calls):
             c_double(0.0),
         )
         self.call("fmi2EnterInitializationMode")
-        for one in inputs:
-            self.apply(one)
+        self.configure(inputs)
         self.call("fmi2ExitInitializationMode")
-
-    def terminate(self) -> None:  # noqa: D102
-        self.call("fmi2Terminate")
-
-    def free(self) -> None:  # noqa: D102
-        self._free(self.component)
-        self.component = None
-
-    def name(self, verb: str, suffix: str = "") -> str:  # noqa: D102
-        return f"fmi2{verb}{suffix}"
-
-    def state_names(self) -> tuple[str, str, str]:  # noqa: D102
-        return "fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate"
 
     # ---- Co-Simulation ----
 
@@ -149,9 +136,6 @@ class Fmi2Calls(Calls):
 
     # ---- Model Exchange ----
 
-    def enter_event_mode(self) -> None:  # noqa: D102
-        self.call("fmi2EnterEventMode")
-
     def update_discrete_states(self) -> EventInfo:  # noqa: D102
         info = _EventInfo()
         self.call("fmi2NewDiscreteStates", byref(info))
@@ -162,20 +146,7 @@ class Fmi2Calls(Calls):
             next_time=info.nextEventTime if info.nextEventTimeDefined else None,
         )
 
-    def enter_continuous_time_mode(self) -> None:  # noqa: D102
-        self.call("fmi2EnterContinuousTimeMode")
-
     def completed_step(self) -> tuple[bool, bool]:  # noqa: D102
         event, end = c_int(), c_int()
         self.call("fmi2CompletedIntegratorStep", c_int(0), byref(event), byref(end))
         return bool(event.value), bool(end.value)
-
-    def exchange_names(self) -> Mapping[str, str]:  # noqa: D102
-        return {
-            "set_time": "fmi2SetTime",
-            "set_states": "fmi2SetContinuousStates",
-            "get_states": "fmi2GetContinuousStates",
-            "get_derivatives": "fmi2GetDerivatives",
-            "get_indicators": "fmi2GetEventIndicators",
-            "get_nominals": "fmi2GetNominalsOfContinuousStates",
-        }

@@ -1,4 +1,4 @@
-"""What an FMU says: the C functions that receive its messages.
+"""The messages of an FMU: the log that keeps them, and the C functions that receive them.
 
 Those of FMI 1 and 2 are printf formats with arguments, which Python cannot receive as such. They
 are taken from where the platform's calling convention puts them, and memory is read only where it
@@ -13,18 +13,49 @@ import platform
 import re
 import struct
 import sys
+from collections import deque
 from contextlib import suppress
 from ctypes import CFUNCTYPE, c_double, c_int, c_uint64, c_void_p
 from typing import TYPE_CHECKING, Any
 
+from fmus.text import printable
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from fmus.interfaces.instance import Journal
 
 _LONGEST = 4096  # bytes that are read of a message
 _WIDEST = 200  # characters of a number's field
 _PAGE = 4096  # bytes
+
+
+class MessageLog:
+    """The last messages of an FMU that tell of anything but success."""
+
+    def __init__(self) -> None:
+        self._messages: deque[str] = deque(maxlen=3)
+
+    def add(self, status: int, message: bytes | str | None) -> None:
+        """Keep a message, on one line; one that was the last already is not repeated."""
+        if not status or not message:
+            return
+        text = printable(_decoded(message) if isinstance(message, bytes) else message)
+        if text and text not in self._messages:
+            self._messages.append(text)
+
+    def take(self) -> str:
+        """Everything since the last time."""
+        text = "; ".join(self._messages)
+        self._messages.clear()
+        return text
+
+
+def _decoded(message: bytes) -> str:
+    """Old tools write Latin-1 where the standard says UTF-8."""
+    try:
+        return message.decode("utf-8")
+    except UnicodeDecodeError:
+        return message.decode("latin-1")
 
 
 # ---- where variadic arguments are ----
@@ -82,8 +113,8 @@ class Arguments:
 # ---- receivers ----
 
 
-def formatted_receiver(journal: Journal) -> Any:
-    """The logger of FMI 1 and 2, which writes to ``journal``; keep it while the FMU is loaded."""
+def formatted_receiver(messages: MessageLog) -> Any:
+    """The logger of FMI 1 and 2, which writes to ``messages``; keep it while the FMU is loaded."""
 
     def receive(
         _owner: int | None,
@@ -95,12 +126,12 @@ def formatted_receiver(journal: Journal) -> Any:
     ) -> None:
         if status:
             with suppress(Exception):  # nothing may be raised into C
-                journal.add(status, expand(read_text(message), Arguments(slots)))
+                messages.add(status, expand(read_text(message), Arguments(slots)))
 
     return _FORMATTED(receive)
 
 
-def plain_receiver(journal: Journal) -> Any:
+def plain_receiver(messages: MessageLog) -> Any:
     """The same for FMI 3, whose messages are ready to be read."""
 
     def receive(
@@ -108,7 +139,7 @@ def plain_receiver(journal: Journal) -> Any:
     ) -> None:
         if status:
             with suppress(Exception):
-                journal.add(status, read_text(message))
+                messages.add(status, read_text(message))
 
     return _PLAIN(receive)
 

@@ -7,7 +7,6 @@ the end of the step; event mode again; and so on (FMI 2.0.4, section 3.2; FMI 3.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from fmus.errors import FmuInterfaceError
@@ -15,13 +14,13 @@ from fmus.fmi import cvode
 from fmus.fmi.calls import CallFailedError
 from fmus.fmi.continuous import ContinuousSystem, IntegrationError, Solver, UndefinedError, locate
 from fmus.fmi.runge_kutta import RungeKutta
-from fmus.fmi.running import RunningInstance
-from fmus.interfaces.instance import ENDED, ERROR, PENDING, WARNING
+from fmus.fmi.running import Instance
+from fmus.fmi.status import ENDED, ERROR, PENDING, WARNING
 
 if TYPE_CHECKING:
     from fmus.fmi.calls import Calls
+    from fmus.fmi.running import Tick
     from fmus.fmi.values import Transfer
-    from fmus.interfaces.instance import Tick
 
 TOLERANCE = 1e-6  # relative
 RESOLUTION = 1e-12  # of times, relative to the greater of the time and 1 s
@@ -36,13 +35,7 @@ class _EndedError(Exception):
     """The FMU wants the simulation to end."""
 
 
-@dataclass(frozen=True, eq=False)
-class _SavedState:
-    handle: Any
-    next_event: float | None
-
-
-class ModelExchange(RunningInstance):
+class ModelExchange(Instance):
     """An FMU that is integrated.
 
     Args:
@@ -72,7 +65,7 @@ class ModelExchange(RunningInstance):
         for what in ("set_time", *(("get_derivatives",) if calls.model.states else ())):
             calls.function(calls.exchange_names()[what])
 
-    def prepare(self) -> None:  # noqa: D102 - as in RunningInstance
+    def prepare(self) -> None:  # noqa: D102 - as in Instance
         try:
             self._system = ContinuousSystem(self.calls)
             self._iterate(0.0)
@@ -80,11 +73,11 @@ class ModelExchange(RunningInstance):
             self._solver = self._make_solver()
             self._nominals = self._system.nominals()
         except _EndedError:
-            self.journal.add(ERROR, "it wants to end the simulation at its start")
+            self.messages.add(ERROR, "it wants to end the simulation at its start")
             msg = "the event iteration"
             raise CallFailedError(msg, ENDED) from None
         except (IntegrationError, UndefinedError) as error:
-            self.journal.add(ERROR, str(error))
+            self.messages.add(ERROR, str(error))
             msg = "the initialisation"
             raise CallFailedError(msg, ERROR) from error
 
@@ -103,10 +96,10 @@ class ModelExchange(RunningInstance):
                 return ENDED
             except CallFailedError as error:
                 if error.status <= PENDING:
-                    self.journal.add(ERROR, str(error))
+                    self.messages.add(ERROR, str(error))
                 return self.look(error.status)
             except (IntegrationError, UndefinedError) as error:
-                self.journal.add(ERROR, str(error))
+                self.messages.add(ERROR, str(error))
                 return self.look(ERROR)
             return self.look(get_outputs(*get_arguments))
 
@@ -257,17 +250,7 @@ class ModelExchange(RunningInstance):
             return cvode.Cvode(system, tolerance)
         return RungeKutta(system, tolerance)
 
-    # ---- states and end ----
-
-    def save(self) -> Any:  # noqa: D102
-        return _SavedState(super().save(), self._next_event)
-
-    def restore(self, state: Any) -> None:  # noqa: D102
-        super().restore(state.handle)
-        self._next_event = state.next_event
-
-    def free_state(self, state: Any) -> None:  # noqa: D102
-        super().free_state(state.handle)
+    # ---- end ----
 
     def stop(self) -> None:  # noqa: D102
         super().stop()

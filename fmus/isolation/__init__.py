@@ -1,4 +1,4 @@
-"""Any vehicle FMU: one that is not ours runs in a process of its own."""
+"""Foreign vehicle FMUs run in a process of their own, so that a crash of one ends no run."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def open_vehicle(
         step_size: [s].
         profile: which variable plays which part; None: see :func:`fmus.prepare`.
         start_values: further start values by variable name.
-        isolated: in a process of its own; None: unless it is a shipped FMU.
+        isolated: run it in a process of its own; None: yes, unless it is a shipped FMU.
 
     Raises:
         FmuError: see :class:`IsolatedVehicle`.

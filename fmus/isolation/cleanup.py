@@ -1,4 +1,4 @@
-"""What an FMU leaves behind, and how it is cleared away: processes and folders."""
+"""Removing what an FMU leaves behind: processes and folders."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from pathlib import Path
 from time import sleep
 from typing import Final
 
-_ROUNDS: Final = 50  # in which the killed may have had children
-_PAUSE: Final = 0.02  # [s] for the killed to go
+_ROUNDS: Final = 50  # of looking for processes: those killed may have started others
+_PAUSE: Final = 0.02  # [s] for killed processes to disappear
 
 
 def scratch_of(folder: Path) -> Path:
-    """Where an FMU's processes work, and what they have as TMPDIR.
+    """The folder in which an FMU's processes work; it is also their TMPDIR.
 
     Args:
         folder: the vehicle's temporary one.
@@ -25,9 +25,9 @@ def scratch_of(folder: Path) -> Path:
 
 
 def kill_marked(folder: Path) -> None:
-    """Kill the processes that began with a vehicle's TMPDIR, however they hid (Linux).
+    """Kill the processes that were started with a vehicle's TMPDIR, however they hid (Linux).
 
-    It is for where nobody else can: when the process that is to bury them has been killed.
+    This is the last resort: it serves when the watchdog, which would kill them, is dead itself.
     """
     mark = b"TMPDIR=" + os.fsencode(scratch_of(folder)) + b"\0"
     for _round in range(_ROUNDS):
@@ -43,12 +43,12 @@ def kill_marked(folder: Path) -> None:
 def _holds(place: Path, mark: bytes) -> bool:
     try:
         return mark in place.read_bytes() + b"\0"
-    except OSError:  # it has gone, or is somebody else's
+    except OSError:  # the process has ended, or belongs to another user
         return False
 
 
 def remove(folder: Path) -> None:
-    """Remove a folder, whatever an FMU has made in it or put in its place."""
+    """Remove a folder, whatever an FMU has created in it or put in its place."""
     with suppress(OSError):
         if folder.is_symlink() or not folder.is_dir():
             folder.unlink()
@@ -56,13 +56,13 @@ def remove(folder: Path) -> None:
     try:
         _make_accessible(folder)
         shutil.rmtree(folder, ignore_errors=True)
-    except RecursionError:  # folders within each other that no path can name
+    except RecursionError:  # folders nested so deeply that no path can name them
         with suppress(OSError):
             subprocess.run(["rm", "-rf", "--", folder], stderr=subprocess.DEVNULL, check=False)
 
 
 def _make_accessible(folder: Path) -> None:
-    """What made the folders in it may have had a umask that forbids to enter them."""
+    """Allow ourselves to enter all folders inside: the FMU's umask may have forbidden it."""
     for place, names, _files in os.walk(folder):
         for inner in (Path(place, name) for name in names):
             with suppress(OSError):

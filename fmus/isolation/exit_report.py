@@ -1,4 +1,4 @@
-"""How an FMU's process ended, and how to say so."""
+"""How an FMU's process ended, in numbers and in words."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Final
 
-from fmus.isolation.wire import LOST
+from fmus.isolation.wire import CONNECTION_LOST
 from fmus.text import printable
 
 _WORDS: Final = {
@@ -22,13 +22,14 @@ _TAIL: Final = 4096  # [bytes]
 
 
 @dataclass(frozen=True)
-class Death:
+class ExitReport:
     """How a process ended.
 
     Attributes:
-        code: its exit status; minus the signal that killed it; None: nobody is left to tell.
-        killed: by us.
-        oom: the system killed a process for lack of memory meanwhile.
+        code: its exit status, or minus the signal that killed it; None: unknown, because the
+            watchdog is dead too.
+        killed: giveway killed it.
+        oom: meanwhile the system killed some process for lack of memory.
         printed: the last line that it printed; empty without one.
     """
 
@@ -38,15 +39,15 @@ class Death:
     printed: str
 
     def encoded(self) -> bytes:
-        """For :func:`decoded`."""
+        """The report as bytes, for :func:`decode_report`."""
         return json.dumps(asdict(self)).encode()
 
     @property
     def cause(self) -> str:
-        """'died of ...' or 'ended with ...', to follow a subject."""
+        """A predicate such as 'died of ...', to follow a subject."""
         if self.code is None:
             return "killed the process that watches over it"
-        if self.killed or self.code == LOST:
+        if self.killed or self.code == CONNECTION_LOST:
             return "closed files that are not its own, or ended giveway's Python"
         if self.code >= 0:
             return f"ended itself: exit({self.code}) was called"
@@ -59,24 +60,24 @@ class Death:
         return f"died of {_WORDS.get(name, name)}"
 
     @property
-    def last_words(self) -> str:
-        """', after printing ...'; empty if nothing was printed."""
+    def after_printing(self) -> str:
+        """A clause ', after printing ...'; empty if nothing was printed."""
         return f", after printing '{self.printed}'" if self.printed else ""
 
 
-def decoded(message: bytes) -> Death:
-    """What :meth:`Death.encoded` made."""
-    return Death(**json.loads(message))
+def decode_report(message: bytes) -> ExitReport:
+    """The report that :meth:`ExitReport.encoded` turned into bytes."""
+    return ExitReport(**json.loads(message))
 
 
 class PrintedTail:
-    """The end of what was printed."""
+    """Keeps the end of what a process has printed."""
 
     def __init__(self) -> None:
         self._end = b""
 
     def add(self, piece: bytes) -> None:
-        """Some more was printed."""
+        """Take in another piece of output."""
         self._end = (self._end + piece)[-_TAIL:]
 
     def last_line(self) -> str:
@@ -88,7 +89,7 @@ class PrintedTail:
 
 
 def out_of_memory_kills() -> int:
-    """How many processes this system has killed for lack of memory; 0 where it does not tell."""
+    """How many processes this system has killed for lack of memory; 0 where it does not say."""
     try:
         text = Path("/proc/vmstat").read_text(encoding="ascii")
     except OSError:

@@ -7,9 +7,10 @@ import tempfile
 import weakref
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 from fmus import errors
+from fmus.driving.stepped import SteppedVehicle
 from fmus.errors import (
     FmuCrashError,
     FmuError,
@@ -19,29 +20,28 @@ from fmus.errors import (
     FmuStepError,
 )
 from fmus.isolation.cleanup import remove
-from fmus.isolation.process_host import Keeper, make_keeper
-from fmus.isolation.wire import LOAD, QUIT, START, STEP, GarbledError, Line, Text
+from fmus.isolation.process_host import ProcessHost, make_process_host
+from fmus.isolation.wire import LOAD, QUIT, START, STEP, Client, GarbledError, Text
 from fmus.profile.preparation import prepare, unpack
 from fmus.text import printable
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from types import TracebackType
 
     from fmus.description.model import Value
     from fmus.profile.vehicle_profile import VehicleProfile
 
-_END_TIMEOUT = 5.0  # [s] for an FMU to end in peace
-_DEATH_PATIENCE = 1.0  # [s] between the end of the connection and that of the process
+_END_TIMEOUT = 5.0  # [s] for an FMU to end by itself
+_END_PATIENCE = 1.0  # [s] between the end of the connection and that of the process
 
 
-class IsolatedVehicle:
+class IsolatedVehicle(SteppedVehicle):
     """Runs a vehicle FMU in a process of its own, as :class:`fmus.VehicleFmu` does in this one.
 
     An FMU that crashes, hangs or ends its process becomes an :class:`FmuCrashError`; nothing of
     what it does to its process (working directory, locale, floating-point traps, signals, output)
-    reaches this one. Every start has a new process. The binary is loaded at the start: what keeps
-    it from being loaded is raised there.
+    reaches this one. Every start uses a new process. The binary is loaded at the start, so a
+    binary that cannot be loaded is reported there.
 
     Args:
         path: the .fmu file.
@@ -66,26 +66,22 @@ class IsolatedVehicle:
         start_values: Mapping[str, Value] | None = None,
     ) -> None:
         prepared = prepare(path, step_size=step_size, profile=profile, start_values=start_values)
-        self.path = prepared.path
+        super().__init__(prepared.path)
         self.step_size = step_size
-        self.position = self.speed = self.acceleration = self.time = 0.0
         self.warnings: list[str] = []
         self._start_timeout = prepared.start_timeout
         self._step_timeout = prepared.step_timeout
         self._stretch = prepared.pace.stretch
         self._steps = 0
-        self._line: Line | None = None
-        self._failed = False
-        self._refusal = ""
-        self._refuse("has not been started; call start() first")
+        self._client: Client | None = None
         folder = Path(tempfile.mkdtemp(prefix="vehicle-fmu-"))
         try:
-            self._keeper = make_keeper(prepared, folder)
+            self._host = make_process_host(prepared, folder)
         except BaseException:
             remove(folder)
             raise
         self._owner = os.getpid()
-        self._closing = weakref.finalize(self, _close, self._owner, self._keeper, folder)
+        self._closing = weakref.finalize(self, _close, self._owner, self._host, folder)
         try:
             unpack(prepared, folder / "fmu")
         except BaseException:
@@ -111,7 +107,7 @@ class IsolatedVehicle:
         self.warnings = []
         self._end()
         self._refuse("has not started; call start() again")
-        self._line = Line(self._keeper.begin())
+        self._client = Client(self._host.start_process())
         self._steps, self.time = 0, 0.0
         self._exchange(LOAD, 0.0, 0.0, self._start_timeout)
         self._exchange(START, position, speed, self._start_timeout)
@@ -126,11 +122,7 @@ class IsolatedVehicle:
             FmuOutputError: an output is not a finite number, or none that a car can have.
             FmuStateError: the vehicle is not running.
         """
-        if self._refusal:
-            raise FmuStateError(self._refusal)
-        if not isfinite(force):
-            msg = f"{self.path}: force {force} N at {self.time:.10g} s; expected a finite number"
-            raise FmuStepError(msg)
+        self._require_step(force)
         self._exchange(STEP, force, 0.0, self._step_timeout)
         self._steps += 1
         self.time = self._steps * self.step_size
@@ -140,32 +132,21 @@ class IsolatedVehicle:
         if not self._closing.alive:
             return
         try:
-            if os.getpid() == self._owner:  # not in a fork of the vehicle's process
+            if os.getpid() == self._owner:  # a fork of this process must not end the FMU
                 self._end()
         finally:
             self._refuse("has been closed; make a new one")
             self._closing()
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.close()
-
     def _exchange(self, what: bytes, first: float, second: float, timeout: float) -> None:
-        """Ask, and take the results over."""
-        assert self._line is not None  # there is one while nothing is refused
+        """Send a request and take over the results of its reply."""
+        assert self._client is not None  # it exists while no call is refused
         try:
-            done, x, v, a, text = self._line.ask(what, first, second, timeout)
+            done, x, v, a, text = self._client.ask(what, first, second, timeout)
             if text:
                 self.warnings += _warnings(text)
             if not done:
-                raise self._told(text, (x, v, a))
+                raise self._reported_error(text, (x, v, a))
             if not isfinite(x + v + a) and not (isfinite(x) and isfinite(v) and isfinite(a)):
                 msg = f"{self.path}: position {x} m, speed {v} m/s, acceleration {a} m/s2"
                 raise FmuOutputError(f"{msg} at {self.time:.10g} s; expected finite numbers")
@@ -180,8 +161,8 @@ class IsolatedVehicle:
             raise
         self.position, self.speed, self.acceleration = x, v, a
 
-    def _told(self, text: Text, state: tuple[float, float, float]) -> FmuError:
-        """The error of the FMU's process: its class by name, and among ours only."""
+    def _reported_error(self, text: Text, state: tuple[float, float, float]) -> FmuError:
+        """The error that the FMU's process reported; only our own error classes are accepted."""
         kind = getattr(errors, str(text.get("error")), None)
         message = printable(text.get("message"), 2000)
         if not (isinstance(kind, type) and issubclass(kind, FmuError)):
@@ -195,9 +176,9 @@ class IsolatedVehicle:
     def _crash(
         self, what: bytes, force: float, problem: Exception, timeout: float
     ) -> FmuCrashError:
-        """Bury the process; the error says when it ended, of what, and its last words."""
+        """End the process; the error says when it ended, why, and what it printed last."""
         lost = isinstance(problem, EOFError)
-        death = self._keeper.bury(_DEATH_PATIENCE if lost else 0.0)
+        report = self._host.end_process(_END_PATIENCE if lost else 0.0)
         when = "while it was loaded" if what == LOAD else "while it was started"
         key = "start_timeout"
         if what == STEP:
@@ -205,51 +186,45 @@ class IsolatedVehicle:
             when = f"in the step from {self.time:.10g} s to {until:.10g} s under {force:g} N"
             key = "step_timeout"
         if lost:
-            reason = f"the FMU's process {death.cause} {when}{death.last_words}"
+            reason = f"the FMU's process {report.cause} {when}{report.after_printing}"
             advice = "report it to the FMU's maker"
         elif isinstance(problem, TimeoutError):
-            reason = f"no answer within {timeout:g} s {when}{death.last_words}; killed"
+            reason = f"no answer within {timeout:g} s {when}{report.after_printing}; killed"
             line = f"{key} = {min(10.0 * timeout, 3600.0):g}"
             advice = f"if it is only slow, add `{line}` to [fmu] of the profile"
         else:
-            reason = f"the FMU's process wrote into giveway's connection {when}{death.last_words}"
+            reason = (
+                f"the FMU's process wrote into giveway's connection {when}{report.after_printing}"
+            )
             advice = "killed; report it to the FMU's maker"
         kind = FmuCrashError if what == STEP else FmuStartCrashError
         return kind(f"{self.path}: {reason}; {advice}")
 
     def _end(self) -> None:
-        """End the process, if there is one, in peace if it is well."""
-        line, self._line = self._line, None
-        if line is None:
+        """End the process if there is one; ask it to end first unless it has failed."""
+        client, self._client = self._client, None
+        if client is None:
             return
         try:
             if not self._failed:
-                line.ask(QUIT, 0.0, 0.0, _END_TIMEOUT)
+                client.ask(QUIT, 0.0, 0.0, _END_TIMEOUT)
         except TimeoutError:
             self.warnings.append(
                 f"{self.path.name}: the FMU did not end within {_END_TIMEOUT:g} s; killed"
             )
         except (EOFError, GarbledError):
-            cause = self._keeper.bury(_DEATH_PATIENCE).cause
+            cause = self._host.end_process(_END_PATIENCE).cause
             self.warnings.append(f"{self.path.name}: the FMU's process {cause} when it was ended")
         finally:
-            line.close()
-            self._keeper.bury()
-
-    def _refuse(self, reason: str) -> None:
-        self._failed = False
-        self._refusal = f"{self.path}: the vehicle {reason}"
-
-    def _fail(self) -> None:
-        self._refuse(f"failed at {self.time:.10g} s; start it again")
-        self._failed = True
+            client.close()
+            self._host.end_process()
 
 
-def _close(owner: int, keeper: Keeper, folder: Path) -> None:
+def _close(owner: int, host: ProcessHost, folder: Path) -> None:
     if os.getpid() == owner:
         try:
-            keeper.close()
-        finally:  # Ctrl-C while it is waited for
+            host.close()
+        finally:  # also after a Ctrl-C during the wait
             remove(folder)
 
 

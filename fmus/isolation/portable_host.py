@@ -1,4 +1,4 @@
-"""The keeper without a guardian, for systems that are not Linux."""
+"""The process host without a watchdog, for systems other than Linux."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from contextlib import suppress
 from time import monotonic
 from typing import TYPE_CHECKING, Final
 
-from fmus.isolation.exit_report import Death, PrintedTail
+from fmus.isolation.exit_report import ExitReport, PrintedTail
 from fmus.isolation.spawning import IMPORT_TIMEOUT, kill_group, no_process, spawn
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-_LAST_WORDS: Final = 1.0  # [s] to read what was printed: what the FMU left behind may hold the pipe
+_READ_TIMEOUT: Final = 1.0  # [s] for the last output: a process left behind may hold the pipe open
 
 
-class PlainKeeper:
-    """Starts a new interpreter for every episode (where there is no guardian).
+class PortableHost:
+    """Starts a new interpreter for every episode.
 
     Args:
         path: of the FMU.
@@ -34,9 +34,9 @@ class PlainKeeper:
         self._printed = PrintedTail()
         self._reader: threading.Thread | None = None
 
-    def begin(self) -> socket.socket:
-        """See :class:`fmus.isolation.process_host.Keeper`."""
-        self.bury()
+    def start_process(self) -> socket.socket:
+        """See :class:`fmus.isolation.process_host.ProcessHost`."""
+        self.end_process()
         token = secrets.token_hex(16)
         with socket.create_server(("127.0.0.1", 0)) as server:
             arguments = ("worker", server.getsockname()[1], token, self._folder)
@@ -54,25 +54,25 @@ class PlainKeeper:
                         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                         return connection
                     connection.close()
-        raise no_process(self._path, self.bury().printed.encode())
+        raise no_process(self._path, self.end_process().printed.encode())
 
-    def bury(self, patience: float = 0.0) -> Death:
-        """See :class:`fmus.isolation.process_host.Keeper`."""
+    def end_process(self, patience: float = 0.0) -> ExitReport:
+        """See :class:`fmus.isolation.process_host.ProcessHost`."""
         process, self._process = self._process, None
         if process is None or self._reader is None:
-            return Death(None, killed=False, oom=False, printed="")
+            return ExitReport(None, killed=False, oom=False, printed="")
         killed = False
         try:
             process.wait(patience)
         except subprocess.TimeoutExpired:
             killed = True
         kill_group(process)
-        self._reader.join(_LAST_WORDS)
-        return Death(process.returncode, killed, oom=False, printed=self._printed.last_line())
+        self._reader.join(_READ_TIMEOUT)
+        return ExitReport(process.returncode, killed, oom=False, printed=self._printed.last_line())
 
     def close(self) -> None:
-        """See :class:`fmus.isolation.process_host.Keeper`."""
-        self.bury()
+        """See :class:`fmus.isolation.process_host.ProcessHost`."""
+        self.end_process()
 
     def _read(self, process: subprocess.Popen[bytes]) -> None:
         assert process.stdout is not None  # it is a pipe

@@ -1,4 +1,4 @@
-"""What starts and buries the FMU's processes, as seen from the vehicle."""
+"""Starting and ending the FMU's processes, as seen from the vehicle."""
 
 from __future__ import annotations
 
@@ -7,48 +7,48 @@ import sys
 from typing import TYPE_CHECKING, Protocol
 
 from fmus.isolation.cleanup import scratch_of
-from fmus.isolation.linux_host import GuardedKeeper
-from fmus.isolation.portable_host import PlainKeeper
+from fmus.isolation.linux_host import LinuxHost
+from fmus.isolation.portable_host import PortableHost
 from fmus.isolation.worker import Order
 
 if TYPE_CHECKING:
     import socket
     from pathlib import Path
 
-    from fmus.isolation.exit_report import Death
+    from fmus.isolation.exit_report import ExitReport
     from fmus.profile.preparation import Prepared
 
 
-class Keeper(Protocol):
-    """Starts and buries the processes of one FMU."""
+class ProcessHost(Protocol):
+    """Starts and ends the processes of one FMU."""
 
-    def begin(self) -> socket.socket:
-        """A new process for the FMU; returns the connection to it.
+    def start_process(self) -> socket.socket:
+        """Start a new process for the FMU and return the connection to it.
 
         Raises:
-            FmuCrashError: there can be none.
+            FmuCrashError: it cannot be started.
         """
 
-    def bury(self, patience: float = 0.0) -> Death:
-        """End the FMU's process, and all that it has started; returns how it ended.
+    def end_process(self, patience: float = 0.0) -> ExitReport:
+        """End the FMU's process and everything that it has started; return how it ended.
 
         Args:
-            patience: [s] in which it may end by itself.
+            patience: time that it has to end by itself first [s].
         """
 
     def close(self) -> None:
-        """End everything, and wait until it is gone."""
+        """End everything and wait until it has ended."""
 
 
-def make_keeper(prepared: Prepared, folder: Path) -> Keeper:
-    """The keeper for this platform.
+def make_process_host(prepared: Prepared, folder: Path) -> ProcessHost:
+    """The process host for this platform.
 
     Args:
         prepared: the vehicle.
-        folder: temporary, the keeper's to write to; holds the unpacked FMU in ``fmu``, at the
-            latest when a process begins.
+        folder: temporary, for the host to write to; by the time that a process starts, the
+            unpacked FMU is in its folder ``fmu``.
     """
-    order = Order(prepared.without_source(), folder / "fmu")
+    order = Order(prepared, folder / "fmu")
     (folder / "order").write_bytes(pickle.dumps(order))
     scratch_of(folder).mkdir()
-    return (GuardedKeeper if sys.platform == "linux" else PlainKeeper)(prepared.path, folder)
+    return (LinuxHost if sys.platform == "linux" else PortableHost)(prepared.path, folder)

@@ -1,9 +1,9 @@
-"""What the vehicle here and its FMU's process say to each other.
+"""The messages between the vehicle and its FMU's process.
 
 Requests and replies have a fixed head, so that a step costs one write and one read on each side.
-What comes from the FMU's process is not trusted: an FMU can write whatever it likes into any open
-file. So nothing of it is unpickled, every head must carry the number of its request, and what
-follows it is JSON of bounded size.
+Replies of the FMU's process are not trusted, because an FMU can write into any open file: nothing
+is unpickled, every head must carry the number of its request, and the text that follows it is JSON
+of bounded size.
 """
 
 from __future__ import annotations
@@ -20,29 +20,31 @@ START: Final = b"strt"  # position [m], speed [m/s]
 STEP: Final = b"step"  # force [N], 0
 QUIT: Final = b"quit"  # 0, 0
 DONE: Final = b"done"  # position [m], speed [m/s], acceleration [m/s2]
-FAILED: Final = b"fail"  # likewise; the text is the error
+FAILED: Final = b"fail"  # the same values; the text is the error
 REQUEST: Final = struct.Struct("<4sIdd")  # what, number, two values
 REPLY: Final = struct.Struct("<4sIIddd")  # what, number of the request, size of the text, values
 TEXT_LIMIT: Final = 1 << 16  # [bytes]
-FORK: Final = b"fork"  # to the guardian, with the worker's end of the connection
-BURY: Final = b"bury"  # with a patience [ms], then the worker is killed; answered by its death
-MESSAGE: Final = 4096  # [bytes] from and to the guardian at most
-LOST: Final = 113  # exit status of a process whose connection is gone
+START_WORKER: Final = b"fork"  # to the watchdog, with the worker's end of the connection
+END_WORKER: Final = (
+    b"end"  # with a patience [ms], then the worker is killed; answered by its report
+)
+MESSAGE: Final = 4096  # [bytes] from and to the watchdog at most
+CONNECTION_LOST: Final = 113  # exit status of a process whose connection has been closed
 
 Text = dict[str, Any]
 Reply = tuple[bool, float, float, float, Text]
-"""Done and not failed, three values, the text."""
+"""Whether the request was done, three values, the text."""
 
 
 class GarbledError(Exception):
-    """What came is no reply."""
+    """The bytes received are no reply."""
 
 
-class Line:
+class Client:
     """The vehicle's end of the connection.
 
     Args:
-        connection: a stream socket, owned by the line from now on.
+        connection: a stream socket, owned by the client from now on.
     """
 
     def __init__(self, connection: socket.socket) -> None:
@@ -53,15 +55,15 @@ class Line:
         self._head = bytearray(REPLY.size)
 
     def ask(self, what: bytes, first: float, second: float, timeout: float) -> Reply:
-        """One request, and its reply within ``timeout`` [s].
+        """Send one request and return its reply, which must come within ``timeout`` [s].
 
         Raises:
-            TimeoutError: none came.
-            EOFError: none will come, the process is gone.
-            GarbledError: what came is none.
+            TimeoutError: no reply came.
+            EOFError: no reply will come, because the process has ended.
+            GarbledError: the bytes received are no reply.
         """
         connection = self._connection
-        if timeout != self._timeout:  # a system call saved in every step
+        if timeout != self._timeout:  # saves a system call in every step
             connection.settimeout(timeout)
             self._timeout = timeout
         self._number = number = (self._number + 1) & 0xFFFFFFFF
@@ -80,7 +82,7 @@ class Line:
             raise EOFError from error
 
     def close(self) -> None:
-        """The process ends when it finds the connection closed."""
+        """Close the connection; the process ends when it notices."""
         self._closing()
 
     def _text(self, length: int, timeout: float) -> Text:
@@ -95,7 +97,7 @@ class Line:
         return text
 
     def _fill(self, buffer: bytearray, got: int, timeout: float) -> None:
-        """Read on until a buffer is full, ``timeout`` [s] in all, after ``got`` bytes came."""
+        """Fill a buffer whose first ``got`` bytes have come, within ``timeout`` [s]."""
         end, have = monotonic() + timeout, got
         self._timeout = None  # changed below
         while have < len(buffer):
@@ -107,7 +109,7 @@ class Line:
 
 
 def receive(connection: socket.socket) -> tuple[bytes, int, float, float] | None:
-    """The next request, in the FMU's process; None: nobody is there any more."""
+    """The next request, received in the FMU's process; None: the connection has been closed."""
     head = connection.recv(REQUEST.size, socket.MSG_WAITALL)
     return REQUEST.unpack(head) if len(head) == REQUEST.size else None
 

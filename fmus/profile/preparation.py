@@ -6,7 +6,7 @@ prepared can be handed to another process.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf, isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -80,10 +80,6 @@ class Prepared:
     def path(self) -> Path:
         """Of the FMU."""
         return self.model.path
-
-    def without_source(self) -> Prepared:
-        """The same without what only this process can use."""
-        return replace(self, model=replace(self.model, source=None))
 
 
 def prepare(

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from fmus.interfaces.instance import Instance
+    from fmus.fmi.running import Instance
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from math import exp, nan
 import pytest
 
 from fmus import FmuPlatformError, FmuStartError, FmuStateError, FmuVariableError, bundled_fmu
-from fmus.interfaces.instance import ERROR
+from fmus.fmi.status import ERROR
 
 VERSIONS = ("1.0", "2.0", "3.0")
 SAVING = {"1.0": "", "2.0": "canGetAndSetFMUstate", "3.0": "canGetAndSetFMUState"}
@@ -52,7 +52,7 @@ def test_an_input_that_is_refused_ends_the_step_before_it_begins(version, run):
     before = list(car.outputs)
     car.inputs[0] = nan
     assert car.tick(H, H) == ERROR
-    assert "expected a finite number" in car.journal.take()
+    assert "expected a finite number" in car.messages.take()
     assert list(car.outputs) == before
 
 
@@ -239,7 +239,7 @@ def test_endless_discard_ends(zoo, version, run, behaviour, saves):
     car = run(zoo.car(fmi=version, behaviour=behaviour, flags=flags), {"force": 1.0}, 20)
     assert car.status == 2
     tried = "and steps down to 1/64 of it" if flags and saves else "and cannot return to the state"
-    assert f"it discards the step, {tried}" in car.journal.take()
+    assert f"it discards the step, {tried}" in car.messages.take()
 
 
 def test_without_rewinding_a_discard_is_final(zoo, run):

@@ -83,7 +83,7 @@ def test_bounces_without_end_are_chattering(ball, run, solver):
     values = {"restitution": 1.0}
     state = run(ball(), {"gravity": 1e9}, 1, values=values, outputs=OUTPUTS, solver=solver)
     assert state.status == 3
-    said = state.journal.take()
+    said = state.messages.take()
     assert said.startswith("more than 200 events between 0 s and 0.0")
     assert said.endswith(": it chatters")
 
@@ -104,4 +104,4 @@ def test_dry_friction_without_events(ball, run, solver, status):
     if status == 0:
         assert abs(state.outputs[0]) < 1e-3
     else:
-        assert "use a greater `tolerance` under [fmu]" in state.journal.take()
+        assert "use a greater `tolerance` under [fmu]" in state.messages.take()

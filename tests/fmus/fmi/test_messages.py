@@ -10,8 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fmus.fmi.messages import DOUBLES, INTEGERS, SKIPPED, Arguments, expand, read_text
-from fmus.interfaces.instance import Journal
+from fmus.fmi.messages import DOUBLES, INTEGERS, SKIPPED, Arguments, MessageLog, expand, read_text
 
 
 def passed(*values):
@@ -91,12 +90,12 @@ def test_unreadable_memory_is_no_text():
 
 
 def test_the_journal_keeps_the_last_lines_of_trouble():
-    journal = Journal()
-    journal.add(0, b"all is well")
+    messages = MessageLog()
+    messages.add(0, b"all is well")
     for text in (b"first", b"second\nline", b"second line", "Kühl".encode("latin-1"), b"\x1b[2J"):
-        journal.add(3, text)
-    assert journal.take() == "second line; Kühl; ?[2J"
-    assert journal.take() == ""
+        messages.add(3, text)
+    assert messages.take() == "second line; Kühl; ?[2J"
+    assert messages.take() == ""
 
 
 @pytest.mark.parametrize("version", ["1.0", "2.0", "3.0"])
@@ -115,4 +114,4 @@ def test_the_journal_keeps_the_last_lines_of_trouble():
 def test_what_fmus_say(zoo, run, version, behaviour, said):
     car = run(zoo.car(fmi=version, behaviour=behaviour), {"force": 1.0}, 6)
     assert car.status <= 1
-    assert car.journal.take() == said
+    assert car.messages.take() == said

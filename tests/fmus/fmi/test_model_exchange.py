@@ -114,7 +114,7 @@ def test_too_stiff_for_runge_kutta_says_what_to_do(zoo, run):
     path = zoo.car(kind="model-exchange", values={"lag": 1e-8})
     car = run(path, {"force": 700.0}, 1, solver="rk4")
     assert car.status == 3
-    assert 'use `solver = "cvode"`, it is for stiff systems' in car.journal.take()
+    assert 'use `solver = "cvode"`, it is for stiff systems' in car.messages.take()
 
 
 # ---- events ----
@@ -174,7 +174,7 @@ def test_a_crossing_is_found_to_the_resolution():
 def test_undefined_derivatives_end_the_step_with_their_name(drive):
     car = drive({"force": 1.0}, 10, options={"behaviour": "nan_rate"})
     assert car.status == 3
-    assert "derivative 2 of 2 is nan at 0.1" in car.journal.take()
+    assert "derivative 2 of 2 is nan at 0.1" in car.messages.take()
 
 
 @pytest.mark.parametrize(
@@ -184,7 +184,7 @@ def test_undefined_derivatives_end_the_step_with_their_name(drive):
 def test_what_a_step_can_return(drive, behaviour, status, capfd):
     car = drive({"force": 1.0}, 10, options={"behaviour": behaviour})
     assert car.status == status
-    assert car.journal.take()
+    assert car.messages.take()
     assert capfd.readouterr() == ("", "")
 
 

@@ -30,7 +30,7 @@ __attribute__((constructor)) static void load(void) {
     }
     sleep(60);
     _exit(0);
-#elif defined STOPS_THE_GUARDIAN
+#elif defined STOPS_THE_WATCHDOG
     to_parent(SIGSTOP);
     _exit(3);
 #elif defined TRACED

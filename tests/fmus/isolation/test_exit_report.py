@@ -4,32 +4,32 @@ from __future__ import annotations
 
 import pytest
 
-from fmus.isolation.exit_report import Death, PrintedTail, decoded
+from fmus.isolation.exit_report import ExitReport, PrintedTail, decode_report
 
 
-def death(code, *, killed=False, oom=False, printed=""):
-    return Death(code, killed=killed, oom=oom, printed=printed)
+def report(code, *, killed=False, oom=False, printed=""):
+    return ExitReport(code, killed=killed, oom=oom, printed=printed)
 
 
 @pytest.mark.parametrize(
     ("end", "words"),
     [
-        (death(0), "ended itself: exit(0) was called"),
-        (death(-15), "died of SIGTERM"),
-        (death(-50), "died of signal 50"),
-        (death(-9), "died of SIGKILL"),
-        (death(-9, oom=True), "was killed by the system for lack of memory (SIGKILL)"),
-        (death(None), "killed the process that watches over it"),
+        (report(0), "ended itself: exit(0) was called"),
+        (report(-15), "died of SIGTERM"),
+        (report(-50), "died of signal 50"),
+        (report(-9), "died of SIGKILL"),
+        (report(-9, oom=True), "was killed by the system for lack of memory (SIGKILL)"),
+        (report(None), "killed the process that watches over it"),
     ],
 )
 def test_the_cause_in_words(end, words):
     assert end.cause == words
 
 
-def test_a_death_crosses_to_another_process():
-    end = death(-11, oom=True, printed="Öl")
-    assert decoded(end.encoded()) == end
-    assert end.last_words == ", after printing 'Öl'"
+def test_a_report_crosses_to_another_process():
+    end = report(-11, oom=True, printed="Öl")
+    assert decode_report(end.encoded()) == end
+    assert end.after_printing == ", after printing 'Öl'"
 
 
 def test_the_last_line_that_is_not_blank_is_kept_printable_and_short():
@@ -44,4 +44,4 @@ def test_the_last_line_that_is_not_blank_is_kept_printable_and_short():
 
 def test_without_a_word_there_is_none():
     assert PrintedTail().last_line() == ""
-    assert death(-11).last_words == ""
+    assert report(-11).after_printing == ""

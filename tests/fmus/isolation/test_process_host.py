@@ -13,9 +13,8 @@ from pathlib import Path
 import pytest
 
 from fmus import FmuCrashError, FmuError, FmuProfileError, bundled_fmu
-from fmus.isolation import IsolatedVehicle
-from fmus.isolation import process_host as keeper
-from fmus.isolation.portable_host import PlainKeeper
+from fmus.isolation import IsolatedVehicle, process_host
+from fmus.isolation.portable_host import PortableHost
 
 STEP = 0.05  # [s]
 SCRIPT = """
@@ -79,7 +78,7 @@ def test_nothing_outlives_a_process_that_is_killed(tmp_path):
         for entry in Path("/proc").glob("[0-9]*/cmdline")
         if str(folder).encode() in entry.read_bytes()
     ]
-    assert len(workers) == 2  # a guardian and the FMU's
+    assert len(workers) == 2  # a watchdog and the FMU's
     process.kill()
     process.communicate(timeout=60)
     assert eventually(lambda: not folder.exists())
@@ -116,7 +115,7 @@ def test_the_process_works_in_its_own_folder(isolated, nothing_left):
     assert not Path("litter.txt").exists()
 
 
-def test_a_guardian_that_was_killed_is_replaced(isolated, nothing_left):
+def test_a_watchdog_that_was_killed_is_replaced(isolated, nothing_left):
     vehicle = isolated()
     vehicle.start()
     children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
@@ -139,12 +138,12 @@ def test_what_is_wrong_with_a_profile_needs_no_process(zoo):
         IsolatedVehicle(path, step_size=STEP)
 
 
-class TestWithoutAGuardian:
+class TestWithoutAWatchdog:
     """As on other systems than Linux."""
 
     @pytest.fixture(autouse=True)
-    def _plain(self, monkeypatch):
-        monkeypatch.setattr(keeper, "GuardedKeeper", PlainKeeper)
+    def _portable(self, monkeypatch):
+        monkeypatch.setattr(process_host, "LinuxHost", PortableHost)
 
     def test_it_drives(self, isolated):
         vehicle = isolated()

@@ -1,4 +1,4 @@
-"""FMUs that turn against what watches over them: nothing of them is left all the same."""
+"""FMUs that attack the watchdog: nothing of them is left nevertheless."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ def crash(tmp_path):
     return start
 
 
-def test_processes_that_no_guardian_can_bury_any_more(crash):
+def test_processes_that_no_watchdog_can_end_any_more(crash):
     assert "no answer within 1 s while it was loaded" in crash("ORPHANS", 1.0)
 
 
-def test_a_guardian_that_was_stopped_goes_on(crash):
-    assert "exit(3) was called while it was loaded" in crash("STOPS_THE_GUARDIAN", 20.0)
+def test_a_watchdog_that_was_stopped_goes_on(crash):
+    assert "exit(3) was called while it was loaded" in crash("STOPS_THE_WATCHDOG", 20.0)
 
 
 def test_who_asks_to_be_traced_dies_as_without(crash):

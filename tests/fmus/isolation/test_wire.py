@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from fmus.errors import FmuCrashError
 from fmus.isolation import wire as protocol
-from fmus.isolation.wire import DONE, REPLY, STEP, GarbledError, Line
+from fmus.isolation.wire import DONE, REPLY, STEP, Client, GarbledError
 
 
 def answered(answer, timeout=0.02):
@@ -21,7 +21,7 @@ def answered(answer, timeout=0.02):
     with there:
         there.sendall(answer)
         there.shutdown(socket.SHUT_WR)
-        line = Line(here)
+        line = Client(here)
         try:
             return line.ask(STEP, 1.0, 0.0, timeout)
         finally:
@@ -64,7 +64,7 @@ def test_a_text_nested_without_end_is_refused():
 
 def test_a_reply_in_drops_does_not_stretch_the_time_out():
     here, there = socket.socketpair()
-    line = Line(here)
+    line = Client(here)
     with there:
         there.sendall(b"do")
         with pytest.raises(TimeoutError):
@@ -74,7 +74,7 @@ def test_a_reply_in_drops_does_not_stretch_the_time_out():
 
 def test_every_request_has_a_time_out_of_its_own():
     here, there = socket.socketpair()
-    line = Line(here)
+    line = Client(here)
     with there:
         for number, timeout in enumerate((0.05, 0.05, 0.01, 5.0), start=1):
             if number < 4:
