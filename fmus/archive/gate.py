@@ -15,6 +15,7 @@ import struct
 import unicodedata
 import zipfile
 import zlib
+from collections import deque
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
@@ -83,7 +84,7 @@ def _open(path: Path, _state: tuple[int, int, int]) -> Archive:
         guard(description, f"{path}: {DESCRIPTION}", ROOT)
         if sum(member.file_size for member in members.values()) <= CHECKED_AT_ONCE:
             for member in members.values():
-                _drain(archive, member)
+                deque(_chunks(archive, member), maxlen=0)  # at its end the check sum is compared
     with path.open("rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
     return Archive(path, MappingProxyType(members), description, digest)
@@ -259,12 +260,6 @@ def _require_separate_places(path: Path, infos: Sequence[zipfile.ZipInfo]) -> No
         if info.header_offset < end:
             raise _refused(path, info, "overlaps another member")
         end = info.header_offset + LOCAL_HEADER + info.compress_size
-
-
-def _drain(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> None:
-    """Read a member to its end, where zipfile compares the check sum."""
-    for _chunk in _chunks(archive, info):
-        pass
 
 
 def _chunks(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> Iterator[bytes]:

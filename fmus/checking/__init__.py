@@ -3,8 +3,14 @@
 from fmus.checking.check import CheckReport, check
 from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, identify
-from fmus.checking.manoeuvres import Opener, Phase, Trace, drive
-from fmus.checking.opening import opener_of, without_guards
+from fmus.checking.manoeuvres import (
+    Opener,
+    Phase,
+    Trace,
+    drive,
+    opener_of,
+    without_guards,
+)
 from fmus.checking.self_check import (
     Convergence,
     convergence,

@@ -166,10 +166,9 @@ def _phases(name: str, expected: Expected) -> list[Phase]:
 
 def _halve(report: CheckReport, opener: Opener, fmu_step: float) -> None:
     expected, name = report.expected, "step halving"
+    start_speed = expected.start_speed if "rolling" in report.traces else 0.0
     try:
-        result = convergence(
-            opener, fmu_step, force=expected.force, start_speed=_rolling_speed(report)
-        )
+        result = convergence(opener, fmu_step, force=expected.force, start_speed=start_speed)
     except FmuError as error:
         if report.passed:  # else it has been said
             report.findings.append(Finding(name, "fail", plain(error)))
@@ -183,10 +182,6 @@ def _halve(report: CheckReport, opener: Opener, fmu_step: float) -> None:
         pair = f"{milliseconds(result.step)} and {milliseconds(result.finer)}"
         found = Finding(name, "pass", f"steps of {pair} give the same drive")
     report.findings.append(found)
-
-
-def _rolling_speed(report: CheckReport) -> float:
-    return report.expected.start_speed if "rolling" in report.traces else 0.0
 
 
 def _observe(report: CheckReport) -> None:

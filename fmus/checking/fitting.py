@@ -120,6 +120,29 @@ def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
     return solution if np.isfinite(solution.mass) else None
 
 
+def least_squares(
+    X: NDArray[np.float64], y: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The coefficients of X that come closest to y, times the scale of X's columns; the scale."""
+    scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
+    scaled, *_ = np.linalg.lstsq(X / scale, y, rcond=None)
+    return scaled, scale
+
+
+def resistance_rows(
+    drives: Sequence[Drive], lag: float, delay: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The equations M v' + alpha v + c_0 + c_2 v |v| = F, one for each step that counts.
+
+    Returns:
+        (m, 4) what 1 / M, alpha / M, c_0 / M and c_2 / M are multiplied with, and (m,) v' [m/s2].
+    """
+    acting = [mean_force(d.force, d.step, lag, delay)[d.used] for d in drives]
+    v = np.concatenate([d.speed[:-1][d.used] for d in drives])
+    y = np.concatenate([d.acceleration[d.used] for d in drives])
+    return np.column_stack((np.concatenate(acting), -v, -np.ones_like(v), -v * np.abs(v))), y
+
+
 def _solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
     """Linear least squares in theta = (1 / M, alpha / M)."""
     rows, targets, groups = [], [], []
@@ -129,8 +152,7 @@ def _solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
         targets.append(drive.acceleration[drive.used])
         groups.append(np.full(acting.size, number))
     X, y, group = np.concatenate(rows), np.concatenate(targets), np.concatenate(groups)
-    scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
-    theta, *_ = np.linalg.lstsq(X / scale, y, rcond=None)
+    theta, scale = least_squares(X, y)
     if theta[1] < 0.0:  # no friction that drives: the model has none
         theta = np.array(
             [(X[:, 0] / scale[0]) @ y / max(((X[:, 0] / scale[0]) ** 2).sum(), 1e-300), 0.0]

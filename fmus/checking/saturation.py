@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from fmus.checking.actuator import mean_force
-from fmus.checking.fitting import STANDSTILL, Fit, fit, prepare
+from fmus.checking.fitting import STANDSTILL, Fit, fit, least_squares, prepare, resistance_rows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,15 +43,10 @@ class Resisted:
     def of(cls, model: Fit, drives: Sequence[Drive]) -> Self:
         """The least squares of all four, with the actuator of ``model``."""
         plain = cls(model.mass, model.friction, 0.0, 0.0, model.lag, model.delay)
-        acting = [mean_force(d.force, d.step, model.lag, model.delay)[d.used] for d in drives]
-        if sum(force.size for force in acting) < _ENOUGH:
+        rows, measured = resistance_rows(drives, model.lag, model.delay)
+        if measured.size < _ENOUGH:
             return plain
-        u = np.concatenate(acting)
-        v = np.concatenate([d.speed[:-1][d.used] for d in drives])
-        y = np.concatenate([d.acceleration[d.used] for d in drives])
-        X = np.column_stack((u, -v, -np.ones_like(v), -v * np.abs(v)))
-        scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
-        solution, *_ = np.linalg.lstsq(X / scale, y, rcond=None)
+        solution, scale = least_squares(rows, measured)
         inverse, *resistance = (solution / scale).tolist()
         if inverse <= 0.0:
             return plain

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from fmus.description.model import Channel
 from fmus.errors import FmuVariableError
+from fmus.text import listed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from fmus.description.model import Model, Value, Variable
 
 _ELEMENT = re.compile(r"(?P<name>.*)\[(?P<number>[0-9]{1,9})\]")
-_SHOWN = 8  # variables that a message lists
 
 
 def find_channel(model: Model, place: str, name: str) -> Channel:
@@ -47,7 +47,7 @@ def find_channel(model: Model, place: str, name: str) -> Channel:
     if element is not None and element["name"] in variables:
         return _element(here, name, variables[element["name"]], int(element["number"]))
     close = get_close_matches(name, variables, n=1)
-    hint = f"did you mean '{close[0]}'?" if close else f"it has {listed(variables)}"
+    hint = f"did you mean '{close[0]}'?" if close else f"it has {known_names(variables)}"
     msg = f"{here} no variable '{name}' in the FMU; {hint}"
     raise FmuVariableError(msg)
 
@@ -64,11 +64,9 @@ def _element(here: str, name: str, variable: Variable, number: int) -> Channel:
     raise FmuVariableError(msg)
 
 
-def listed(names: Iterable[str]) -> str:
-    """The first names and how many more there are."""
-    names = list(names)
-    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
-    return (", ".join(names[:_SHOWN]) + more) or "the FMU has none"
+def known_names(names: Iterable[str]) -> str:
+    """The first of the names that a message could have meant, and how many more there are."""
+    return listed(list(names), 8) or "the FMU has none"
 
 
 # ---- start values ----

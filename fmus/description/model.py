@@ -137,7 +137,6 @@ class Interface:
     identifier: str
     saves_state: bool = False  # canGetAndSetFMUState
     needs_execution_tool: bool = False
-    once_per_process: bool = False
     variable_step: bool = True  # canHandleVariableCommunicationStepSize
     fixed_internal_step: float | None = None  # [s]
     completed_step_needed: bool = True  # Model Exchange: completedIntegratorStep

@@ -150,7 +150,6 @@ def _interface(kind: Kind, element: Element, version: str, where: str) -> Interf
         identifier=_identifier(element, where),
         saves_state=bool(on & {"canGetAndSetFMUstate", "canGetAndSetFMUState"}),
         needs_execution_tool="needsExecutionTool" in on,
-        once_per_process="canBeInstantiatedOnlyOncePerProcess" in on,
         variable_step="canHandleVariableCommunicationStepSize" in on or kind is Kind.MODEL_EXCHANGE,
         fixed_internal_step=_positive(where, element, "fixedInternalStepSize"),
         completed_step_needed=completed,
@@ -172,7 +171,6 @@ def _fmi1_interface(root: Element, where: str) -> dict[Kind, Interface]:
         Kind.CO_SIMULATION,
         identifier,
         needs_execution_tool=tool is not None,
-        once_per_process=flags.get("canBeInstantiatedOnlyOncePerProcess") in TRUE,
         variable_step=flags.get("canHandleVariableCommunicationStepSize") in TRUE,
         flags=flags,
     )

@@ -107,21 +107,11 @@ PREFIXES: Final = {
     "\N{GREEK SMALL LETTER MU}": 1e-6,
     "n": 1e-9,
 }
-_KMH: Final = _Symbol(1000.0 / HOUR, SPEED)
-_KNOT: Final = _Symbol(NAUTICAL_MILE / HOUR, SPEED)
-_DEGREE: Final = _Symbol(math.pi / 180.0, ANGLE)
-_PERCENT: Final = _Symbol(1e-2, NONE)
 _ONE: Final = _Symbol(1.0, NONE)
-_HOUR: Final = _Symbol(HOUR, TIME)
-_SECOND: Final = _Symbol(1.0, TIME)
-_METRE: Final = _Symbol(1.0, LENGTH)
-_MILE: Final = _Symbol(MILE, LENGTH)
-_FOOT: Final = _Symbol(FOOT, LENGTH)
-_INCH: Final = _Symbol(FOOT / 12, LENGTH)
 SYMBOLS: Final = {
-    **dict.fromkeys(("km/h", "kmh", "kph", "kmph", "km/hr"), _KMH),
+    **dict.fromkeys(("km/h", "kmh", "kph", "kmph", "km/hr"), _Symbol(1000.0 / HOUR, SPEED)),
     **dict.fromkeys(("mph", "mi/h"), _Symbol(MILE / HOUR, SPEED)),
-    **dict.fromkeys(("kn", "kt", "kts", "knot", "knots"), _KNOT),
+    **dict.fromkeys(("kn", "kt", "kts", "knot", "knots"), _Symbol(NAUTICAL_MILE / HOUR, SPEED)),
     "fps": _Symbol(FOOT, SPEED),
     **dict.fromkeys(("g0", "g_0", "gn", "g_n", "gee"), _Symbol(G_0, ACCELERATION)),
     **dict.fromkeys(("lbf", "lb_f"), _Symbol(POUND * G_0, FORCE)),
@@ -130,17 +120,19 @@ SYMBOLS: Final = {
     **dict.fromkeys(("newton", "newtons"), _Symbol(1.0, FORCE)),
     "t": _Symbol(1000.0, MASS),
     **dict.fromkeys(("lb", "lbs", "lbm", "lb_m"), _Symbol(POUND, MASS)),
-    **dict.fromkeys(("meter", "meters", "metre", "metres"), _METRE),
-    **dict.fromkeys(("mi", "mile", "miles"), _MILE),
-    **dict.fromkeys(("ft", "foot", "feet"), _FOOT),
-    **dict.fromkeys(("in", "inch", "inches"), _INCH),
+    **dict.fromkeys(("meter", "meters", "metre", "metres"), _Symbol(1.0, LENGTH)),
+    **dict.fromkeys(("mi", "mile", "miles"), _Symbol(MILE, LENGTH)),
+    **dict.fromkeys(("ft", "foot", "feet"), _Symbol(FOOT, LENGTH)),
+    **dict.fromkeys(("in", "inch", "inches"), _Symbol(FOOT / 12, LENGTH)),
     "yd": _Symbol(3 * FOOT, LENGTH),
     **dict.fromkeys(("nmi", "NM"), _Symbol(NAUTICAL_MILE, LENGTH)),
-    **dict.fromkeys(("sec", "second", "seconds"), _SECOND),
+    **dict.fromkeys(("sec", "second", "seconds"), _Symbol(1.0, TIME)),
     **dict.fromkeys(("min", "minute", "minutes"), _Symbol(60.0, TIME)),
-    **dict.fromkeys(("h", "hr", "hour", "hours"), _HOUR),
+    **dict.fromkeys(("h", "hr", "hour", "hours"), _Symbol(HOUR, TIME)),
     "d": _Symbol(24 * HOUR, TIME),
-    **dict.fromkeys(("deg", "degree", "degrees", "\N{DEGREE SIGN}"), _DEGREE),
+    **dict.fromkeys(
+        ("deg", "degree", "degrees", "\N{DEGREE SIGN}"), _Symbol(math.pi / 180.0, ANGLE)
+    ),
     **dict.fromkeys(("radian", "radians"), _Symbol(1.0, ANGLE)),
     **dict.fromkeys(("rev", "revs"), _Symbol(2 * math.pi, ANGLE)),
     **dict.fromkeys(("rpm", "r/min"), _Symbol(2 * math.pi / 60.0, TURNING)),
@@ -154,7 +146,7 @@ SYMBOLS: Final = {
     "cd": _Symbol(1.0, (0, 0, 0, 0, 0, 0, 1, 0)),
     **dict.fromkeys(("degC", "\N{DEGREE SIGN}C"), _Symbol(1.0, TEMPERATURE, 273.15)),
     **dict.fromkeys(("degF", "\N{DEGREE SIGN}F"), _Symbol(5 / 9, TEMPERATURE, 459.67 * 5 / 9)),
-    **dict.fromkeys(("%", "percent", "pct"), _PERCENT),
+    **dict.fromkeys(("%", "percent", "pct"), _Symbol(1e-2, NONE)),
     **dict.fromkeys(("1", "-", "--", "none", "unitless", "dimensionless"), _ONE),
 }
 # Nobody means anything else by these in capitals.

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from fmus.description.model import INTEGER_TYPES, REAL_TYPES, Variable
 from fmus.errors import FmuFileError
 from fmus.text import clean, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from fmus.archive.markup import Element
+
+_Number = TypeVar("_Number", float, int)
 
 OTHER_TYPES: Final = frozenset({"Boolean", "String", "Binary", "Clock"})
 TYPES: Final = REAL_TYPES | INTEGER_TYPES | OTHER_TYPES
@@ -39,24 +41,24 @@ def broken(where: str, element: Element, what: str) -> FmuFileError:
 
 def number(where: str, element: Element, name: str) -> float | None:
     """An attribute that must be a number; None without it."""
-    text = element.attributes.get(name)
-    if text is None:
-        return None
-    try:
-        return float(text)
-    except ValueError:
-        raise _bad(where, element, name, "a number") from None
+    return _converted(where, element, name, float, "a number")
 
 
 def whole(where: str, element: Element, name: str) -> int | None:
     """An attribute that must be a whole number; None without it."""
+    return _converted(where, element, name, int, "a whole number")
+
+
+def _converted(
+    where: str, element: Element, name: str, kind: Callable[[str], _Number], expected: str
+) -> _Number | None:
     text = element.attributes.get(name)
     if text is None:
         return None
     try:
-        return int(text)
+        return kind(text)
     except ValueError:
-        raise _bad(where, element, name, "a whole number") from None
+        raise _bad(where, element, name, expected) from None
 
 
 def read_variables(root: Element, version: str, where: str) -> dict[str, Variable]:
@@ -86,7 +88,9 @@ def read_variables(root: Element, version: str, where: str) -> dict[str, Variabl
                 what = f"variable {printable(name, 100)} again, as on line {lines[name]}"
                 raise broken(where, element, what)
             lines[name] = element.line
-            variables[name] = variable if name == variable.name else _renamed(variable, name)
+            variables[name] = (
+                variable if name == variable.name else dataclasses.replace(variable, name=name)
+            )
     return variables
 
 
@@ -246,10 +250,6 @@ def _types(root: Element, version: str) -> dict[str, Element]:
         inner = element if version == "3.0" or not element.children else element.children[0]
         types[element.get("name")] = inner
     return types
-
-
-def _renamed(variable: Variable, name: str) -> Variable:
-    return dataclasses.replace(variable, name=name)
 
 
 def _children(root: Element, tag: str) -> list[Element]:

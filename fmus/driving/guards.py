@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from math import isfinite
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fmus.profile.vehicle_profile import Limits
 
 DRIVEN = 200.0  # [N] a car that does not answer this much is stuck
 
@@ -11,22 +15,12 @@ class Guard:
     """Judges each new state against the one before.
 
     Args:
-        speed_limit: [m/s].
-        position_jump: [m].
-        frozen_time: [s].
+        limits: of the profile.
         names: what the FMU calls its speed, position and acceleration.
     """
 
-    def __init__(
-        self,
-        speed_limit: float,
-        position_jump: float,
-        frozen_time: float,
-        names: dict[str, str],
-    ) -> None:
-        self._speed_limit = speed_limit
-        self._position_jump = position_jump
-        self._frozen_time = frozen_time
+    def __init__(self, limits: Limits, names: dict[str, str]) -> None:
+        self._limits = limits
         self._names = names
         self._frozen = 0.0  # [s]
         self._warned: set[str] = set()
@@ -53,7 +47,7 @@ class Guard:
                     f"{self._names[role]} = {value} at {at:.10g} s; expected a finite number; "
                     "check the FMU's parameters and the step size"
                 )
-        limit = self._speed_limit
+        limit = self._limits.speed
         if abs(speed) > limit:
             return (
                 f"{self._names['speed']} = {speed:.6g} m/s at {at:.10g} s; expected within "
@@ -61,8 +55,8 @@ class Guard:
             )
         return (
             f"{self._names['position']} = {position:.6g} m at {at:.10g} s, {jump:+.6g} m from "
-            f"where the speed leads; expected within {self._position_jump:g} m; check the units of "
-            "position and speed, or raise position_jump in [limits]"
+            f"where the speed leads; expected within {self._limits.position_jump:g} m; check the "
+            "units of position and speed, or raise position_jump in [limits]"
         )
 
     def drift(self, drift: float, way: float, at: float) -> str:
@@ -93,11 +87,11 @@ class Guard:
             self._frozen = 0.0
             return ""
         self._frozen += step
-        if self._frozen < self._frozen_time:
+        if self._frozen < self._limits.frozen_time:
             return ""
         return self.once(
             "frozen",
-            f"{self._names['speed']} has not changed for {self._frozen_time:g} s until "
+            f"{self._names['speed']} has not changed for {self._limits.frozen_time:g} s until "
             f"{at:.10g} s under forces like {force:.0f} N; is the input connected?",
         )
 

@@ -41,9 +41,9 @@ class Motion:
         self._rate = wiring.output("acceleration")
         self._inputs = wiring.inputs
         self._bounds = prepared.bounds
-        self._limit = prepared.speed_limit
-        self._jump = prepared.position_jump
-        self._guard = Guard(self._limit, self._jump, prepared.frozen_time, self.names)
+        limits = prepared.profile.limits
+        self._limit, self._jump = limits.speed, limits.position_jump
+        self._guard = Guard(limits, self.names)
         self._trusted = prepared.ours
         self._answered = 0.0  # [N] under which the speed last changed
         self._origin = 0.0  # [m] where the FMU's own position is 0

@@ -8,7 +8,7 @@ from fmus.errors import FmuStartError
 from fmus.text import printable
 
 if TYPE_CHECKING:
-    from fmus.driving.drivable import Drivable
+    from fmus.interfaces.vehicle import Drivable
 
 _NEAR = 0.01  # [m/s] of the speed wanted, and
 _SETTLED = 0.5  # [s] for so long
@@ -27,7 +27,9 @@ def run_up(vehicle: Drivable, speed: float) -> float:
     Raises:
         FmuStartError: it does not get there.
     """
-    mass, friction = vehicle.prepared.run_up_mass, vehicle.prepared.run_up_friction
+    profile = vehicle.prepared.profile
+    known = profile.model or profile.inverse_map
+    mass, friction = known.mass, known.friction
     h, integral, settled, first = vehicle.step_size, 0.0, 0.0, vehicle.speed
     for _ in range(round(_LIMIT / h)):
         error = speed - vehicle.speed

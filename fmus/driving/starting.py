@@ -10,7 +10,7 @@ from fmus.errors import FmuOutputError, FmuStartError, FmuStepError
 
 if TYPE_CHECKING:
     from fmus.description.model import Channel, Value
-    from fmus.driving.drivable import Drivable
+    from fmus.interfaces.vehicle import Drivable
     from fmus.profile.preparation import Prepared
 
 _FIT = 0.02  # [m/s] or [m], and share, by which the first state may differ from the one asked for
@@ -56,7 +56,7 @@ def reach(vehicle: Drivable, speed: float) -> float | None:
             "[initial.speed]"
         )
         raise FmuStartError(msg)
-    if not vehicle.prepared.run_up or speed < 0.0:
+    if not vehicle.prepared.profile.initial.run_up or speed < 0.0:
         msg = (
             f"{vehicle.path}: {name} starts at {vehicle.speed:.6g} m/s and not at {speed:g} m/s; "
             "name the FMU's parameter for it, [initial.speed] variable = ..., or start at this "

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, NoReturn, Self
 
 from fmus.driving.motion import Motion
 from fmus.driving.starting import reach, require_place, start_values
-from fmus.driving.stepped import SteppedVehicle
 from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
 from fmus.fmi import load
 from fmus.fmi.status import STATUS_NAMES, WARNING
+from fmus.interfaces.vehicle import Drivable
 from fmus.profile.pace import between, step_to_run_with
 from fmus.profile.preparation import Prepared, prepare, unpack
 
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from fmus.profile.vehicle_profile import VehicleProfile
 
 
-class VehicleFmu(SteppedVehicle):
+class VehicleFmu(Drivable):
     """Runs a vehicle FMU in this process, in steps of fixed size.
 
-    Its position, speed, acceleration and time are those of :class:`SteppedVehicle`.
+    Its position, speed, acceleration and time are those of :class:`Vehicle`.
 
     Args:
         path: the .fmu file.
@@ -72,10 +72,11 @@ class VehicleFmu(SteppedVehicle):
     def _set_up(self, prepared: Prepared, folder: Path, stack: ExitStack) -> None:
         super().__init__(prepared.path)
         self.prepared = prepared
-        self._step_size = prepared.step_size
+        self.step_size = prepared.step_size
         self._pace = prepared.pace
         self._command = prepared.command
         self._motion = Motion(prepared)
+        self.warnings = self._motion.warnings
         self._ends = ((0.0, 0.0), (0.0, 0.0))  # position, speed round an FMU step that is longer
         self._steps = self._earlier = 0  # since time 0, and in the run-up before it
         self._closed = False
@@ -83,22 +84,13 @@ class VehicleFmu(SteppedVehicle):
             prepared.model,
             prepared.wiring.interface,
             folder,
-            solver=prepared.solver,
-            tolerance=prepared.tolerance,
+            prepared.binary,
+            solver=prepared.profile.fmu.solver,
+            tolerance=prepared.profile.fmu.tolerance,
             rewinds=not prepared.ours,  # keeping the state costs time at every step
         )
         stack.callback(self._instance.close)
         self._resources = stack.pop_all()
-
-    @property
-    def step_size(self) -> float:
-        """[s]."""
-        return self._step_size
-
-    @property
-    def warnings(self) -> list[str]:
-        """What the user should know of this FMU, since its last start."""
-        return self._motion.warnings
 
     # --- start ---------------------------------------------------------------------------------
 
@@ -134,6 +126,7 @@ class VehicleFmu(SteppedVehicle):
         self._outputs = self._instance.outputs
         self._tick = self._instance.tick
         self._motion = motion = Motion(self.prepared)
+        self.warnings = motion.warnings
         motion.begin(self._outputs)
         self._refusal = ""
         self._show(motion)
@@ -181,7 +174,7 @@ class VehicleFmu(SteppedVehicle):
         if stretch == 1 or done % stretch == 0:
             self._drive(force, done)
         self._steps += 1
-        self.time = self._steps * self._step_size
+        self.time = self._steps * self.step_size
         self.acceleration = motion.acceleration
         if stretch == 1:
             self.position, self.speed = motion.position, motion.speed
@@ -201,7 +194,7 @@ class VehicleFmu(SteppedVehicle):
             status = tick(number * h, h)
             if status > WARNING:
                 self._step_failed(force, status)
-        end = (self._steps + pace.stretch) * self._step_size
+        end = (self._steps + pace.stretch) * self.step_size
         try:
             motion.follow(self._outputs, force, substeps * h, end)
         except FmuOutputError:
@@ -238,7 +231,7 @@ class VehicleFmu(SteppedVehicle):
     def _step_failed(self, force: float, status: int) -> NoReturn:
         self._fail()
         said = self._instance.messages.take() or "without a message"
-        end = (self._steps + self._pace.stretch) * self._step_size
+        end = (self._steps + self._pace.stretch) * self.step_size
         msg = (
             f"{self.path}: no step from {self.time:.10g} s to {end:.10g} s under {force:g} N: the "
             f"FMU returned '{STATUS_NAMES[status]}', {said}{self._own_step()}"

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fmus.description.binaries import this_platform
 from fmus.description.model import Kind
-from fmus.errors import FmuInterfaceError, FmuPlatformError
+from fmus.errors import FmuInterfaceError
 from fmus.fmi.co_simulation import CoSimulation
 from fmus.fmi.fmi1 import Fmi1Calls
 from fmus.fmi.fmi2 import Fmi2Calls
@@ -35,6 +34,7 @@ def load(
     model: Model,
     interface: Interface,
     folder: Path,
+    binary: str,
     *,
     solver: Literal["cvode", "rk4"] | None = None,
     tolerance: float | None = None,
@@ -46,6 +46,7 @@ def load(
         model: as read.
         interface: the one of its interfaces that is to run.
         folder: with the extracted FMU; the caller removes it after :meth:`Instance.close`.
+        binary: this platform's library, by its name in the archive.
         solver: of Model Exchange; None: CVode where it runs.
         tolerance: relative: of Model Exchange's solver, or told to a Co-Simulation FMU.
         rewinds: before each step keep the state, so that a discarded step can be done again in
@@ -59,7 +60,7 @@ def load(
         msg = f"{model.path}: FMI {model.fmi_version}; expected 1.0, 2.0 or 3.0; export it again"
         raise FmuInterfaceError(msg)
     (folder / "resources").mkdir(exist_ok=True)  # named to the FMU even where it has none
-    library = Library(_binary(model, interface, folder), model.path)
+    library = Library(folder / binary, model.path)
     try:
         calls = _CALLS[model.fmi_version](library, model, interface, folder, MessageLog())
         if interface.kind == Kind.MODEL_EXCHANGE:
@@ -70,15 +71,3 @@ def load(
     except BaseException:
         library.close()
         raise
-
-
-def _binary(model: Model, interface: Interface, folder: Path) -> Path:
-    here = this_platform()
-    file = f"{interface.identifier}{here.suffix}"
-    names = here.folders(model.fmi_version)
-    for name in names:
-        path = folder / "binaries" / name / file
-        if path.is_file():
-            return path
-    msg = f"{model.path}: no binaries/{names[0]}/{file}; export the FMU for {here}"
-    raise FmuPlatformError(msg)

@@ -34,7 +34,8 @@ class Library:
     def __init__(self, path: Path, fmu: Path) -> None:
         self._fmu = fmu
         try:
-            self._library = _load(path)
+            beside = [file for file in path.parent.iterdir() if file != path]
+            self._library = _load_with(path, beside, ctypes.DEFAULT_MODE)
         except OSError as error:
             reason = printable(str(error).replace(str(path.parent), "").lstrip("/\\"))
             msg = (
@@ -82,11 +83,6 @@ class Library:
             _ctypes.FreeLibrary(handle)
         else:
             _ctypes.dlclose(handle)
-
-
-def _load(path: Path) -> ctypes.CDLL:
-    beside = [file for file in path.parent.iterdir() if file != path]
-    return _load_with(path, beside, ctypes.DEFAULT_MODE)
 
 
 def _load_with(path: Path, beside: list[Path], mode: int) -> ctypes.CDLL:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fmus.errors import FmuStartError
 from fmus.fmi.calls import CallFailedError
@@ -42,6 +42,7 @@ class Instance(ABC):
     def __init__(self, calls: Calls, tolerance: float | None) -> None:
         self.model = calls.model
         self.interface = calls.interface
+        self.path = calls.model.path
         self.calls = calls
         self.tolerance = tolerance
         self.messages = calls.messages
@@ -50,11 +51,6 @@ class Instance(ABC):
         self._initialised = False
         self._worst = 0  # status since the instance was made
         self._untouchable = False  # after a fatal error
-
-    @property
-    def path(self) -> Any:
-        """The FMU's file, for messages."""
-        return self.model.path
 
     def start(
         self,
@@ -106,7 +102,7 @@ class Instance(ABC):
             raise CallFailedError(msg, status)
         self.tick = self.make_tick(into, out)
 
-    def prepare(self) -> None:
+    def prepare(self) -> None:  # noqa: B027
         """What is left to do between the initialisation and the first step."""
 
     @abstractmethod

@@ -11,7 +11,7 @@ from fmus.fmi.calls import CType, Setting
 from fmus.text import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from fmus.description.model import Channel, Value, Variable
     from fmus.fmi.calls import Calls
@@ -140,10 +140,11 @@ class Transfer:
         self.arguments: tuple[Any, ...] = ()
         types = [_type(calls, channel) for channel in channels]
         for index, channel in enumerate(channels):
-            self.view[index] = _start(channel)
+            self.view[index] = float(start_list(channel.variable)[channel.element])
         if not channels:
             return
-        if len(set(types)) == 1 and types[0].type is c_double and _all_plain(channels):
+        plain = all(c.variable.scalar and not c.variable.negated for c in channels)
+        if plain and len(set(types)) == 1 and types[0].type is c_double:
             self.function = calls.function(calls.name(verb, types[0].suffix))
             references = [channel.variable.reference for channel in channels]
             self.arguments = calls.arguments(references, buffer)
@@ -237,14 +238,6 @@ def _type(calls: Calls, channel: Channel) -> CType:
         )
         raise FmuVariableError(msg)
     return ctype
-
-
-def _start(channel: Channel) -> float:
-    return float(start_list(channel.variable)[channel.element])
-
-
-def _all_plain(channels: Iterable[Channel]) -> bool:
-    return all(c.variable.scalar and not c.variable.negated for c in channels)
 
 
 def _nothing() -> int:

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fmus import errors
-from fmus.driving.stepped import SteppedVehicle
 from fmus.errors import (
     FmuCrashError,
     FmuError,
@@ -19,6 +18,7 @@ from fmus.errors import (
     FmuStateError,
     FmuStepError,
 )
+from fmus.interfaces.vehicle import Vehicle
 from fmus.isolation.cleanup import remove
 from fmus.isolation.process_host import ProcessHost, make_process_host
 from fmus.isolation.wire import LOAD, QUIT, START, STEP, Client, GarbledError, Text
@@ -35,7 +35,7 @@ _END_TIMEOUT = 5.0  # [s] for an FMU to end by itself
 _END_PATIENCE = 1.0  # [s] between the end of the connection and that of the process
 
 
-class IsolatedVehicle(SteppedVehicle):
+class IsolatedVehicle(Vehicle):
     """Runs a vehicle FMU in a process of its own, as :class:`fmus.VehicleFmu` does in this one.
 
     An FMU that crashes, hangs or ends its process becomes an :class:`FmuCrashError`; nothing of
@@ -68,9 +68,9 @@ class IsolatedVehicle(SteppedVehicle):
         prepared = prepare(path, step_size=step_size, profile=profile, start_values=start_values)
         super().__init__(prepared.path)
         self.step_size = step_size
-        self.warnings: list[str] = []
-        self._start_timeout = prepared.start_timeout
-        self._step_timeout = prepared.step_timeout
+        self.warnings = []
+        self._start_timeout = prepared.profile.fmu.start_timeout
+        self._step_timeout = prepared.profile.fmu.step_timeout
         self._stretch = prepared.pace.stretch
         self._steps = 0
         self._client: Client | None = None

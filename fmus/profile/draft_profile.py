@@ -6,23 +6,22 @@ with ``# ?``. Without questions the draft is a profile that runs.
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Final
 
 from fmus.description.model import Kind
 from fmus.errors import FmuProfileError
 from fmus.profile.draft import Draft, Entry, Line, toml_value
 from fmus.profile.matching import ROLES, alone, guesses
+from fmus.profile.pace import divides
 from fmus.profile.questions import (
     axis_question,
     channel_name,
     contradiction,
-    listed,
     numbers,
     unit_question,
 )
 from fmus.profile.vehicle_profile import make_profile
-from fmus.text import printable
+from fmus.text import listed, printable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -76,13 +75,8 @@ def _fmu(model: Model) -> Entry:
         lines.append(Line("step", interface.fixed_internal_step, "s, its fixed internal step"))
     elif kind is Kind.CO_SIMULATION and not interface.variable_step and step is not None:
         comment = "s, of its default experiment; it takes steps of one length only"
-        lines.append(Line("step", step, comment, sure=_divides(step, CONTROL_STEP)))
+        lines.append(Line("step", step, comment, sure=divides(step, CONTROL_STEP)))
     return Entry("fmu", tuple(lines))
-
-
-def _divides(step: float, whole: float) -> bool:
-    steps = whole / step
-    return steps > 0.5 and math.isclose(steps, round(steps), rel_tol=1e-9)
 
 
 # ---- inputs ----
@@ -269,7 +263,8 @@ def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = Fal
     if pedal:
         comment = "N at the wheels, fully pressed; giveway fmu identify measures it"
         lines.append(Line("full_force", PEDAL_FORCE[role], comment, sure=False))
-        strength = f"the FMU does not say how strong it is; write full_force = {_force(role)}"
+        force = f"full_force = {PEDAL_FORCE[role]:g} or what it is [N]"
+        strength = f"the FMU does not say how strong it is; write {force}"
         doubt = f"{doubt}; {strength}" if doubt else strength
     if alternative:
         return Entry(place, tuple(lines), "or else:", "", sure=False)
@@ -280,10 +275,6 @@ def _role_key(table: str, role: str) -> str:
     if table == "initial":
         return f"initial_{role}"
     return "measured_acceleration" if (table, role) == ("outputs", "acceleration") else role
-
-
-def _force(role: str) -> str:
-    return f"{PEDAL_FORCE[role]:g} or what it is [N]"
 
 
 def _open(entry: Entry, doubt: str) -> Entry:

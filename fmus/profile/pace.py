@@ -54,6 +54,13 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
     raise FmuProfileError(msg)
 
 
+def divides(part: float, whole: float) -> bool:
+    """Whether ``whole`` is a multiple of ``part``, as far as numbers of seconds tell."""
+    if part < 1e-9 * whole:
+        return True  # finer than anything that can be told
+    return part <= whole * (1 + 1e-9) and abs(round(whole / part) * part - whole) <= 1e-9 * whole
+
+
 def step_to_run_with(fmu_step: float, usual: float = 0.05) -> str:
     """The flag that a run needs for an FMU's own step [s]; empty if the usual step fits."""
     try:

@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf, isfinite, isnan
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from fmus.errors import FmuProfileError, FmuVariableError
 from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
 from fmus.profile.commands import Command, make_command
-from fmus.profile.pace import Pace, make_pace
+from fmus.profile.pace import Pace, divides, make_pace
 from fmus.profile.wiring import Wiring, wire
 
 if TYPE_CHECKING:
@@ -40,41 +40,25 @@ class Prepared:
 
     Attributes:
         model: of the FMU.
+        profile: by which it is driven.
         wiring: which variables it is driven and read by.
         command: the inverse map.
+        pace: how the controller's steps and the FMU's fit together.
+        bounds: of the inputs.
         step_size: of the controller [s].
         binary: this platform's binary in the archive.
-        solver: of Model Exchange; None: the best there is.
-        tolerance: of Model Exchange, relative; None: the default.
-        ours: a shipped FMU: nobody watches it, and no step of it is discarded.
-        speed_limit: [m/s] beyond which the FMU is at fault.
-        position_jump: [m] likewise.
-        frozen_time: [s] without a change that are worth a warning.
-        run_up: whether it may be driven up to its initial speed.
-        run_up_mass: M [kg] for that.
-        run_up_friction: alpha [N.s/m] for that.
-        start_timeout: [s] of wall clock.
-        step_timeout: [s] of wall clock.
+        ours: a shipped FMU: its outputs are trusted, and its state need not be saved.
     """
 
     model: Model
+    profile: VehicleProfile
     wiring: Wiring
     command: Command
     pace: Pace
     bounds: tuple[Bound, ...]
     step_size: float
     binary: str
-    solver: Literal["cvode", "rk4"] | None
-    tolerance: float | None
     ours: bool
-    speed_limit: float
-    position_jump: float
-    frozen_time: float
-    run_up: bool
-    run_up_mass: float
-    run_up_friction: float
-    start_timeout: float
-    step_timeout: float
 
     @property
     def path(self) -> Path:
@@ -115,26 +99,16 @@ def prepare(
     model = read_model(path)
     profile = _chosen(model, profile)
     wiring = wire(model, profile, start_values)
-    inverse, fitted = profile.inverse_map, profile.model
     return Prepared(
         model=model,
+        profile=profile,
         wiring=wiring,
         command=make_command(profile, wiring.inputs, step_size),
         pace=_pace(path, profile.fmu.step, wiring.interface, step_size),
         bounds=_bounds(wiring),
         step_size=step_size,
         binary=binary_of(model, wiring.interface),
-        solver=profile.fmu.solver,
-        tolerance=profile.fmu.tolerance,
         ours=profile is BUNDLED_PROFILE,
-        speed_limit=profile.limits.speed,
-        position_jump=profile.limits.position_jump,
-        frozen_time=profile.limits.frozen_time,
-        run_up=profile.initial.run_up,
-        run_up_mass=inverse.mass if fitted is None else fitted.mass,
-        run_up_friction=inverse.friction if fitted is None else fitted.friction,
-        start_timeout=profile.fmu.start_timeout,
-        step_timeout=profile.fmu.step_timeout,
     )
 
 
@@ -176,9 +150,9 @@ def unpack(prepared: Prepared, folder: Path) -> None:
 
 def _pace(path: Path, wanted: float | None, interface: Interface, step_size: float) -> Pace:
     fixed = interface.fixed_internal_step
-    if wanted is None and fixed is not None and not _divides(fixed, step_size):
+    if wanted is None and fixed is not None and not divides(fixed, step_size):
         wanted = fixed
-        if not _divides(step_size, fixed):
+        if not divides(step_size, fixed):
             msg = (
                 f"{path}: the FMU has a fixed step of {fixed:g} s, which does not fit the control "
                 f"step of {step_size:g} s; expected a whole part or multiple of it: change "
@@ -189,13 +163,6 @@ def _pace(path: Path, wanted: float | None, interface: Interface, step_size: flo
         return make_pace(step_size, wanted)
     except FmuProfileError as error:
         raise FmuProfileError(f"{path}: {error}") from None
-
-
-def _divides(part: float, whole: float) -> bool:
-    """Whether ``whole`` is a multiple of ``part``, as far as numbers of seconds tell."""
-    if part < 1e-9 * whole:
-        return True  # finer than anything that can be told
-    return part <= whole * (1 + 1e-9) and abs(round(whole / part) * part - whole) <= 1e-9 * whole
 
 
 def _bounds(wiring: Wiring) -> tuple[Bound, ...]:

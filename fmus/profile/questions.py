@@ -101,9 +101,3 @@ def numbers(variables: Sequence[Variable]) -> list[str]:
         if variable.is_real or variable.is_integer
         for element in range(min(variable.size, 8))
     ]
-
-
-def listed(names: Sequence[str]) -> str:
-    """The first of many."""
-    more = f" and {len(names) - 6} more" if len(names) > 6 else ""
-    return f"{', '.join(names[:6])}{more}"

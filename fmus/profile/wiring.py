@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fmus.description import units
-from fmus.description.channels import find_channel, listed, start_channels
+from fmus.description.channels import find_channel, known_names, start_channels
 from fmus.description.model import NUMERIC_TYPES, Channel, Kind, Unit
 from fmus.errors import FmuInterfaceError, FmuProfileError, FmuVariableError
 
@@ -147,10 +147,10 @@ def _wire(model: Model, table: str, role: str, axis: Axis) -> Wire:
     if variable.kind not in NUMERIC_TYPES:
         problem = f"is {variable.kind}; expected a number"
     elif table == "inputs" and not _is_input(variable):
-        fitting = listed(v.name for v in model.variables.values() if v.causality == "input")
+        fitting = known_names(v.name for v in model.variables.values() if v.causality == "input")
         problem = f"is {variable.causality}; expected an input: {fitting}"
     elif table == "outputs" and not _is_output(variable):
-        fitting = listed(v.name for v in model.variables.values() if v.causality == "output")
+        fitting = known_names(v.name for v in model.variables.values() if v.causality == "output")
         problem = f"is {variable.causality}; expected an output: {fitting}"
     elif table == "initial" and not variable.settable:
         problem = f"is {variable.causality} and cannot be set before the start; leave it out"

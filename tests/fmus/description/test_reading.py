@@ -28,7 +28,6 @@ def test_fmi1_co_simulation(fmu, fmi1_xml):
     (interface,) = model.interfaces.values()
     assert (interface.kind, interface.identifier) == (Kind.CO_SIMULATION, "oldcar")
     assert interface.variable_step
-    assert interface.once_per_process
     assert not interface.needs_execution_tool
     assert interface.flags["maxOutputDerivativeOrder"] == "2"
     assert model.default_tolerance == 1e-5

@@ -67,14 +67,13 @@ def test_an_output_that_is_no_number_is_named_with_its_time(operate):
     )
     with VehicleFmu(path, step_size=H) as vehicle:
         vehicle.start(speed=1.0)
-        good = vehicle.save_state()
         for _ in range(3):
             vehicle.step(0.0)
         with pytest.raises(FmuOutputError, match=r"operated\.fmu: speed = nan at 0\.2 s; "):
             vehicle.step(0.0)
         with pytest.raises(FmuStateError, match=r"failed at 0\.2 s"):
             vehicle.step(0.0)
-        vehicle.restore_state(good)
+        vehicle.start(speed=1.0)
         vehicle.step(0.0)
         assert (vehicle.time, vehicle.position) == (H, H)
 

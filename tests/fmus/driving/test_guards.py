@@ -56,18 +56,6 @@ def test_after_a_failure_the_vehicle_says_so_until_it_is_started_again(zoo, open
     drive(car, steps=4)
 
 
-def test_after_a_failure_a_saved_state_can_be_restored(zoo, open_car):
-    car = open_car(zoo.car(behaviour="jump"))
-    car.start(speed=4.0)
-    drive(car, steps=2)
-    saved, before = car.save_state(), (car.time, car.position, car.speed, car.acceleration)
-    with pytest.raises(FmuOutputError):
-        drive(car)
-    car.restore_state(saved)
-    assert (car.time, car.position, car.speed, car.acceleration) == before
-    drive(car, steps=2)
-
-
 def test_a_first_state_is_judged_too(zoo, open_car):
     car = open_car(zoo.car(spoken={"speed": (1e-9, 0.0)}, values={"initial_speed": 5.0}))
     with pytest.raises(FmuOutputError, match="at 0 s"):

@@ -28,15 +28,3 @@ def test_wheels_that_slip_a_little_are_no_fault(zoo):
         vehicle.start(speed=4.0)
         for _ in range(400):
             vehicle.step(1000.0)
-
-
-def test_a_state_that_is_restored_forgets_the_way_since(zoo):
-    path = zoo.car()
-    with VehicleFmu(path, step_size=0.05, profile=make_profile(zoo.profile(path), "t")) as vehicle:
-        vehicle.start(speed=10.0)
-        saved = vehicle.save_state()
-        for _ in range(5):
-            for _ in range(40):
-                vehicle.step(0.0)
-            vehicle.restore_state(saved)
-        assert (vehicle.position, vehicle.speed) == (0.0, 10.0)

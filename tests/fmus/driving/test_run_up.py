@@ -184,19 +184,6 @@ def test_the_clock_of_the_fmu_goes_on(zoo, open_car):
     assert car.time == 500 * H
 
 
-def test_a_state_after_it_can_be_saved(zoo, open_car):
-    car = open_car(zoo.car(initial=()))
-    car.start(position=5.0, speed=3.0)
-    saved, before, drives = car.save_state(), state(car), []
-    for _ in range(2):
-        car.restore_state(saved)
-        assert state(car) == before
-        for _ in range(5):
-            car.step(900.0)
-        drives.append(state(car))
-    assert drives[0] == drives[1]
-
-
 def test_it_can_be_forbidden(zoo, open_car):
     car = open_car(zoo.car(initial=()), initial={"run_up": False})
     with pytest.raises(FmuStartError) as caught:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from fmus import fmi
+from fmus.description.binaries import binary_of
 from fmus.description.model import Channel, Kind
 from fmus.description.reading import read_model
 
@@ -32,7 +33,7 @@ def load(tmp_path: Path) -> Iterator[Callable[..., Instance]]:
             folder = tmp_path / f"extracted {len(list(tmp_path.iterdir()))} ä%"
             with zipfile.ZipFile(path) as archive:
                 archive.extractall(folder)
-            instance = fmi.load(model, interface, folder, **options)
+            instance = fmi.load(model, interface, folder, binary_of(model, interface), **options)
             stack.callback(instance.close)
             return instance
 

@@ -6,7 +6,7 @@ from math import exp, nan
 
 import pytest
 
-from fmus import FmuPlatformError, FmuStartError, FmuStateError, FmuVariableError, bundled_fmu
+from fmus import FmuPlatformError, FmuStartError, FmuVariableError, bundled_fmu
 from fmus.fmi.status import ERROR
 
 VERSIONS = ("1.0", "2.0", "3.0")
@@ -272,8 +272,6 @@ def test_optional_functions_may_be_missing(zoo, run):
     path = zoo.car(without=missing, flags=saving("2.0"), behaviour="discard_once")
     car = run(path, {"force": 700.0}, 10)
     assert (car.status, car.outputs[1]) == (2, pytest.approx(moved(700.0, 0.2)[1]))
-    with pytest.raises(FmuStateError, match="does not save its state: its binary lacks the"):
-        car.save()
 
 
 @pytest.mark.parametrize("verb", ["DoStep", "Terminate", "EnterInitializationMode"])
@@ -282,22 +280,6 @@ def test_a_function_that_every_fmu_has_is_missed_before_the_start(zoo, load, ver
     path = zoo.car(fmi=version, without=(f"fmi{version[0]}{verb}",))
     with pytest.raises(FmuPlatformError, match=f"no function fmi{version[0]}{verb}, which"):
         load(path)
-
-
-# ---- states ----
-
-
-@pytest.mark.parametrize("version", ["2.0", "3.0"])
-def test_a_saved_state_comes_back(zoo, version, run):
-    car = run(zoo.car(fmi=version, flags=saving(version)), {"force": 700.0}, 10)
-    state, there = car.save(), list(car.outputs)
-    car.tick(10 * H, H)
-    after = list(car.outputs)
-    car.restore(state)
-    assert list(car.outputs) == there
-    car.tick(10 * H, H)
-    assert list(car.outputs) == after
-    car.free_state(state)
 
 
 def test_a_channel_that_is_no_number(zoo, load, start):

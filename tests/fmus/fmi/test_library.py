@@ -24,7 +24,7 @@ needs_compiler = pytest.mark.skipif(
 def compiled(folder, name, source, *more):
     (folder / "source.c").write_text(source)
     subprocess.run(
-        [sys.executable, "-m", "ziglang", "cc", "-target", HERE.zig, "-shared", "-fPIC"]
+        [sys.executable, "-m", "ziglang", "cc", "-target", HERE.zig, "-O1", "-shared", "-fPIC"]
         + [f"-Wl,-soname,{name}", "-o", name, "source.c", *more],
         cwd=folder,
         check=True,

@@ -89,7 +89,7 @@ def test_unreadable_memory_is_no_text():
     assert set(read_text(ctypes.addressof(word))) == {ord("x")}
 
 
-def test_the_journal_keeps_the_last_lines_of_trouble():
+def test_the_log_keeps_the_last_lines_of_trouble():
     messages = MessageLog()
     messages.add(0, b"all is well")
     for text in (b"first", b"second\nline", b"second line", "Kühl".encode("latin-1"), b"\x1b[2J"):

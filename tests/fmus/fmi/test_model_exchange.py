@@ -193,24 +193,6 @@ def test_an_event_iteration_without_end(drive):
         drive({"force": 1.0}, 1, options={"behaviour": "chatter", "phase": "event", "at": 0.0})
 
 
-# ---- states ----
-
-
-def test_a_saved_state_comes_back(drive, version):
-    flag = {"2.0": "canGetAndSetFMUstate", "3.0": "canGetAndSetFMUState"}[version]
-    options = {"flags": {flag: "true"}, "values": {"gear_time": 0.62}}
-    car = drive({"force": 700.0}, 10, options=options)
-    state, there = car.save(), list(car.outputs)
-    for _ in range(2):
-        for k in range(10, 20):
-            car.tick(k * H, H)
-        expected = speed_after(350.0, 0.38, speed_after(700.0, 0.62))
-        assert car.outputs[1] == pytest.approx(expected, **CLOSE)
-        car.restore(state)
-        assert list(car.outputs) == there
-    car.free_state(state)
-
-
 # ---- the solvers alone ----
 
 
@@ -239,10 +221,12 @@ def integrated(solver, end):
 
 
 def test_runge_kutta_is_of_order_four():
-    errors = [
-        abs(integrated(RungeKutta(Oscillator(), 1e-6, fixed_step=h), 4.0)[0] - sin(4.0))
-        for h in (0.2, 0.1, 0.05)
-    ]
+    errors = []
+    for h in (0.2, 0.1, 0.05):
+        solver, x = RungeKutta(Oscillator(), 1e-6), np.array([0.0, 1.0])
+        for k in range(round(4.0 / h)):
+            x = solver._classical(k * h, x, h)
+        errors.append(abs(x[0] - sin(4.0)))
     orders = [log(coarse / fine, 2) for coarse, fine in pairwise(errors)]
     assert orders == pytest.approx([4.0, 4.0], abs=0.15)
 

@@ -75,8 +75,17 @@ def host_state():
     }
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _older_objects_stay():
+    """Garbage is sought among the objects of these tests only: the other ones take long."""
+    gc.collect()
+    gc.freeze()
+    yield
+    gc.unfreeze()
+
+
 @pytest.fixture(autouse=True)
-def nothing_left(tmp_path, monkeypatch):
+def nothing_left(tmp_path, monkeypatch, _older_objects_stay):
     """This process is as before; no process, thread, file or temporary folder is left."""
     temporary = tmp_path / "temporary"
     temporary.mkdir()

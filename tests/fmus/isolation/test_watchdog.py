@@ -14,6 +14,7 @@ from fmus import FmuCrashError, bundled_fmu
 from fmus.isolation import IsolatedVehicle
 from fmus.isolation.cleanup import remove
 from fmus.profile.bundled import BUNDLED_PROFILE
+from fmus.sources.compiler import LINUX_X86
 
 SOURCE = Path(__file__).parent / "escape.c"
 BINARY = "binaries/linux64/LongitudinalVehicle.so"
@@ -29,7 +30,8 @@ def crash(tmp_path):
 
     def start(way, start_timeout):
         library = tmp_path / "escape.so"
-        compiler = [sys.executable, "-m", "ziglang", "cc", "-shared", "-fPIC", "-O1"]
+        compiler = [sys.executable, "-m", "ziglang", "cc", "-target", LINUX_X86.zig]
+        compiler += ["-shared", "-fPIC", "-O1"]
         subprocess.run([*compiler, f"-D{way}", "-o", library, SOURCE], check=True)
         path = tmp_path / "car.fmu"
         with zipfile.ZipFile(bundled_fmu()) as ours, zipfile.ZipFile(path, "w") as made:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fmus import FmuProfileError, FmuStateError
+from fmus import FmuProfileError
 from fmus.profile.pace import Pace, between, make_pace
 
 H = 0.05  # [s]
@@ -154,24 +154,6 @@ def test_a_longer_step_holds_the_force_and_is_smooth_in_between(zoo, open_car):
             assert long.position == pytest.approx(short.position, abs=1e-5)
             assert long.speed == pytest.approx(short.speed, abs=2e-3)
         assert long.speed == pytest.approx(short.speed, abs=1e-12)
-
-
-def test_a_state_is_saved_between_the_steps_of_the_fmu(zoo, open_car):
-    car = open_car(zoo.car(), fmu={"step": 0.1})
-    car.start(speed=4.0)
-    car.step(500.0)
-    with pytest.raises(FmuStateError, match="within a step"):
-        car.save_state()
-    car.step(500.0)
-    saved, drives = car.save_state(), []
-    for _ in range(2):
-        drives.append([])
-        for _ in range(5):
-            car.step(-700.0)
-            drives[-1].append((car.time, car.position, car.speed))
-        car.restore_state(saved)
-    assert drives[0] == drives[1]
-    assert len({position for _, position, _ in drives[0]}) == 5
 
 
 # ---- an FMU that knows its step itself ----
