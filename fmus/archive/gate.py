@@ -1,8 +1,8 @@
 """The gate: an FMU's archive is examined as a whole before anything of it is unpacked or loaded.
 
-An FMU is a zip file from somebody else. What is refused here could write outside the folder that
-is meant for it, fill the memory or the disk, or read other files. Nothing else is: an FMU of
-several hundred megabytes passes.
+An FMU is a zip file from somebody else. It is refused if unpacking it could write outside its
+folder, fill the memory or the disk, or read other files. Everything else passes, including FMUs of
+several hundred megabytes.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ MAX_TOTAL: Final = 4 << 30  # [bytes] unpacked
 MAX_DESCRIPTION: Final = 64 << 20  # [bytes]; 50,000 variables take about 15 MB
 MAX_RATIO: Final = 100  # unpacked to packed; tables of numbers reach 10, program text 5
 RATIO_COUNTS_FROM: Final = 16 << 20  # [bytes] unpacked; small members do no harm
-CHECKED_AT_ONCE: Final = 64 << 20  # [bytes] unpacked, of which the check sums are tried here
+CHECKED_AT_ONCE: Final = 64 << 20  # [bytes] unpacked: up to this size check sums are compared
 MAX_NAME: Final = 1024
 CHUNK: Final = 1 << 20  # [bytes]
 READABLE: Final = frozenset({zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED})
@@ -60,11 +60,11 @@ class Archive:
 def open_archive(path: Path) -> Archive:
     """Examine an FMU's archive; only its model description is read into memory.
 
-    The last ones are remembered, until their files change: preparing a vehicle asks repeatedly.
+    Recent results are kept until the file changes, because preparing a vehicle asks repeatedly.
 
     Raises:
-        FmuArchiveError: hostile, damaged or beyond all measure.
-        FmuFileError: missing, unreadable, no zip archive or without a model description.
+        FmuArchiveError: the archive is hostile, damaged or too large.
+        FmuFileError: it is missing, unreadable, no zip archive or without a model description.
     """
     status = _require_file(path)
     return _open(path, (status.st_ino, status.st_size, status.st_mtime_ns))
@@ -133,7 +133,7 @@ def read_start(archive: Archive, name: str, size: int) -> bytes:
 
 
 class _CautiousFile(io.FileIO):
-    """A file that is not read into memory as a whole: an archive may claim any length of list."""
+    """A file whose reads are bounded: an archive may claim that its list of members is huge."""
 
     def read(self, size: int | None = -1, /) -> bytes:
         wanted = MAX_DIRECTORY if size is None or size < 0 else size
@@ -145,7 +145,7 @@ class _CautiousFile(io.FileIO):
 
 @contextmanager
 def _reading(path: Path) -> Iterator[zipfile.ZipFile]:
-    """The zip file; whatever zipfile says of a broken one becomes one of our errors."""
+    """Open the zip file; whatever zipfile raises becomes one of our errors."""
     try:
         with _CautiousFile(path) as file, zipfile.ZipFile(file) as archive:
             yield archive
@@ -214,7 +214,7 @@ def _examined(path: Path, infos: Sequence[zipfile.ZipInfo]) -> dict[str, zipfile
 
 
 def _fault(info: zipfile.ZipInfo) -> str:
-    """What is wrong with a member, or nothing."""
+    """What is wrong with a member; empty if nothing is."""
     name = info.orig_filename  # zipfile cuts it at a NUL
     file_type = stat.S_IFMT(info.external_attr >> 16)
     parts = name.removesuffix("/").split("/")
@@ -254,7 +254,7 @@ def _inflated(size: int, packed: int) -> bool:
 
 
 def _require_separate_places(path: Path, infos: Sequence[zipfile.ZipInfo]) -> None:
-    """Two members that share bytes of the archive: what bombs and disguises are made of."""
+    """Refuse members that share bytes of the archive, as zip bombs and disguised files do."""
     end = 0
     for info in sorted(infos, key=lambda info: info.header_offset):
         if info.header_offset < end:

@@ -1,4 +1,4 @@
-"""Reading an FMU's XML with nothing that a hostile file could use.
+"""Reading an FMU's XML without the features of XML that a hostile file could use.
 
 A model description needs elements and attributes, no document type: whatever declares entities or
 refers to other files is refused at the first sight of ``<!DOCTYPE``, in any encoding, by the same
@@ -52,7 +52,7 @@ class Element:
 
 
 def guard(data: bytes, where: str, root: str) -> None:
-    """Refuse what no model description has; keeps nothing.
+    """Refuse an XML file that cannot be a model description; nothing of it is kept.
 
     Args:
         data: the XML file.
@@ -60,8 +60,8 @@ def guard(data: bytes, where: str, root: str) -> None:
         root: the first element's name.
 
     Raises:
-        FmuArchiveError: a document type, or beyond all measure.
-        FmuFileError: not well-formed, or another first element.
+        FmuArchiveError: it has a document type or is too large.
+        FmuFileError: it is not well-formed or has another first element.
     """
     _Walk(where, root, None, lambda _tag: None).go(data)
 
@@ -70,8 +70,8 @@ def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
     """The first element, with those descendants whose names are among ``kept``.
 
     Raises:
-        FmuArchiveError: a document type, or beyond all measure.
-        FmuFileError: not well-formed, or another first element.
+        FmuArchiveError: it has a document type or is too large.
+        FmuFileError: it is not well-formed or has another first element.
     """
     top = Element("", {}, 0)
     open_elements = [top]
@@ -98,12 +98,12 @@ def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
 
 
 class _Walk:
-    """One pass over a document, which counts what goes by.
+    """One pass over a document that enforces the limits.
 
     Args:
         where: of the document, for messages.
         root: the first element's name.
-        start: called with the name, the attributes and the line of each element; None: nobody is.
+        start: called with the name, the attributes and the line of each element; None: not called.
         end: called with its name.
     """
 
@@ -122,11 +122,11 @@ class _Walk:
         parser.EndElementHandler = self._on_end
 
     def go(self, data: bytes) -> None:
-        """Over all of it.
+        """Parse the whole document.
 
         Raises:
-            FmuArchiveError: a document type, or beyond all measure.
-            FmuFileError: not well-formed, or another first element.
+            FmuArchiveError: it has a document type or is too large.
+            FmuFileError: it is not well-formed or has another first element.
         """
         parser = self._parser
         try:
@@ -138,7 +138,7 @@ class _Walk:
         except expat.ExpatError as error:
             msg = f"{self._where}: not well-formed XML: {printable(error)}; export the model again"
             raise FmuFileError(msg) from None
-        except (LookupError, ValueError) as error:  # an encoding that nobody knows
+        except (LookupError, ValueError) as error:  # an unknown encoding
             msg = f"{self._where}: {printable(error)}; expected UTF-8; export the model again"
             raise FmuFileError(msg) from None
 

@@ -1,4 +1,4 @@
-"""Archives and libraries whose bytes depend on nothing but what is in them."""
+"""Archives and libraries whose bytes depend on their contents only."""
 
 import struct
 import zipfile

@@ -1,4 +1,4 @@
-"""Does an FMU behave like a vehicle? Dry runs, the step-halving self-check, identification."""
+"""Whether an FMU behaves like a vehicle: dry runs, the step-halving check, identification."""
 
 from fmus.checking.check import CheckReport, check
 from fmus.checking.findings import Finding, Verdict

@@ -1,4 +1,4 @@
-"""What a run will assume of the vehicle that is checked."""
+"""What a run will assume of the checked vehicle."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ UNGUARDED = Limits(speed=1e9, position_jump=1e9)
 
 
 def without_guards(profile: VehicleProfile) -> VehicleProfile:
-    """The profile with limits that only nonsense exceeds."""
+    """The profile with limits that only absurd values exceed."""
     return profile.model_copy(update={"limits": UNGUARDED})
 
 
@@ -73,7 +73,7 @@ def opener_of(
 
 @dataclass(frozen=True)
 class Phase:
-    """A constant force, held for a time or until the speed has come where it should."""
+    """A constant force, held for a time or until the speed reaches a bound."""
 
     force: float  # [N]
     duration: float  # [s] at most
@@ -83,7 +83,7 @@ class Phase:
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """What a vehicle did: n steps, n + 1 instants.
+    """The record of a drive: n steps, n + 1 instants.
 
     Attributes:
         step_size: of the vehicle [s].
@@ -143,10 +143,10 @@ def drive(
 
 @dataclass(frozen=True)
 class Attempt:
-    """A drive, as far as it went."""
+    """A drive up to its end or failure."""
 
-    trace: Trace | None  # None: it did not start
-    error: FmuError | None  # that ended it
+    trace: Trace | None  # None: the vehicle did not start
+    error: FmuError | None  # that ended the drive
 
 
 def try_to_drive(
@@ -156,14 +156,14 @@ def try_to_drive(
     speed: float = 0.0,
     fmu_step: float | None = None,
 ) -> Attempt:
-    """As :func:`drive`, and what was seen before it failed is kept."""
-    log: _Log | None = None
+    """The same as :func:`drive`, but a failure is returned, with the trace up to it."""
+    log: _DriveLog | None = None
     vehicle: Vehicle | None = None
     error: FmuError | None = None
     try:
         vehicle = opener(fmu_step)
         vehicle.start(speed=speed)
-        log = _Log(vehicle)
+        log = _DriveLog(vehicle)
         for phase in phases:
             _hold(vehicle, phase, log)
     except FmuError as caught:
@@ -174,15 +174,15 @@ def try_to_drive(
     return Attempt(log.trace() if log is not None else None, error)
 
 
-def _hold(vehicle: Vehicle, phase: Phase, log: _Log) -> None:
+def _hold(vehicle: Vehicle, phase: Phase, log: _DriveLog) -> None:
     for _ in range(round(phase.duration / vehicle.step_size)):
         if not phase.above <= vehicle.speed <= phase.below:
             return
         log.step(phase.force)
 
 
-class _Log:
-    """The rows of a drive as it goes on."""
+class _DriveLog:
+    """Collects the rows of a drive."""
 
     def __init__(self, vehicle: Vehicle) -> None:
         self._vehicle = vehicle

@@ -20,7 +20,7 @@ POOR_FIT = 0.9  # of R squared, below which a remark says so
 
 
 def saturation_remarks(limits: tuple[float, float]) -> list[str]:
-    """On the largest drive and brake force that arrive [N], where they were reached."""
+    """Remarks on the largest drive and brake force that arrive [N], if they were reached."""
     return [
         f"no more than {limit:.0f} N of {name} force arrive: run with --mpc-force-limit "
         f"{limit:.0f} or less{' (which bounds the brakes, too)' if name == 'drive' else ''}"
@@ -32,7 +32,7 @@ def saturation_remarks(limits: tuple[float, float]) -> list[str]:
 def fit_remarks(
     found: Fit, model: FittedModel, traces: Sequence[Trace], limits: tuple[float, float]
 ) -> list[str]:
-    """On how well M v' + alpha v = u describes the vehicle, and what else it does.
+    """Remarks on how well M v' + alpha v = u describes the vehicle, and what else it does.
 
     Args:
         found: M, alpha and the actuator.
@@ -56,7 +56,7 @@ def fit_remarks(
 
 
 def _resistance(found: Fit, drives: Sequence[Drive]) -> list[str]:
-    """What else resists: a constant force and one that grows with the square of the speed."""
+    """A remark on other resistance: a constant force, and one that grows with speed squared."""
     speed = np.concatenate([drive.speed[:-1][drive.used] for drive in drives])
     left = np.concatenate([(d.acceleration - found.acceleration(d))[d.used] for d in drives])
     X, measured = resistance_rows(drives, found.lag, found.delay)

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from fmus.checking.fitting import Drive
     from fmus.checking.manoeuvres import Trace
 
-SATURATED = 0.85  # less of the force than this share arrives: the actuator is at its limit
+SATURATED = 0.85  # if less of a force than this share arrives, the actuator is at its limit
 _ENOUGH = 20  # steps for four coefficients
-BEYOND = 1.5  # of a limit: what arrives beyond it shows that it is none
+BEYOND = 1.5  # times a limit: if so much arrives at another time, it is none
 SHORTEST = 0.3  # [s] of a phase from which a force is read
 
 
@@ -29,7 +29,7 @@ SHORTEST = 0.3  # [s] of a phase from which a force is read
 class Resisted:
     """M v' + alpha v + c_0 + c_2 v |v| = F of a vehicle that rolls forwards.
 
-    M and alpha alone would take the rolling resistance of a truck for a drive that falls short.
+    With M and alpha alone, a truck's rolling resistance would look like a saturated drive.
     """
 
     mass: float  # M [kg]
@@ -56,7 +56,7 @@ class Resisted:
     def force(
         self, speed: NDArray[np.float64], acceleration: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """What must act [N]."""
+        """The force that must act for this motion [N]."""
         drag = self.friction * speed + self.constant + self.quadratic * speed * np.abs(speed)
         return self.mass * acceleration + drag
 
@@ -64,7 +64,7 @@ class Resisted:
 def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
     """Largest drive and brake force that arrive [N]; infinite where that was not reached.
 
-    Level by level: what the weaker ones say about M and alpha predicts the next.
+    Level by level: M and alpha from the weaker tests predict the next ones.
 
     Args:
         tests: by level of force, from weak to strong.
@@ -86,7 +86,7 @@ def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
 
 
 def _limit(trace: Trace, sign: float, model: Resisted, weaker: Trace, strongest: Trace) -> float:
-    """What a test shows of a limit [N], unless with the most force far more arrives."""
+    """The limit [N] that a test shows, unless far more arrives in the strongest test."""
     limit = saturation([trace], sign, model, [weaker])
     most = max((arrives for _, arrives in arriving(strongest, sign, model)), default=0.0)
     return limit if most <= BEYOND * limit else np.inf
@@ -101,7 +101,7 @@ def saturation(
         traces: of the forces in question.
         sign: of those that count.
         model: of the vehicle.
-        weaker: the same tests with less force. Where more arrives the more is asked for, as in a
+        weaker: the same tests with less force. Where a larger force lets more arrive, as in a
             higher gear, there is no limit.
     """
     lesser = [arriving(trace, sign, model) for trace in weaker] or [[] for _ in traces]
@@ -115,7 +115,7 @@ def saturation(
 
 
 def _grows(should: float, arrives: float, before: Sequence[tuple[float, float]]) -> bool:
-    """As much more arrives than in the weaker test as was asked for."""
+    """Whether the force that arrives has grown as much as the force asked for."""
     if not before or not 0.0 < before[-1][0] < should or before[-1][1] <= 0.0:
         return False
     return arrives / before[-1][1] >= SATURATED * should / before[-1][0]

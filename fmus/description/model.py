@@ -68,7 +68,6 @@ class Variable:
     kind: str  # FMI's type: "Real", "Float64", "Boolean", ...
     causality: str  # "input", "output", "parameter", "local", ...
     variability: str = "continuous"
-    initial: str = ""  # "exact", "approx", "calculated"; empty where the FMU does not say
     start: str = ""  # as it is written; empty without one
     shape: tuple[int, ...] = ()  # of an FMI 3 array, from its dimensions' start values
     unit: str = ""  # name of its unit; empty without one

@@ -1,4 +1,4 @@
-"""What an FMU says about itself: its model description, from behind the gate.
+"""Reading what an FMU says about itself: its model description.
 
 FMPy's reader is not used here: it refuses FMUs that run without a fault, knows
 neither FMI 1's capabilities nor the units of declared types, and does not tell the line of a fault.
@@ -53,14 +53,14 @@ def read_model(path: Path) -> Model:
     """Everything that an FMU says about itself; nothing of it is loaded or unpacked.
 
     Raises:
-        FmuFileError: missing, refused by the gate, or its model description is broken.
+        FmuFileError: the file is missing or refused, or its model description is broken.
         FmuInterfaceError: a version of FMI, or an interface, that cannot be run.
     """
     return model_of(open_archive(path))
 
 
 def model_of(archive: Archive) -> Model:
-    """As :func:`read_model`, of an archive that is open already."""
+    """The same as :func:`read_model` for an archive that is open already."""
     path, where = archive.path, f"{archive.path}: {DESCRIPTION}"
     root = parse(archive.description, where, ROOT, KEPT)
     version = _version(root, path)
@@ -96,7 +96,7 @@ def describe(path: str | os.PathLike[str]) -> FmuDescription:
     """Name, version and fingerprint of an FMU.
 
     Raises:
-        FmuFileError: missing, refused by the gate, or no model description.
+        FmuFileError: the file is missing or refused, or has no model description.
         FmuInterfaceError: a version of FMI that cannot be run.
     """
     archive = open_archive(Path(path))
@@ -158,7 +158,7 @@ def _interface(kind: Kind, element: Element, version: str, where: str) -> Interf
 
 
 def _fmi1_interface(root: Element, where: str) -> dict[Kind, Interface]:
-    """FMI 1 has one interface per file; what it can do stands in an element of its own."""
+    """The one interface of an FMI 1 file, whose capabilities have an element of their own."""
     identifier = _identifier(root, where)
     implementation = root.first("Implementation")
     if implementation is None:
@@ -204,7 +204,7 @@ def _nothing_to_run(root: Element) -> str:
 def _structure(
     root: Element, version: str, where: str, variables: Mapping[str, Variable]
 ) -> tuple[int, int]:
-    """Numbers of continuous states and event indicators; references must lead somewhere."""
+    """Numbers of continuous states and event indicators; all references must exist."""
     indicators = whole(where, root, "numberOfEventIndicators") or 0
     if version == "1.0":
         return whole(where, root, "numberOfContinuousStates") or 0, indicators
@@ -253,6 +253,6 @@ def _unit(name: str, base: Element, where: str) -> Unit:
 
 
 def _positive(where: str, element: Element | None, name: str) -> float | None:
-    """A number that helps only if it is positive."""
+    """An attribute that is of use only as a positive number; None otherwise."""
     value = number(where, element, name) if element else None
     return value if value is not None and 0.0 < value < math.inf else None

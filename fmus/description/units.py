@@ -149,7 +149,7 @@ SYMBOLS: Final = {
     **dict.fromkeys(("%", "percent", "pct"), _Symbol(1e-2, NONE)),
     **dict.fromkeys(("1", "-", "--", "none", "unitless", "dimensionless"), _ONE),
 }
-# Nobody means anything else by these in capitals.
+# Written with other capitals, these names mean the same.
 ANY_CASE: Final = frozenset(
     {"km/h", "kmh", "kph", "mph", "m/s", "m/s2", "m/s^2", "rpm", "deg", "rad", "knots", "percent"}
 )
@@ -164,10 +164,11 @@ TIMES: Final = re.compile(r"\s*(?:\*|\.|\N{MIDDLE DOT}|\N{DOT OPERATOR}|\s)\s*")
 def to_si(unit: Unit) -> Unit:
     """The unit with its dimension and its way to SI, by name where the FMU does not define it.
 
-    An empty definition of a name that has a dimension (``<BaseUnit/>`` for ``m/s``) is none.
+    An empty definition (``<BaseUnit/>``) of a name that has a dimension, such as ``m/s``, counts as
+    no definition.
 
     Returns:
-        the unit; its dimension stays None if nobody knows the name.
+        the unit; its dimension stays None if the name is unknown.
     """
     defined = unit.dimension is not None
     empty = unit.dimension == NONE and unit.factor == 1.0 and unit.offset == 0.0
@@ -187,7 +188,7 @@ def named(name: str) -> Unit:
 
 
 def quantity(dimension: Dimension | None) -> str:
-    """What a dimension measures: "a force"; its exponents where it has no name."""
+    """What a dimension measures, such as "a force"; its exponents where it has no name."""
     if dimension is None:
         return "unknown"
     symbols = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
@@ -270,7 +271,7 @@ class _Parser:
 
 
 def _times(one: _Symbol, other: _Symbol, power: int) -> _Symbol:
-    """A product; an offset, as of degC, has no meaning in it."""
+    """The product of two units; offsets, as that of degC, have no meaning in products."""
     exponents = (a + power * b for a, b in zip(one.dimension, other.dimension, strict=True))
     factor = one.factor * other.factor**power if power > 0 else one.factor / other.factor**-power
     kg, m, s, a, k, mol, cd, rad = exponents

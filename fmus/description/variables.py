@@ -23,7 +23,7 @@ VARIABLE_TAGS: Final = (
     | {f"{kind}Type" for kind in TYPES}
     | {"ModelVariables", "ScalarVariable", "Dimension", "Alias", "Start"}
     | {"TypeDefinitions", "SimpleType", "Type"}
-)  # all elements that tell of variables
+)  # all elements that describe variables
 BOOLEANS: Final = frozenset({"true", "false", "1", "0"})
 PARAMETERS: Final = frozenset({"parameter", "calculatedParameter", "structuralParameter"})
 FREE: Final = frozenset({"parameter", "structuralParameter", "input"})  # settable before the start
@@ -81,7 +81,7 @@ def read_variables(root: Element, version: str, where: str) -> dict[str, Variabl
         for name in (variable.name, *(alias.get("name") for alias in element.every("Alias"))):
             if not name:
                 raise broken(where, element, "a variable without a name")
-            if clean(name, MAX_NAME) != name:  # it will stand in messages
+            if clean(name, MAX_NAME) != name:  # it is shown in messages
                 what = f"name {printable(name, 60)} too long or with control characters"
                 raise broken(where, element, what)
             if name in variables:
@@ -95,7 +95,7 @@ def read_variables(root: Element, version: str, where: str) -> dict[str, Variabl
 
 
 def _elements(root: Element, version: str, where: str) -> Iterator[tuple[Element, Element]]:
-    """Each variable's element, and the one that tells its type (FMI 1 and 2: a child)."""
+    """Each variable's element, and the element that gives its type (in FMI 1 and 2 a child)."""
     for element in _children(root, "ModelVariables"):
         if version == "3.0":
             if element.tag in TYPES:
@@ -121,7 +121,7 @@ def _variable(
     if declared and declared not in types:
         what = f"type {printable(declared, 100)} of variable {_name(element)} is not defined"
         raise broken(where, element, what)
-    layers = (value, types[declared]) if declared else (value,)  # a variable's own words first
+    layers = (value, types[declared]) if declared else (value,)  # a variable's own attributes win
     causality, variability = _roles(element, value.tag, version)
     shape = _shape(element, where, extents) if version == "3.0" else ()
     start = _start(value)
@@ -135,7 +135,6 @@ def _variable(
         kind=value.tag,
         causality=causality,
         variability=variability,
-        initial=initial,
         start=start,
         shape=shape,
         unit=clean(next((e.get("unit") for e in layers if e.get("unit")), ""), MAX_UNIT),
@@ -149,7 +148,7 @@ def _variable(
 
 def _roles(element: Element, kind: str, version: str) -> tuple[str, str]:
     """Causality and variability, with the defaults of the standard (FMI 3: 2.4.7.4)."""
-    causality = clean(element.get("causality", "local"), MAX_UNIT)  # it will stand in messages
+    causality = clean(element.get("causality", "local"), MAX_UNIT)  # it is shown in messages
     variability = clean(element.get("variability"), MAX_UNIT)
     if version == "1.0":
         if variability == "parameter":
@@ -180,7 +179,7 @@ def _start(value: Element) -> str:
 
 
 def _require_readable(where: str, element: Element, kind: str, start: str, array: bool) -> None:
-    """A start value must be of its variable's type."""
+    """Refuse a start value that is not of its variable's type."""
     words = start.split()
     if not words or kind in {"String", "Binary", "Clock"}:
         return
@@ -208,7 +207,7 @@ def _expected(kind: str) -> str:
 
 
 def _extents(root: Element, where: str) -> dict[int, str]:
-    """Start values of what an FMI 3 array's dimensions may refer to, by value reference."""
+    """Start values of the variables that an FMI 3 array's dimensions may refer to."""
     return {
         _reference(where, element): element.get("start")
         for element in _children(root, "ModelVariables")
@@ -244,7 +243,7 @@ def _reference(where: str, element: Element) -> int:
 
 
 def _types(root: Element, version: str) -> dict[str, Element]:
-    """The type definitions; in FMI 1 and 2 the element inside tells unit and limits."""
+    """The type definitions; in FMI 1 and 2 the element inside holds unit and limits."""
     types = {}
     for element in _children(root, "TypeDefinitions"):
         inner = element if version == "3.0" or not element.children else element.children[0]

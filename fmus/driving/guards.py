@@ -1,4 +1,4 @@
-"""What no car does: a vehicle FMU that shows it is at fault, whatever status it returns."""
+"""Finding motions that no car has: they show that an FMU is at fault, whatever it returns."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from fmus.profile.vehicle_profile import Limits
 
-DRIVEN = 200.0  # [N] a car that does not answer this much is stuck
+DRIVEN = 200.0  # [N] a car that does not react to so much is stuck
 
 
 class Guard:
-    """Judges each new state against the one before.
+    """Finds faults in new states, and puts them into words.
 
     Args:
         limits: of the profile.
@@ -34,7 +34,7 @@ class Guard:
             position: [m].
             speed: [m/s].
             acceleration: [m/s2].
-            jump: by how much [m] the position differs from what the speed accounts for.
+            jump: by how much the position differs from the integrated speed [m].
             at: time [s].
         """
         for role, value in (
@@ -60,11 +60,11 @@ class Guard:
         )
 
     def drift(self, drift: float, way: float, at: float) -> str:
-        """What is wrong with a position that leaves the speed's integral, step by step.
+        """What is wrong with a position that drifts away from the integrated speed.
 
         Args:
-            drift: position beyond what the speed accounts for, since the start [m].
-            way: that the speed accounts for [m].
+            drift: position minus integrated speed, since the start [m].
+            way: distance by the integrated speed [m].
             at: time [s].
         """
         position, speed = self._names["position"], self._names["speed"]
@@ -77,7 +77,7 @@ class Guard:
         """A warning about a state that stands still though it is driven; empty if there is none.
 
         Args:
-            changed: whether the motion has answered in this step.
+            changed: whether the motion has changed in this step.
             force: held over it [N].
             speed: [m/s].
             step: [s].
@@ -96,7 +96,7 @@ class Guard:
         )
 
     def once(self, kind: str, warning: str) -> str:
-        """The warning the first time, then nothing."""
+        """The warning the first time; empty afterwards."""
         if kind in self._warned:
             return ""
         self._warned.add(kind)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, Self
 
 from fmus.driving.motion import Motion
-from fmus.driving.starting import reach, require_place, start_values
+from fmus.driving.starting import reach, require_position, start_values
 from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
 from fmus.fmi import load
 from fmus.fmi.status import STATUS_NAMES, WARNING
@@ -54,7 +54,7 @@ class VehicleFmu(Drivable):
         start_values: Mapping[str, Value] | None = None,
     ) -> None:
         prepared = prepare(path, step_size=step_size, profile=profile, start_values=start_values)
-        with ExitStack() as stack:  # what has been set up is undone if the rest fails
+        with ExitStack() as stack:  # if a later part fails, the earlier ones are undone
             folder = stack.enter_context(
                 tempfile.TemporaryDirectory(prefix="vehicle-fmu-", ignore_cleanup_errors=True)
             )
@@ -77,8 +77,8 @@ class VehicleFmu(Drivable):
         self._command = prepared.command
         self._motion = Motion(prepared)
         self.warnings = self._motion.warnings
-        self._ends = ((0.0, 0.0), (0.0, 0.0))  # position, speed round an FMU step that is longer
-        self._steps = self._earlier = 0  # since time 0, and in the run-up before it
+        self._ends = ((0.0, 0.0), (0.0, 0.0))  # position, speed at both ends of a longer FMU step
+        self._steps = self._earlier = 0  # since time 0, and during the run-up before it
         self._closed = False
         self._instance = load(
             prepared.model,
@@ -138,7 +138,7 @@ class VehicleFmu(Drivable):
         self._ends = ((0.0, 0.0), (self.position, self.speed))
 
     def _reach(self, position: float, speed: float) -> None:
-        """Be where and as fast as asked for, or get there before time 0."""
+        """Check the first position and speed, or drive up to the speed before time 0."""
         duration = reach(self, speed)
         if duration is not None:
             self._earlier, self._steps = self._steps, 0
@@ -151,7 +151,7 @@ class VehicleFmu(Drivable):
         if wiring.initial_position is None or wiring.output("position") is None or self._earlier:
             self._motion.count_from(position)
         else:
-            require_place(self, position)
+            require_position(self, position)
         self._show(self._motion)
 
     @property
@@ -183,7 +183,7 @@ class VehicleFmu(Drivable):
             self.position, self.speed = between(*self._ends, self._pace.step, share)
 
     def _drive(self, force: float, done: int) -> None:
-        """One step of the controller in those of the FMU; or the FMU's one, if that is longer."""
+        """Do the FMU's steps of one control step, or the FMU's one step if that is longer."""
         pace, motion, tick = self._pace, self._motion, self._tick
         self._command.apply(force, motion.speed, self._inputs)
         if self.prepared.bounds:
@@ -211,7 +211,7 @@ class VehicleFmu(Drivable):
     # --- end -----------------------------------------------------------------------------------
 
     def close(self) -> None:
-        """Free everything, also the temporary folder; nothing happens the second time."""
+        """Free everything, including the temporary folder; nothing happens the second time."""
         if not self._closed:
             self._closed = True
             self._refuse("has been closed; make a new one")
@@ -219,7 +219,7 @@ class VehicleFmu(Drivable):
             self._resources.close()
 
     def _own_step(self) -> str:
-        """The step that the FMU may be made for, where it can do only one."""
+        """Advice for an FMU that does steps of one length only: the end of a message, or empty."""
         wanted, interface = self.prepared.model.default_step, self.prepared.wiring.interface
         if interface.variable_step or wanted is None or isclose(wanted, self._pace.step):
             return ""

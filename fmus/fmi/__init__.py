@@ -1,7 +1,7 @@
 """Reading, loading and calling FMUs: the only package that talks to FMPy.
 
-Instances call the FMU's C functions themselves, without FMPy's wrappers: a step costs what it
-costs in C, and a function that an FMU lacks is missed only where it is needed.
+Instances call the FMU's C functions themselves, without FMPy's wrappers: a step takes as
+long as it takes in C, and a missing function is an error only where it is needed.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def load(
     try:
         calls = _CALLS[model.fmi_version](library, model, interface, folder, MessageLog())
         if interface.kind == Kind.MODEL_EXCHANGE:
-            from fmus.fmi.model_exchange import ModelExchange  # its numpy is not always needed
+            from fmus.fmi.model_exchange import ModelExchange  # Co-Simulation needs no numpy
 
             return ModelExchange(calls, tolerance, solver)
         return CoSimulation(calls, tolerance, rewinds=rewinds)

@@ -9,6 +9,7 @@ from ctypes import c_size_t, c_uint32, c_void_p
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from fmus.description.model import Kind
 from fmus.fmi.status import ERROR, WARNING, named
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ class NoInstanceError(CallFailedError):
 
 @dataclass(frozen=True)
 class CType:
-    """How values of an FMI type travel: the C type, and the end of its functions' names."""
+    """An FMI type's C type, and how the names of its functions end."""
 
     type: type[Any]
     suffix: str
@@ -55,10 +56,10 @@ class CType:
 
 @dataclass(frozen=True)
 class Progress:
-    """What an FMU says after a step that it did not simply do."""
+    """What an FMU says after a step that it did not complete."""
 
-    reached: float | None  # [s]; None: it does not say
-    ended: bool  # it wants the simulation to end
+    reached: float | None  # [s]; None: the FMU does not say
+    ended: bool  # the FMU wants to end the simulation
 
 
 @dataclass
@@ -111,10 +112,16 @@ class Calls(ABC):
         self.messages = messages
         self.component: c_void_p | None = None
         self.prefix = f"fmi{model.fmi_version[0]}"  # of all functions' names
-        self._free: Function
+        self.exchanges = interface.kind == Kind.MODEL_EXCHANGE
         self._functions: dict[str, Function] = {}
+        self._free: Function
+        self.find_functions()
 
     # ---- life ----
+
+    @abstractmethod
+    def find_functions(self) -> None:
+        """Look up the functions that every FMU must have, and make the receiver of messages."""
 
     @abstractmethod
     def instantiate(self) -> None:
@@ -124,6 +131,16 @@ class Calls(ABC):
             CallFailedError: the FMU refuses.
         """
 
+    def keep_instance(self, component: int | None, function: str) -> None:
+        """Keep the instance that a function has made.
+
+        Raises:
+            NoInstanceError: it has made none.
+        """
+        if not component:
+            raise NoInstanceError(function)
+        self.component = c_void_p(component)
+
     def configure(self, setting: Sequence[Setting]) -> None:
         """Set start values."""
         for one in setting:
@@ -131,7 +148,7 @@ class Calls(ABC):
 
     @abstractmethod
     def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:
-        """Bring the instance to time 0; the inputs' start values are set on the way."""
+        """Bring the instance to time 0 and set the inputs' start values."""
 
     def terminate(self) -> None:
         """End the simulation."""
@@ -166,7 +183,7 @@ class Calls(ABC):
 
     @abstractmethod
     def stepper(self, start: ctypes.c_double, step: ctypes.c_double) -> Stepper:
-        """What does a step, with its arguments."""
+        """The function that does a step, with its arguments."""
 
     # ---- Model Exchange ----
 
@@ -184,7 +201,7 @@ class Calls(ABC):
 
     @abstractmethod
     def completed_step(self) -> tuple[bool, bool]:
-        """After an integrator's step: whether it wants event mode, whether it wants to end."""
+        """After an integrator's step: whether the FMU wants event mode, whether it wants to end."""
 
     def exchange_names(self) -> Mapping[str, str]:
         """The names of the functions that Model Exchange calls often, by what they do."""
@@ -244,13 +261,13 @@ class Setting:
 class Stepper:
     """A step of Co-Simulation.
 
-    ``flags`` is anything but 0 after a step that FMI 3 calls done but that ended early.
+    ``flags[0]`` is not 0 after a step that FMI 3 calls done although it ended early.
     """
 
     do_step: Function
     arguments: tuple[Any, ...]
     flags: Any  # indexable
-    progress: Callable[[], Progress]  # after a step that was not simply done
+    progress: Callable[[], Progress]  # after a step that was not completed
 
 
 if sys.platform == "win32":
@@ -260,7 +277,7 @@ else:
 
 
 def allocators() -> tuple[c_void_p, c_void_p]:
-    """C's own calloc and free, for FMUs that take the host's."""
+    """C's own calloc and free, for FMUs that use the host's functions for memory."""
     return (
         ctypes.cast(_c_library.calloc, c_void_p),
         ctypes.cast(_c_library.free, c_void_p),

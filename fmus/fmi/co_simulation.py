@@ -1,7 +1,7 @@
 """Co-Simulation: the FMU brings its own solver and is asked to step.
 
-An FMU may discard a step: it then says how far it came. The rest is done from there; failing that,
-the state before the step comes back and the step is done in halves, quarters, ...
+An FMU may discard a step; it then says how far it came, and the rest is done from there. If that
+fails, the state before the step is restored and the step is done in halves, quarters, ...
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fmus.fmi.values import Transfer
 
 HALVINGS = 6  # of a step that an FMU discards
-CONTINUATIONS = 100  # of a step from where the FMU came to
+CONTINUATIONS = 100  # of one step from where the FMU has stopped
 NEGLIGIBLE = 1e-9  # share of a step that is taken for nothing
 
 
@@ -33,7 +33,7 @@ class CoSimulation(Instance):
     Args:
         calls: the FMU's functions.
         tolerance: relative, told to the FMU; None: its own.
-        rewinds: save the state before every step, to be able to do it again in smaller ones.
+        rewinds: save the state before every step, so that it can be done again in smaller ones.
     """
 
     def __init__(self, calls: Calls, tolerance: float | None, *, rewinds: bool) -> None:
@@ -76,11 +76,11 @@ class CoSimulation(Instance):
                 if before is not None:
                     self.calls.free_state(before)
                 self._before = self.calls.save()
-            except (CallFailedError, FmuPlatformError):  # it can do less than it says
+            except (CallFailedError, FmuPlatformError):  # the FMU can do less than it says
                 self._rewinds = False
 
     def _complete(self, status: int, time: float, size: float) -> int:
-        """Finish a step that the FMU did not simply do."""
+        """Finish a step that the FMU did not complete."""
         status = self._continue(self.look(status), time, time + size, size)
         for halving in range(1, HALVINGS + 1):
             if status != DISCARD or self._before is None:
@@ -108,7 +108,7 @@ class CoSimulation(Instance):
         return status
 
     def _continue(self, status: int, time: float, end: float, size: float) -> int:
-        """Go on from where the FMU came to, after a step that it was asked to do up to ``end``."""
+        """Go on from where the FMU has stopped in a step that was to reach ``end``."""
         for _ in range(CONTINUATIONS):
             if status > DISCARD or not (status == DISCARD or self._stepper.flags[0]):
                 return status

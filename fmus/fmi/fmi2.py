@@ -6,12 +6,10 @@ import ctypes
 from ctypes import Structure, byref, c_char_p, c_double, c_int, c_void_p
 from typing import TYPE_CHECKING, ClassVar
 
-from fmus.description.model import Kind
 from fmus.fmi.calls import (
     Calls,
     CType,
     EventInfo,
-    NoInstanceError,
     Progress,
     Setting,
     Stepper,
@@ -22,11 +20,7 @@ from fmus.fmi.status import DISCARD, WARNING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
-    from fmus.description.model import Interface, Model
-    from fmus.fmi.library import Library
-    from fmus.fmi.messages import MessageLog
 
 _LAST_SUCCESSFUL_TIME = c_int(2)  # fmi2StatusKind
 _TERMINATED = c_int(3)
@@ -64,39 +58,28 @@ class Fmi2Calls(Calls):
         "String": CType(c_char_p, "String"),
     }
 
-    def __init__(
-        self,
-        library: Library,
-        model: Model,
-        interface: Interface,
-        folder: Path,
-        messages: MessageLog,
-    ) -> None:
-        super().__init__(library, model, interface, folder, messages)
-        self._receiver = formatted_receiver(messages)
+    def find_functions(self) -> None:  # noqa: D102 - as in Calls
+        self._receiver = formatted_receiver(self.messages)
         logger = ctypes.cast(self._receiver, c_void_p)
         self._callbacks = _Callbacks(logger, *allocators(), None, None)
-        self._instantiate = library.instantiator("fmi2Instantiate")
+        self._instantiate = self.library.instantiator("fmi2Instantiate")
         for name in ("SetupExperiment", "EnterInitializationMode", "ExitInitializationMode"):
             self.function(f"fmi2{name}")
-        self._free = library.function("fmi2FreeInstance")
+        self._free = self.library.function("fmi2FreeInstance")
         self.function("fmi2Terminate")
 
-    def instantiate(self) -> None:  # noqa: D102 - as in Calls
+    def instantiate(self) -> None:  # noqa: D102
         resources = (self.folder / "resources").resolve()
         component = self._instantiate(
             c_char_p(self.interface.identifier.encode()),
-            c_int(0 if self.interface.kind == Kind.MODEL_EXCHANGE else 1),
+            c_int(0 if self.exchanges else 1),
             c_char_p(self.model.guid.encode()),
             c_char_p(resources.as_uri().encode()),
             byref(self._callbacks),
             c_int(0),  # not visible
             c_int(1),  # with logging, for the reason of a failure: some FMUs give it only then
         )
-        if not component:
-            msg = "fmi2Instantiate"
-            raise NoInstanceError(msg)
-        self.component = c_void_p(component)
+        self.keep_instance(component, "fmi2Instantiate")
 
     def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:  # noqa: D102
         self.call(

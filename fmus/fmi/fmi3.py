@@ -15,17 +15,11 @@ from ctypes import (
 )
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from fmus.description.model import Kind
-from fmus.fmi.calls import Calls, CType, EventInfo, NoInstanceError, Progress, Setting, Stepper
+from fmus.fmi.calls import Calls, CType, EventInfo, Progress, Setting, Stepper
 from fmus.fmi.messages import plain_receiver
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
-    from fmus.description.model import Interface, Model
-    from fmus.fmi.library import Library
-    from fmus.fmi.messages import MessageLog
 
 
 def _types() -> dict[str, CType]:
@@ -51,24 +45,15 @@ class Fmi3Calls(Calls):
         "get_derivatives": "GetContinuousStateDerivatives"
     }
 
-    def __init__(
-        self,
-        library: Library,
-        model: Model,
-        interface: Interface,
-        folder: Path,
-        messages: MessageLog,
-    ) -> None:
-        super().__init__(library, model, interface, folder, messages)
-        self._receiver = plain_receiver(messages)
-        exchange = interface.kind == Kind.MODEL_EXCHANGE
-        self._make = f"fmi3Instantiate{'ModelExchange' if exchange else 'CoSimulation'}"
-        self._instantiate = library.instantiator(self._make)
+    def find_functions(self) -> None:  # noqa: D102 - as in Calls
+        self._receiver = plain_receiver(self.messages)
+        self._make = f"fmi3Instantiate{'ModelExchange' if self.exchanges else 'CoSimulation'}"
+        self._instantiate = self.library.instantiator(self._make)
         for name in ("EnterInitializationMode", "ExitInitializationMode", "Terminate"):
             self.function(f"fmi3{name}")
-        self._free = library.function("fmi3FreeInstance")
+        self._free = self.library.function("fmi3FreeInstance")
 
-    def instantiate(self) -> None:  # noqa: D102 - as in Calls
+    def instantiate(self) -> None:  # noqa: D102
         resources = str((self.folder / "resources").resolve()) + os.sep
         start = (
             c_char_p(self.interface.identifier.encode()),
@@ -78,7 +63,7 @@ class Fmi3Calls(Calls):
             c_bool(True),  # with logging, for the reason of a failure
         )
         environment = (None, ctypes.cast(self._receiver, c_void_p))
-        if self.interface.kind == Kind.MODEL_EXCHANGE:
+        if self.exchanges:
             component = self._instantiate(*start, *environment)
         else:
             event_mode_used = early_return_allowed = c_bool(False)
@@ -86,9 +71,7 @@ class Fmi3Calls(Calls):
             component = self._instantiate(
                 *start, event_mode_used, early_return_allowed, *needed, *environment, None
             )
-        if not component:
-            raise NoInstanceError(self._make)
-        self.component = c_void_p(component)
+        self.keep_instance(component, self._make)
 
     def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102
         structural: list[Setting] = []

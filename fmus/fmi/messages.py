@@ -1,8 +1,8 @@
 """The messages of an FMU: the log that keeps them, and the C functions that receive them.
 
 Those of FMI 1 and 2 are printf formats with arguments, which Python cannot receive as such. They
-are taken from where the platform's calling convention puts them, and memory is read only where it
-is readable: a message like "100% sure" must not bring the process down.
+are taken from the registers and the stack, as the platform's calling convention has it. Memory is
+read only where it is readable: a message like "100% sure" must not crash the process.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ _PAGE = 4096  # bytes
 
 
 class MessageLog:
-    """The last messages of an FMU that tell of anything but success."""
+    """Keeps the last messages of an FMU that report anything but success."""
 
     def __init__(self) -> None:
         self._messages: deque[str] = deque(maxlen=3)
 
     def add(self, status: int, message: bytes | str | None) -> None:
-        """Keep a message, on one line; one that was the last already is not repeated."""
+        """Keep a message on one line, unless it is kept already."""
         if not status or not message:
             return
         text = printable(_decoded(message) if isinstance(message, bytes) else message)
@@ -44,7 +44,7 @@ class MessageLog:
             self._messages.append(text)
 
     def take(self) -> str:
-        """Everything since the last time."""
+        """Return the messages since the last call, and forget them."""
         text = "; ".join(self._messages)
         self._messages.clear()
         return text
@@ -58,11 +58,11 @@ def _decoded(message: bytes) -> str:
         return message.decode("latin-1")
 
 
-# ---- where variadic arguments are ----
+# ---- the places of variadic arguments ----
 
 
 def _convention() -> tuple[int, int, int, int]:
-    """After a receiver's five: integer registers to skip, to use; double registers; stack slots."""
+    """After five fixed arguments: integer registers to skip and to use, double registers, stack."""
     machine = platform.machine().lower()
     if sys.platform == "win32":
         return (0, 0, 0, 16) if machine in {"amd64", "x86_64"} else (0, 0, 0, 0)
@@ -125,14 +125,14 @@ def formatted_receiver(messages: MessageLog) -> Any:
         *slots: Any,
     ) -> None:
         if status:
-            with suppress(Exception):  # nothing may be raised into C
+            with suppress(Exception):  # no exception may reach C
                 messages.add(status, expand(read_text(message), Arguments(slots)))
 
     return _FORMATTED(receive)
 
 
 def plain_receiver(messages: MessageLog) -> Any:
-    """The same for FMI 3, whose messages are ready to be read."""
+    """The logger of FMI 3, whose messages need no formatting."""
 
     def receive(
         _owner: int | None, status: int, _category: int | None, message: int | None
@@ -187,7 +187,7 @@ def _converted(match: re.Match[bytes], arguments: Arguments) -> bytes:
     dot = "." if match["precision"] is not None else ""
     pattern = f"%{part['flags']}{width}{dot}{precision}"
     if kind in "eEfFgGaA":
-        if part["length"] == "L":  # a long double: lies elsewhere on every platform
+        if part["length"] == "L":  # a long double has another place on every platform
             return match.group()
         number = arguments.double()
         return (number.hex() if kind in "aA" else f"{pattern}{kind}" % number).encode()
@@ -224,7 +224,7 @@ def _string(address: int, match: re.Match[bytes], precision: str) -> bytes:
 
 
 def read_text(address: int | None) -> bytes:
-    """The C string there, at most some thousand bytes of it; empty where nothing is readable."""
+    """The start of the C string at an address; empty where the memory is not readable."""
     text = b""
     while address and len(text) < _LONGEST:
         here = address + len(text)
@@ -253,7 +253,7 @@ else:
     _write.restype = ctypes.c_ssize_t
 
     def _read_memory(address: int, size: int) -> bytes:
-        """Through a pipe: the kernel refuses to write what is not readable."""
+        """Read memory through a pipe: the kernel refuses to write what is not readable."""
         source, sink = os.pipe()
         try:
             done = _write(sink, address, size)

@@ -27,7 +27,7 @@ RESOLUTION = 1e-12  # of times, relative to the greater of the time and 1 s
 ROUNDS = 100  # of one event iteration
 EVENTS = 200  # in one step
 INTERNAL_STEPS = 5_000  # in one step
-PATIENCE = 500  # internal steps that CVode may take in one step before another solver is tried
+PATIENCE = 500  # internal steps of CVode in one step, before another solver is tried
 DENSE = 500  # states up to which CVode's dense Jacobian is affordable
 
 
@@ -107,8 +107,8 @@ class ModelExchange(Instance):
 
     @property
     def solver(self) -> Solver:
-        """What integrates now."""
-        assert self._solver is not None  # prepare() made it
+        """The solver in use."""
+        assert self._solver is not None  # prepare() has made it
         return self._solver
 
     # ---- one step ----
@@ -117,8 +117,8 @@ class ModelExchange(Instance):
         """Event mode at the start of a step, before the inputs are set."""
         upcoming = self._next_event
         if upcoming is not None and 0.0 < upcoming - time <= _resolution(time):
-            time = upcoming  # it was left over from the last step
-        self._system.set_time(time)  # FMI 3 does not allow it in event mode
+            time = upcoming  # the event was left over from the last step
+        self._system.set_time(time)  # in event mode FMI 3 does not allow it
         self.calls.enter_event_mode()
 
     def _run(self, time: float, end: float) -> None:
@@ -167,14 +167,14 @@ class ModelExchange(Instance):
             msg = f"its event iteration at {time:.9g} s has not ended after {ROUNDS} rounds"
             raise IntegrationError(msg)
         upcoming = info.next_time
-        # One that is over has been dealt with just now: some FMUs forget to take it back.
+        # A time event that is over has just been handled; some FMUs keep naming it.
         later = upcoming is not None and upcoming > time + _resolution(time)
         self._next_event = upcoming if later else None
 
     def _integrate(self, time: float, stop: float) -> tuple[float, bool]:
-        """Continuous time up to ``stop`` or to an event: where it ended, and whether by an event.
+        """Integrate up to ``stop`` or an event; return where that ended, and whether by an event.
 
-        The FMU is then at that point.
+        The FMU is left at that point.
         """
         system = self._system
         if stop - time <= _resolution(stop):
@@ -203,16 +203,16 @@ class ModelExchange(Instance):
     def _advance(self, time: float, stop: float, count: int) -> float:
         """One internal step from ``time``; ``count`` have been done since the last event."""
         if count == PATIENCE:
-            self._give_way(time)
+            self._fall_back(time)
         try:
             return self.solver.step(stop)
         except IntegrationError:
-            if not self._give_way(time):
+            if not self._fall_back(time):
                 raise
             return self.solver.step(stop)
 
-    def _give_way(self, time: float) -> bool:
-        """Let Runge-Kutta go on where CVode makes no headway, if the choice is ours.
+    def _fall_back(self, time: float) -> bool:
+        """Go on with Runge-Kutta where CVode makes no progress, unless the profile names a solver.
 
         CVode shrinks its steps without end where derivatives jump and no event is declared: dry
         friction written as a sign of the speed holds a car at rest by such jumps.

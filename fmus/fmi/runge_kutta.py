@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
     from fmus.fmi.continuous import ContinuousSystem
 
-FIRST_STEP = 1e-5  # [s] what comes soon after an event must not be leapt over
+FIRST_STEP = 1e-5  # [s] short: another event may follow soon
 SAFETY, LEAST, MOST = 0.9, 0.1, 4.0  # of the next step's length: Hairer, Norsett, Wanner, II.4
 
 
 class RungeKutta:
-    """Steps are done once whole and once in halves; the difference tells the error.
+    """Does each step once whole and once in halves; the difference estimates the error.
 
     Both results combined are of order 5 (Richardson; Hairer, Norsett & Wanner 1993, II.4).
 
@@ -82,7 +82,7 @@ class RungeKutta:
         return self._propose(self._start, self._x_start, time - self._start)[0]
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Nothing to free."""
 
     def _arrive(
         self, start: float, x_start: NDArray[np.float64], end: float, x: NDArray[np.float64]

@@ -49,7 +49,7 @@ class Instance(ABC):
         self.inputs = self.outputs = memoryview(bytearray()).cast("d")
         self.tick: Tick = _not_started
         self._initialised = False
-        self._worst = 0  # status since the instance was made
+        self._worst = 0  # highest status since the instance was made
         self._untouchable = False  # after a fatal error
 
     def start(
@@ -103,14 +103,14 @@ class Instance(ABC):
         self.tick = self.make_tick(into, out)
 
     def prepare(self) -> None:  # noqa: B027
-        """What is left to do between the initialisation and the first step."""
+        """What is to be done between the initialisation and the first step."""
 
     @abstractmethod
     def make_tick(self, into: Transfer, out: Transfer) -> Tick:
-        """What does a step."""
+        """The function that does a step."""
 
     def look(self, status: int) -> int:
-        """A status as FMI knows them, noted for how the instance may be ended."""
+        """The status, or ERROR for one that FMI does not know; the worst one is remembered."""
         if not 0 <= status <= PENDING:
             self.messages.add(ERROR, f"it returned {named(status)}, which FMI does not know")
             status = ERROR
@@ -122,9 +122,9 @@ class Instance(ABC):
     def stop(self) -> None:
         """End and free the instance, if there is one; the library stays loaded."""
         self.tick = _not_started
-        self._untouchable |= self._worst == FATAL  # then nothing may be called any more
+        self._untouchable |= self._worst == FATAL  # after a fatal error no function may be called
         if self.calls.component and self._worst != FATAL:
-            with suppress(Exception):  # nothing is lost if an FMU cannot end in peace
+            with suppress(Exception):  # an FMU that cannot be ended properly does no harm
                 if self._initialised and self._worst < ERROR:
                     self.calls.terminate()
             with suppress(Exception):

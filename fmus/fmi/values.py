@@ -1,4 +1,4 @@
-"""Values on their way into and out of an FMU: start values, and the buffers of every step."""
+"""Start values of an FMU, and the buffers that carry its inputs and outputs in every step."""
 
 from __future__ import annotations
 
@@ -41,11 +41,11 @@ def settings(calls: Calls, values: Mapping[Channel, Value]) -> list[Setting]:
 
 
 def start_list(variable: Variable) -> list[Any]:
-    """The start values that the FMU itself names; 0 or nothing where it names none."""
+    """The start values in the model description; 0 or an empty text where there are none."""
     text = variable.kind == "String"
     words = [variable.start] if text or variable.scalar else variable.start.split()
     words = [word for word in words if word] or [""]
-    if len(words) != variable.size:  # one value stands for all
+    if len(words) != variable.size:  # one value counts for all elements
         words = [words[0]] * variable.size
     return words if text else [_number(word) for word in words]
 
@@ -108,7 +108,7 @@ def _unfit(calls: Calls, variable: Variable, value: Any, expected: str) -> FmuSt
 
 
 def _negated(variable: Variable, value: Any) -> Any:
-    """What stands under a negated alias's reference, or the alias of it: not, or minus."""
+    """The value of a negated alias: not, or minus, the value of the other variable."""
     return 1 - value if variable.is_boolean else -value
 
 

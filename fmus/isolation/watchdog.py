@@ -88,9 +88,7 @@ class _Watchdog:
                 elif source == self._wake:
                     os.read(self._wake, 512)
                     self._reap()
-                elif (
-                    source == self._control.fileno()
-                ):  # not the output pipe, which may just have been closed
+                elif source == self._control.fileno():  # and not the output, closed just now
                     serving = self._answer_request()
             serving = serving and os.getppid() == self._parent
         self._end_worker()

@@ -25,9 +25,7 @@ REQUEST: Final = struct.Struct("<4sIdd")  # what, number, two values
 REPLY: Final = struct.Struct("<4sIIddd")  # what, number of the request, size of the text, values
 TEXT_LIMIT: Final = 1 << 16  # [bytes]
 START_WORKER: Final = b"fork"  # to the watchdog, with the worker's end of the connection
-END_WORKER: Final = (
-    b"end"  # with a patience [ms], then the worker is killed; answered by its report
-)
+END_WORKER: Final = b"end"  # with a patience [ms], before it is killed; answered by its report
 MESSAGE: Final = 4096  # [bytes] from and to the watchdog at most
 CONNECTION_LOST: Final = 113  # exit status of a process whose connection has been closed
 

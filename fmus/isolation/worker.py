@@ -36,11 +36,7 @@ if TYPE_CHECKING:
     from fmus.profile.preparation import Prepared
 
 
-_WARNINGS, _WARNING, _MESSAGE = (
-    20,
-    400,
-    2000,
-)  # their number and lengths keep the JSON below its limit
+_WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: JSON stays below its limit
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""A draft of a vehicle profile: what is sure, what is open, and the file that says both."""
+"""A draft of a vehicle profile: what is certain, what is open, and the file with both."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ class Line:
 
 @dataclass(frozen=True)
 class Entry:
-    """A table of the profile, sure or not.
+    """A table of the profile, certain or open.
 
     Attributes:
         table: such as ``inputs.force``.
-        why: what speaks for it.
+        why: the evidence for it.
         doubt: what has to be decided before it can be used; empty if nothing.
-        sure: the table stands in the draft, even if one of its lines is a question.
+        sure: the table belongs to the draft, even if one of its lines is a question.
     """
 
     table: str
@@ -52,7 +52,7 @@ class Entry:
 
     @property
     def confident(self) -> bool:
-        """It can be used as it stands."""
+        """Whether it can be used as it is."""
         return self.sure and not self.doubt
 
     def __str__(self) -> str:
@@ -78,22 +78,22 @@ class Draft:
 
     @property
     def confident(self) -> bool:
-        """Nothing is open: the draft is a profile."""
+        """Whether nothing is open, so that the draft is a profile."""
         return all(entry.confident for entry in self.entries)
 
     @property
     def doubts(self) -> list[str]:
-        """What is open, one phrase each."""
+        """What is open, one phrase for each table."""
         return [f"[{entry.table}] {entry.doubt}" for entry in self.entries if entry.doubt]
 
     @property
     def open_lines(self) -> bool:
-        """A line is marked as open, be it one that may stay so."""
+        """Whether any line is marked as open, even one that may stay so."""
         return any(not (e.sure and all(line.sure for line in e.lines)) for e in self.entries)
 
     @property
     def values(self) -> dict[str, Any]:
-        """What is sure, as the profile's nested tables."""
+        """What is certain, as the profile's nested tables."""
         values: dict[str, Any] = {}
         for entry in self.entries:
             if entry.sure:
@@ -134,7 +134,7 @@ def toml_value(value: Text) -> str:
 
 
 def _parameters(model: Model, taken: Container[Text]) -> list[str]:
-    """The FMU's parameters with their values, as comments that can be taken in."""
+    """The FMU's parameters with their values, as comments that a user can activate."""
     free = [
         v
         for v in model.variables.values()

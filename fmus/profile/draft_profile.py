@@ -1,7 +1,7 @@
 """A vehicle profile drafted from what an FMU says about itself.
 
-Whatever is sure stands in the draft; the rest is written down as a question, in lines that begin
-with ``# ?``. Without questions the draft is a profile that runs.
+What is certain is written as a setting; what is open is written as a question, in lines that begin
+with ``# ?``. A draft without questions is a profile that runs.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 from fmus.description.model import Kind
 from fmus.errors import FmuProfileError
 from fmus.profile.draft import Draft, Entry, Line, toml_value
-from fmus.profile.matching import ROLES, alone, guesses
+from fmus.profile.matching import ROLES, guesses, unambiguous
 from fmus.profile.pace import divides
 from fmus.profile.questions import (
     axis_question,
@@ -46,7 +46,7 @@ def draft_profile(model: Model) -> Draft:
 
 
 def require_confident(draft: Draft, path: Path) -> VehicleProfile:
-    """The profile that a draft is.
+    """The profile of a draft in which nothing is open.
 
     Raises:
         FmuProfileError: something is open; the message says what, and the lines to write.
@@ -91,7 +91,7 @@ WAYS: Final = (
 
 
 def _inputs(model: Model, inputs: Sequence[Variable]) -> tuple[list[Entry], set[str]]:
-    """The way in which the vehicle is driven, and the variables that takes."""
+    """The tables of the way in which the vehicle is driven, and the variables that they use."""
     ranked = {role: guesses(model, role, inputs) for way in WAYS for role in way}
     ways = sorted(
         (way for way in WAYS if all(ranked[role] for role in way) and _distinct(ranked, way)),
@@ -110,7 +110,7 @@ def _inputs(model: Model, inputs: Sequence[Variable]) -> tuple[list[Entry], set[
 
 
 def _choice(ranked: dict[str, list[Guess]], ways: tuple[tuple[str, ...], ...]) -> str:
-    """The question which of several ways it is."""
+    """The question which of several ways to drive is meant."""
     names = [" and ".join(f"'{ranked[role][0].channel.name}'" for role in way) for way in ways]
     roles = [" and ".join(way) for way in ways]
     if len(set(names)) == 1:
@@ -125,7 +125,7 @@ def _distinct(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> bool:
 
 
 def _merit(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> float:
-    """The weakest guess counts; two good ones are better than one."""
+    """How well a way to drive fits: its weakest guess counts; two good ones beat a single one."""
     weakest = min(ranked[role][0].score for role in way)
     fits = min(-1 if ranked[role][0].fits is False else 0 for role in way)
     both = 1 if len(way) > 1 and way != ("throttle", "brake") else 0
@@ -133,7 +133,7 @@ def _merit(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> float:
 
 
 def _without_inputs(model: Model) -> tuple[list[Entry], set[str]]:
-    """Some tools export what is to change during the run as tunable parameters."""
+    """The way to drive by tunable parameters, which some tools export in place of inputs."""
     tunable = [
         v
         for v in model.variables.values()
@@ -199,7 +199,7 @@ def _outputs(model: Model) -> list[Entry]:
     if position:
         entries.append(_axis("outputs", "position", position))
     acceleration = guesses(model, "measured_acceleration", outputs)
-    if alone(acceleration) and acceleration[0].fits:  # a convenience: not worth a question
+    if unambiguous(acceleration) and acceleration[0].fits:  # optional: not worth a question
         entries.append(_axis("outputs", "acceleration", acceleration))
     return entries
 
@@ -208,7 +208,7 @@ def _outputs(model: Model) -> list[Entry]:
 
 
 def _initial(model: Model) -> list[Entry]:
-    """Where the FMU is told where it starts; without a sure guess it drives up to its speed."""
+    """The variables for the start; without an unambiguous one the vehicle is driven up to speed."""
     free = [
         v
         for v in model.variables.values()
@@ -218,9 +218,9 @@ def _initial(model: Model) -> list[Entry]:
     entries = []
     for quantity, table in (("speed", "initial.speed"), ("position", "initial.position")):
         ranked = [g for g in guesses(model, f"initial_{quantity}", free) if g.fits is not False]
-        if not ranked:  # the output itself, where it has a start value
+        if not ranked:  # the output itself may have a start value
             ranked = [g for g in guesses(model, quantity, states) if g.fits]
-        if not alone(ranked) or ranked[0].name_score < 9:
+        if not unambiguous(ranked) or ranked[0].name_score < 9:
             continue
         entries.append(_axis("initial", quantity, ranked))
         assert entries[-1].table == table
@@ -231,15 +231,15 @@ def _initial(model: Model) -> list[Entry]:
 
 
 def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = False) -> Entry:
-    """The table of a role whose best guess comes first."""
+    """The table of a role, written for its best guess, which comes first."""
     best = ranked[0]
     variable, name = best.channel.variable, channel_name(best.channel)
     place = f"{table}.{role}"
     wanted = ROLES[_role_key(table, role)].dimension
     lines = [Line("variable", name, variable.description)]
     doubt = ""
-    sure = alone(ranked) and not alternative
-    if not alone(ranked):
+    sure = unambiguous(ranked) and not alternative
+    if not unambiguous(ranked):
         ties = [g for g in ranked if g.score == best.score]
         names = listed([f"'{printable(g.channel.name, 40)}'" for g in ties])
         doubt = f"which of {names}? write variable = {toml_value(name)} or another"

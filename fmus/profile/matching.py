@@ -1,7 +1,7 @@
 """Which of an FMU's variables may play which part, judged by name, unit and causality.
 
-A guess that is wrong drives a car by its steering angle: where two variables are as good, or the
-unit does not say what a name promises, the guess is a question.
+A wrong guess could drive a car by its steering angle. So where two variables fit equally well, or a
+unit contradicts a name, the draft asks a question.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Role:
-    """How a part of a vehicle is called.
+    """How the variables of a role are usually named.
 
     Attributes:
         dimension: of its quantity.
-        names: whole names (without separators and fillers), the surest sign.
+        names: whole names (without separators and fillers), the strongest evidence.
         words: parts of a name that point at the role.
-        never: parts of a name that exclude it, besides those of :data:`ELSEWHERE`.
+        never: parts of a name that exclude the role, besides those of :data:`OTHER_PARTS`.
     """
 
     dimension: Dimension
@@ -45,7 +45,7 @@ FILLERS: Final = _set(
     "meas cmd command control ctrl longitudinal long lon lng total net value val signal sig x si "
     "mps ms kmh kph mph n kn m km percent pct the of i o real"
 )
-ELSEWHERE: Final = _set(
+OTHER_PARTS: Final = _set(
     "wind lateral lat y z vertical normal yaw roll pitch steer steering gear clutch slope grade "
     "inclination angle disturbance disturb noise drag aero rolling resistance gravity error err "
     "rel relative lead leader front rear wheel wheels engine motor angular rot rotational omega "
@@ -156,17 +156,17 @@ ROLES: Final = {
         frozenset(),
     ),
 }
-GENERIC: Final = (["u"], ["x"], ["s"], ["a"], ["v"], ["f"])  # without their unit they say nothing
+GENERIC: Final = (["u"], ["x"], ["s"], ["a"], ["v"], ["f"])  # meaningless without their unit
 FORCES: Final = frozenset({"force", "drive_force", "brake_force"})
 
 
 @dataclass(frozen=True)
 class Guess:
-    """A variable for a part.
+    """A variable that may play a role.
 
     Attributes:
         name_score: 10 for a name of the role, 9 with fillers, 6 for a part of it, 0 for the unit.
-        fits: its unit is of the role's dimension; None: it has no unit, or nobody knows it.
+        fits: whether its unit is of the role's dimension; None: it has no unit, or an unknown one.
     """
 
     channel: Channel
@@ -176,14 +176,14 @@ class Guess:
 
     @property
     def score(self) -> float:
-        """The better, the surer."""
+        """Higher is better."""
         return self.name_score + (5.0 if self.fits else 0.0)
 
 
 def guesses(model: Model, role: str, variables: Iterable[Variable]) -> list[Guess]:
-    """What may play a part, the best first.
+    """The variables that may play a role, the best first.
 
-    Variables whose unit contradicts their name come last, and only if nothing else does.
+    Variables whose unit contradicts their name are listed only if no other variable fits.
     """
     found = [
         guess
@@ -196,8 +196,8 @@ def guesses(model: Model, role: str, variables: Iterable[Variable]) -> list[Gues
     return sorted(fitting or contradictory, key=lambda guess: -guess.score)
 
 
-def alone(ranked: list[Guess]) -> bool:
-    """The best is better than every other."""
+def unambiguous(ranked: list[Guess]) -> bool:
+    """Whether the first guess is better than every other."""
     return len(ranked) == 1 or (len(ranked) > 1 and ranked[0].score > ranked[1].score)
 
 
@@ -231,10 +231,10 @@ def _guess(model: Model, role: str, variable: Variable) -> Guess | None:
 
 
 def _name_score(role: Role, name: str) -> float | None:
-    """How well a name fits; None: it speaks against the role."""
+    """How well a name fits a role; None: it excludes the role."""
     *parents, last = _parts(name)
-    if name.startswith("der(") or any(ELSEWHERE & set(_words(parent)) for parent in parents):
-        return None  # a derivative, whose variable has a name, too; or a part of the vehicle
+    if name.startswith("der(") or any(OTHER_PARTS & set(_words(parent)) for parent in parents):
+        return None  # a derivative of another variable, or something of a part of the vehicle
     words = _words(last)
     plain = [word for word in words if word not in FILLERS]
     shallow = 0.0 if parents else 0.5
@@ -242,6 +242,6 @@ def _name_score(role: Role, name: str) -> float | None:
         if "".join(spelled) in role.names:
             return score + shallow
     numbered = [word for word in words if not word.isdecimal()]
-    if numbered != ["y"] and set(words) & (ELSEWHERE | role.never):  # y, y1: any output's name
+    if numbered != ["y"] and set(words) & (OTHER_PARTS | role.never):  # y, y1: any output's name
         return None
     return 6.0 + shallow if set(words) & role.words else 0.0

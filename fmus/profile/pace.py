@@ -55,9 +55,9 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
 
 
 def divides(part: float, whole: float) -> bool:
-    """Whether ``whole`` is a multiple of ``part``, as far as numbers of seconds tell."""
+    """Whether ``whole`` is a multiple of ``part``, up to rounding."""
     if part < 1e-9 * whole:
-        return True  # finer than anything that can be told
+        return True  # finer than floating-point numbers can tell
     return part <= whole * (1 + 1e-9) and abs(round(whole / part) * part - whole) <= 1e-9 * whole
 
 

@@ -1,7 +1,7 @@
-"""Everything that is known of a vehicle before its FMU is unpacked: read, chosen, checked.
+"""Preparing a vehicle: its FMU is read, a profile is chosen, and both are checked.
 
-Whatever is wrong with a file or a profile is said here, before native code is loaded. What is
-prepared can be handed to another process.
+Faults of a file or a profile are reported here, before native code is loaded. The result can be
+handed to another process.
 """
 
 from __future__ import annotations
@@ -11,9 +11,13 @@ from math import inf, isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fmus.archive.gate import extract, open_archive
+from fmus.description.binaries import binary_of
+from fmus.description.reading import read_model
 from fmus.errors import FmuProfileError, FmuVariableError
 from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
 from fmus.profile.commands import Command, make_command
+from fmus.profile.draft_profile import draft_profile, require_confident
 from fmus.profile.pace import Pace, divides, make_pace
 from fmus.profile.wiring import Wiring, wire
 
@@ -89,9 +93,6 @@ def prepare(
         FmuVariableError: a variable is missing, or is not what it is used for.
         FmuProfileError: the profile does not fit, or there is none where one is needed.
     """
-    from fmus.description.binaries import binary_of
-    from fmus.description.reading import read_model
-
     path = Path(path)
     if not (isfinite(step_size) and step_size > 0.0):
         msg = f"{path}: step size {step_size:g} s; expected a number above 0"
@@ -113,14 +114,12 @@ def prepare(
 
 
 def choose_profile(path: Path, profile: VehicleProfile | None) -> VehicleProfile:
-    """The profile to drive an FMU by: the one given, ours, or a draft that leaves no doubt.
+    """The profile to drive an FMU by: the one given, the shipped FMUs' own, or a draft.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.
         FmuProfileError: there is doubt; the message says which lines to add.
     """
-    from fmus.description.reading import read_model
-
     return _chosen(read_model(path), profile)
 
 
@@ -129,8 +128,6 @@ def _chosen(model: Model, profile: VehicleProfile | None) -> VehicleProfile:
         return profile
     if is_bundled(model.path):
         return BUNDLED_PROFILE
-    from fmus.profile.draft_profile import draft_profile, require_confident
-
     return require_confident(draft_profile(model), model.path)
 
 
@@ -140,12 +137,10 @@ def unpack(prepared: Prepared, folder: Path) -> None:
     Raises:
         FmuArchiveError: a member is damaged.
     """
-    from fmus.archive.gate import extract, open_archive
-
     binaries = prepared.binary.rpartition("/")[0]
     wanted = ("modelDescription.xml", f"{binaries}/", "resources/", "extra/")
     extract(open_archive(prepared.path), folder, wanted)
-    (folder / "resources").mkdir(exist_ok=True)  # named to the FMU even where it has none
+    (folder / "resources").mkdir(exist_ok=True)  # its path is given to the FMU even if it is empty
 
 
 def _pace(path: Path, wanted: float | None, interface: Interface, step_size: float) -> Pace:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from fmus.description import units
 from fmus.description.model import Channel
 from fmus.profile.draft import Line
-from fmus.profile.matching import ELSEWHERE, FORCES, ROLES, words_of
+from fmus.profile.matching import FORCES, OTHER_PARTS, ROLES, words_of
 from fmus.text import printable
 
 if TYPE_CHECKING:
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from fmus.profile.matching import Guess
 
 
-POWERED: Final = frozenset(["wheel", "wheels", "engine", "motor", "rear", "front"])  # what drives
+POWERED: Final = frozenset(["wheel", "wheels", "engine", "motor", "rear", "front"])  # they drive
 
 
 def unit_question(variable: Variable, wanted: Dimension, *, pedal: bool) -> tuple[Line, str]:
-    """No unit, or one that nobody knows."""
+    """The question about a variable without a unit, or with an unknown one."""
     common = units.COMMON[wanted]
     name = printable(variable.name, 60)
     told = _unit_in(variable.name, wanted)
@@ -48,10 +48,10 @@ def _unit_in(name: str, wanted: Dimension) -> str:
 
 
 def axis_question(model: Model, inputs: Sequence[Variable]) -> tuple[str, Line, str] | None:
-    """A torque or a command in per cent, the only one there is: a force, but for a gain.
+    """The question about the only torque or command in per cent: with a gain it is a force.
 
     Returns:
-        the name, the line with the gain, the question; None: there is no such input, or two.
+        the name, the line with the gain and the question; None: there is no such input, or two.
     """
     for dimension, what, line in (
         (units.TORQUE, "ratio of the gears / radius of the wheels [m]", "1/m"),
@@ -62,7 +62,7 @@ def axis_question(model: Model, inputs: Sequence[Variable]) -> tuple[str, Line, 
             for v in inputs
             if v.scalar and v.is_real and (unit := model.unit_of(v)) is not None
             if units.to_si(unit).dimension == dimension
-            and not (ELSEWHERE - POWERED) & set(words_of(v.name))
+            and not (OTHER_PARTS - POWERED) & set(words_of(v.name))
         ]
         if len(found) == 1:
             name = printable(found[0].name, 60)
@@ -73,7 +73,7 @@ def axis_question(model: Model, inputs: Sequence[Variable]) -> tuple[str, Line, 
 
 
 def contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, str]:
-    """A name of the role with a unit of something else."""
+    """The question about a variable whose unit contradicts its name."""
     unit, name = printable(variable.unit, 40), printable(variable.name, 60)
     what = f"'{name}' is in {unit}, {units.quantity(guess.found)}"
     wanted = ROLES[role].dimension if role in ROLES else units.NONE
@@ -89,12 +89,12 @@ def contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, st
 
 
 def channel_name(channel: Channel) -> str:
-    """As short as a profile may write it: an array of one needs no number."""
+    """The name as a profile may write it: an array of one element needs no number."""
     return channel.name if channel.variable.size > 1 else channel.variable.name
 
 
 def numbers(variables: Sequence[Variable]) -> list[str]:
-    """The names of all numbers, an array's elements one by one as far as they are few."""
+    """The names of all numeric variables; of an array the first elements one by one."""
     return [
         printable(channel_name(Channel(variable, element)), 40)
         for variable in variables

@@ -102,15 +102,15 @@ class Inputs(Table):
 
 
 class Outputs(Table):
-    """What the FMU tells; without a position the speed is integrated (trapezoid)."""
+    """The outputs that are read; without a position the speed is integrated (trapezoid rule)."""
 
     speed: Axis  # [m/s]
-    position: Axis | None = None  # [m] along the way
+    position: Axis | None = None  # [m] along the path
     acceleration: Axis | None = None  # [m/s2]; None: the speed's difference over a step
 
 
 class Initial(Table):
-    """How the FMU is told where it starts."""
+    """The variables that set where and how fast the FMU starts."""
 
     speed: Axis | None = None  # [m/s] parameter or input with a start value
     position: Axis | None = None  # [m]; None: the position counts from where the FMU starts
@@ -130,7 +130,7 @@ class Fmu(Table):
 
 
 class Limits(Table):
-    """What no car does: beyond it the FMU is at fault and the run ends."""
+    """Limits that no car exceeds: beyond them the FMU is at fault and the run ends."""
 
     speed: float = Field(100.0, gt=0, le=1e9)  # [m/s] absolute
     position_jump: float = Field(1.0, gt=0, le=1e9)  # [m] more or less than the speed accounts for

@@ -1,4 +1,4 @@
-"""Whether a profile fits an FMU: roles become channels, with the conversion of each to SI units."""
+"""Fitting a profile to an FMU: each role gets a channel and its conversion to SI units."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _LARGEST = 1e12  # SI per raw unit, or its inverse, or an offset: beyond it a nu
 
 @dataclass(frozen=True)
 class Wire:
-    """A role of the vehicle, the FMU's variable that plays it: SI = scale * raw + shift."""
+    """A role of the vehicle and the FMU's variable that plays it: SI = scale * raw + shift."""
 
     role: str
     channel: Channel
@@ -65,13 +65,13 @@ class Wiring:
 
     interface: Interface
     inputs: tuple[Wire, ...]
-    outputs: tuple[Wire, ...]  # speed, position, acceleration: as far as there are
+    outputs: tuple[Wire, ...]  # speed, position, acceleration, as far as the profile names them
     initial_speed: Wire | None
     initial_position: Wire | None
     start_values: Mapping[Channel, Value]
 
     def output(self, role: str) -> int | None:
-        """The index among the outputs; None: the FMU does not give it."""
+        """The index of a role among the outputs; None: the profile does not name it."""
         return next((i for i, wire in enumerate(self.outputs) if wire.role == role), None)
 
 
@@ -170,7 +170,7 @@ def _is_output(variable: Variable) -> bool:
 
 
 def _converted(model: Model, table: str, role: str, axis: Axis, channel: Channel) -> Wire:
-    """With the unit's factor and offset, and the user's gain and offset."""
+    """The wire with the unit's factor and offset, and the profile's gain and offset."""
     declared = channel.variable.unit
     name = declared if axis.unit is None else axis.unit
     dimension, usual = _QUANTITIES[role]

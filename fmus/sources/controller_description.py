@@ -1,4 +1,4 @@
-"""What the controller FMU says of itself: modelDescription.xml, in both versions of FMI."""
+"""The model description of the controller FMU, for both versions of FMI."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _OBSTACLE: Final = 100  # ... and OBSTACLE of instance.h
 
 @dataclass(frozen=True, slots=True)
 class _Variable:
-    """A variable; ``start`` None: it is calculated."""
+    """A variable; it is calculated if ``start`` is None."""
 
     name: str
     reference: int

@@ -1,4 +1,4 @@
-"""The controller as an FMU for other masters: the shipped one, with start values written in."""
+"""Exporting the controller as an FMU: the shipped FMU with other start values."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def export_controller(
 def _with_parameters(
     shipped: bytes, parameters: ControllerParameters | None, version: FmiVersion
 ) -> bytes:
-    """The shipped FMU's description, with other start values; build, tool and sources stay."""
+    """The shipped FMU's description with other start values, but its build, tool and sources."""
     root = ElementTree.fromstring(shipped)
     token = root.get("guid" if version == "2.0" else "instantiationToken") or ""
     wanted = parameters or ControllerParameters()

@@ -1,4 +1,4 @@
-"""What an exported controller is set to, and how its binary gets to know."""
+"""The start values of an exported controller, and how its binary learns them."""
 
 from __future__ import annotations
 

@@ -6,47 +6,14 @@ for this platform.
 
 from __future__ import annotations
 
-import importlib.util
-import zipfile
-
-import fmpy
 import pytest
 
 import fmus
-from fmus import VehicleFmu, bundled_fmu
+from fmus import VehicleFmu
 
 H = 0.05  # [s]
 
-needs_compiler = pytest.mark.skipif(
-    importlib.util.find_spec("ziglang") is None,
-    reason="ziglang is not installed: pip install giveway[build]",
-)
 
-
-@pytest.fixture
-def rebuilt(fmi_version, remake, tmp_path):
-    """The shipped FMU with a piece of its C source replaced."""
-    from fmus.sources.compiler import TARGETS, compile_library
-
-    def make(file, old, new):
-        folder = tmp_path / "source"
-        folder.mkdir()
-        with zipfile.ZipFile(bundled_fmu(fmi_version)) as archive:
-            for name in archive.namelist():
-                if name.startswith("sources/"):
-                    (folder / name.removeprefix("sources/")).write_bytes(archive.read(name))
-        source = (folder / file).read_text()
-        assert source.count(old) == 1
-        (folder / file).write_text(source.replace(old, new))
-        target = next(t for t in TARGETS if t.folder == fmpy.platform_tuple)
-        files = ("plant.c", "instance.c", "fmi2.c" if fmi_version == "2.0" else "fmi3.c")
-        library = compile_library(folder, files, target, "LongitudinalVehicle")
-        return remake(replace=lambda name: library if name.startswith("binaries/") else None)
-
-    return make
-
-
-@needs_compiler
 @pytest.mark.parametrize("fmi_version", ["3.0"], indirect=True)
 def test_an_early_return_that_reached_the_end_is_a_step(rebuilt):
     path = rebuilt("fmi3.c", "*earlyReturn = fmi3False;", "*earlyReturn = fmi3True;")
@@ -56,7 +23,6 @@ def test_an_early_return_that_reached_the_end_is_a_step(rebuilt):
         assert vehicle.position == H
 
 
-@needs_compiler
 @pytest.mark.parametrize("fmi_version", ["3.0"], indirect=True)
 def test_an_fmu_that_ends_the_simulation(rebuilt):
     path = rebuilt(
@@ -68,7 +34,6 @@ def test_an_fmu_that_ends_the_simulation(rebuilt):
             vehicle.step(0.0)
 
 
-@needs_compiler
 def test_outputs_that_cannot_be_read(rebuilt):
     line = "case SPEED: *value = current_state(self).speed; return STATUS_OK;"
     fault = 'case SPEED: return instance_error(self, "no %s today", "speed");'
@@ -77,7 +42,6 @@ def test_outputs_that_cannot_be_read(rebuilt):
         vehicle.start(speed=1.0)
 
 
-@needs_compiler
 def test_an_fmu_that_fails_to_save_its_state_after_all(rebuilt):
     line = "    **saved = self->now;\n"
     path = rebuilt("instance.c", line, f'{line}    return instance_error(self, "none today");\n')
