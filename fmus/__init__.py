@@ -1,4 +1,4 @@
-"""FMUs: the shipped vehicle, what runs anybody's, and the controller as one."""
+"""Vehicle FMUs, shipped and foreign, whatever runs them, and the controller as an FMU."""
 
 from fmus.description.model import FmuDescription
 from fmus.description.reading import describe

@@ -22,7 +22,7 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
-from fmus.archive.markup import guard
+from fmus.archive.markup import check_xml
 from fmus.errors import FmuArchiveError, FmuFileError
 from fmus.text import printable
 
@@ -81,7 +81,7 @@ def _open(path: Path, _state: tuple[int, int, int]) -> Archive:
             msg = f"{path}: {DESCRIPTION} of {_megabytes(info.file_size)}"
             raise _beyond(msg, _megabytes(MAX_DESCRIPTION))
         description = b"".join(_chunks(archive, info))  # read() would inflate beyond that size
-        guard(description, f"{path}: {DESCRIPTION}", ROOT)
+        check_xml(description, f"{path}: {DESCRIPTION}", ROOT)
         if sum(member.file_size for member in members.values()) <= CHECKED_AT_ONCE:
             for member in members.values():
                 deque(_chunks(archive, member), maxlen=0)  # at its end the check sum is compared

@@ -51,7 +51,7 @@ class Element:
         return next(self.every(*tags), None)
 
 
-def guard(data: bytes, where: str, root: str) -> None:
+def check_xml(data: bytes, where: str, root: str) -> None:
     """Refuse an XML file that cannot be a model description; nothing of it is kept.
 
     Args:
@@ -63,7 +63,7 @@ def guard(data: bytes, where: str, root: str) -> None:
         FmuArchiveError: it has a document type or is too large.
         FmuFileError: it is not well-formed or has another first element.
     """
-    _Walk(where, root, None, lambda _tag: None).go(data)
+    _LimitedParser(where, root, None, lambda _tag: None).go(data)
 
 
 def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
@@ -93,11 +93,11 @@ def parse(data: bytes, where: str, root: str, kept: frozenset[str]) -> Element:
         else:
             open_elements.pop()
 
-    _Walk(where, root, start, end).go(data)
+    _LimitedParser(where, root, start, end).go(data)
     return top.children[0]
 
 
-class _Walk:
+class _LimitedParser:
     """One pass over a document that enforces the limits.
 
     Args:

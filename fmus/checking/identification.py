@@ -46,7 +46,7 @@ class Identification:
         model: for the profile.
         intervals: half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
         drive_limit: largest drive force that the vehicle carries out [N]; None: not reached.
-        brake_limit: of the brakes [N], likewise.
+        brake_limit: largest brake force that arrives [N]; None: not reached.
         largest_force: of the tests [N].
         fit: M and alpha with lag and dead time.
         tests: the drives that were fitted.

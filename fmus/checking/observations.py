@@ -10,7 +10,7 @@ from fmus.checking.consistency import SPEED_UNITS, unit_of
 from fmus.checking.findings import Finding
 from fmus.checking.fitting import fit, prepare
 from fmus.checking.prediction import position_errors
-from fmus.checking.saturation import Resisted, saturation
+from fmus.checking.saturation import ResistanceModel, saturation
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -208,7 +208,7 @@ def actuator_limits(
     name, largest = "force limits", expected.largest_force
     if model is None:
         return Finding(name, "skip", "not to be said without a model")
-    resisted = Resisted.of(model, [prepare(response), prepare(rolling)])
+    resisted = ResistanceModel.of(model, [prepare(response), prepare(rolling)])
     drive = saturation([full], 1.0, resisted, [response])
     brake = saturation([rolling], -1.0, resisted)
     lowest, hardest = min(drive, brake), largest / resisted.mass

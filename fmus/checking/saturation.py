@@ -26,7 +26,7 @@ SHORTEST = 0.3  # [s] of a phase from which a force is read
 
 
 @dataclass(frozen=True)
-class Resisted:
+class ResistanceModel:
     """M v' + alpha v + c_0 + c_2 v |v| = F of a vehicle that rolls forwards.
 
     With M and alpha alone, a truck's rolling resistance would look like a saturated drive.
@@ -75,7 +75,7 @@ def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
         model = fit(known)
         for side, sign in ((0, 1.0), (1, -1.0)):
             if model is not None and not np.isfinite(limits[side]):
-                resisted = Resisted.of(model, known)
+                resisted = ResistanceModel.of(model, known)
                 limits[side] = min(
                     _limit(trace, sign, resisted, before, strongest)
                     for trace, before, strongest in zip(
@@ -85,7 +85,9 @@ def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
     return limits[0], limits[1]
 
 
-def _limit(trace: Trace, sign: float, model: Resisted, weaker: Trace, strongest: Trace) -> float:
+def _limit(
+    trace: Trace, sign: float, model: ResistanceModel, weaker: Trace, strongest: Trace
+) -> float:
     """The limit [N] that a test shows, unless far more arrives in the strongest test."""
     limit = saturation([trace], sign, model, [weaker])
     most = max((arrives for _, arrives in arriving(strongest, sign, model)), default=0.0)
@@ -93,7 +95,7 @@ def _limit(trace: Trace, sign: float, model: Resisted, weaker: Trace, strongest:
 
 
 def saturation(
-    traces: Sequence[Trace], sign: float, model: Resisted, weaker: Sequence[Trace] = ()
+    traces: Sequence[Trace], sign: float, model: ResistanceModel, weaker: Sequence[Trace] = ()
 ) -> float:
     """The smallest force [N] of one sign that falls short of the model, or infinity.
 
@@ -121,7 +123,7 @@ def _grows(should: float, arrives: float, before: Sequence[tuple[float, float]])
     return arrives / before[-1][1] >= SATURATED * should / before[-1][0]
 
 
-def arriving(trace: Trace, sign: float, model: Resisted) -> list[tuple[float, float]]:
+def arriving(trace: Trace, sign: float, model: ResistanceModel) -> list[tuple[float, float]]:
     """Force that should act and that does [N], of the later half of each phase of one sign."""
     h = trace.step_size
     edges = np.flatnonzero(np.diff(trace.force)) + 1

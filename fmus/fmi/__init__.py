@@ -1,7 +1,7 @@
-"""Reading, loading and calling FMUs: the only package that talks to FMPy.
+"""Loading and calling FMUs: the only package that talks to FMPy.
 
-Instances call the FMU's C functions themselves, without FMPy's wrappers: a step takes as
-long as it takes in C, and a missing function is an error only where it is needed.
+Instances call the FMU's C functions themselves, without FMPy's wrappers: a step takes as long as it
+takes in C, and a missing function is an error only where it is needed.
 """
 
 from __future__ import annotations

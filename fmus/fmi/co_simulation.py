@@ -49,12 +49,12 @@ class CoSimulation(Instance):
         start, step = self._start, self._step
         self._stepper = stepper = self.calls.stepper(start, step)
         do_step, arguments, flags = stepper.do_step, stepper.arguments, stepper.flags
-        look, complete = self.look, self._complete
+        note_status, complete = self.note_status, self._complete
         save = self._save if self._rewinds else None
 
         def tick(time: float, size: float) -> int:
             status = set_inputs(*set_arguments)
-            if status and (status := look(status)) > WARNING:
+            if status and (status := note_status(status)) > WARNING:
                 return status
             if save:
                 save()
@@ -64,7 +64,7 @@ class CoSimulation(Instance):
             if (status or flags[0]) and (status := complete(status, time, size)) > WARNING:
                 return status
             status = get_outputs(*get_arguments)
-            return look(status) if status else 0
+            return note_status(status) if status else 0
 
         return tick
 
@@ -81,14 +81,14 @@ class CoSimulation(Instance):
 
     def _complete(self, status: int, time: float, size: float) -> int:
         """Finish a step that the FMU did not complete."""
-        status = self._continue(self.look(status), time, time + size, size)
+        status = self._continue(self.note_status(status), time, time + size, size)
         for halving in range(1, HALVINGS + 1):
             if status != DISCARD or self._before is None:
                 break
             try:
                 self.calls.restore(self._before)
             except CallFailedError as error:
-                return self.look(error.status)
+                return self.note_status(error.status)
             parts = 1 << halving
             for part in range(parts):
                 begin, end = time + size * part / parts, time + size * (part + 1) / parts
@@ -128,7 +128,7 @@ class CoSimulation(Instance):
     def _do(self, begin: float, end: float) -> int:
         self._start.value = begin
         self._step.value = end - begin
-        return self.look(self._stepper.do_step(*self._stepper.arguments))
+        return self.note_status(self._stepper.do_step(*self._stepper.arguments))
 
     def stop(self) -> None:  # noqa: D102
         before, self._before = self._before, None

@@ -88,7 +88,7 @@ class ModelExchange(Instance):
         def tick(time: float, size: float) -> int:
             try:
                 self._begin(time)
-                status = self.look(set_inputs(*set_arguments))
+                status = self.note_status(set_inputs(*set_arguments))
                 if status > WARNING:
                     return status
                 self._run(time, time + size)
@@ -97,11 +97,11 @@ class ModelExchange(Instance):
             except CallFailedError as error:
                 if error.status <= PENDING:
                     self.messages.add(ERROR, str(error))
-                return self.look(error.status)
+                return self.note_status(error.status)
             except (IntegrationError, UndefinedError) as error:
                 self.messages.add(ERROR, str(error))
-                return self.look(ERROR)
-            return self.look(get_outputs(*get_arguments))
+                return self.note_status(ERROR)
+            return self.note_status(get_outputs(*get_arguments))
 
         return tick
 

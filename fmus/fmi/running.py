@@ -96,7 +96,7 @@ class Instance(ABC):
             given = values.get(channel)
             if isinstance(given, int | float):
                 self.inputs[index] = given
-        status = self.look(out.function(*out.arguments))
+        status = self.note_status(out.function(*out.arguments))
         if status > WARNING:
             msg = "the reading of its outputs"
             raise CallFailedError(msg, status)
@@ -109,7 +109,7 @@ class Instance(ABC):
     def make_tick(self, into: Transfer, out: Transfer) -> Tick:
         """The function that does a step."""
 
-    def look(self, status: int) -> int:
+    def note_status(self, status: int) -> int:
         """The status, or ERROR for one that FMI does not know; the worst one is remembered."""
         if not 0 <= status <= PENDING:
             self.messages.add(ERROR, f"it returned {named(status)}, which FMI does not know")

@@ -155,25 +155,20 @@ class Transfer:
             )
             for ctype in dict.fromkeys(types)
         ]
-        self.function = self._set if verb == "Set" else self._get
+        self._setting = verb == "Set"
+        self.function = self._copy
 
-    def _set(self) -> int:
+    def _copy(self) -> int:
+        """Set or get all groups; returns the worst status."""
         worst = 0
         for group in self._groups:
-            group.fill(self.view)
+            if self._setting:
+                group.fill(self.view)
             status = group.function(*group.arguments)
             if status not in (0, 1):
                 return status
-            worst = max(worst, status)
-        return worst
-
-    def _get(self) -> int:
-        worst = 0
-        for group in self._groups:
-            status = group.function(*group.arguments)
-            if status not in (0, 1):
-                return status
-            group.empty(self.view)
+            if not self._setting:
+                group.empty(self.view)
             worst = max(worst, status)
         return worst
 

@@ -1,1 +1,1 @@
-"""What other floors may expect of a vehicle and of an FMU's instance."""
+"""What the floors above may expect of a vehicle, wherever its FMU runs."""

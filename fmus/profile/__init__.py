@@ -1,1 +1,1 @@
-"""Which variables play the vehicle's parts, and the preparation before anything native runs."""
+"""Which variables play the vehicle's roles, and all preparation before native code runs."""

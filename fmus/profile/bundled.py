@@ -21,7 +21,7 @@ BUNDLED_PROFILE: Final = VehicleProfile(
         acceleration=Axis(variable="acceleration"),
     ),
     initial=Initial(position=Axis(variable="s0"), speed=Axis(variable="v0")),
-    limits=Limits(speed=1e9, position_jump=1e9),  # whatever it is asked for, it computes
+    limits=Limits(speed=1e9, position_jump=1e9),  # it computes whatever is asked for
 )
 
 

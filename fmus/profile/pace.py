@@ -77,7 +77,7 @@ def between(
 
     Args:
         start: position and speed.
-        end: likewise.
+        end: position and speed.
         duration: of the step [s].
         share: of the step that has passed, 0 to 1.
     """

@@ -159,7 +159,7 @@ class FittedModel(Table):
 
 
 class VehicleProfile(Table):
-    """Everything that giveway needs to drive somebody's FMU."""
+    """Everything that giveway needs to drive a foreign FMU."""
 
     fmu: Fmu = Fmu()
     inputs: Inputs

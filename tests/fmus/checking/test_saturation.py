@@ -10,7 +10,7 @@ import pytest
 from fmus.checking import check, opener_of
 from fmus.checking.fitting import fit, prepare
 from fmus.checking.identification import identify
-from fmus.checking.saturation import Resisted
+from fmus.checking.saturation import ResistanceModel
 from fmus.profile.vehicle_profile import make_profile
 
 TRUCK = {"mass": 18_000.0, "friction": 50.0, "constant": 900.0, "lag": 0.8}
@@ -47,7 +47,7 @@ def test_all_four_resistances_come_back(car):
     opener = car(mass=1500.0, friction=40.0, constant=200.0, drag=0.8)
     drives = [prepare(trace) for trace in identified(opener, 6_000.0).tests]
     model = fit(drives)
-    found = Resisted.of(model, drives)
+    found = ResistanceModel.of(model, drives)
     assert found.mass == pytest.approx(1500.0, rel=0.01)
     assert found.constant == pytest.approx(200.0, rel=0.1)
     assert found.quadratic == pytest.approx(0.8, rel=0.1)
