@@ -51,3 +51,23 @@ def test_an_fmu_that_fails_to_save_its_state_after_all(rebuilt):
         for k in range(1, 4):
             vehicle.step(0.0)
             assert vehicle.position == k * H
+
+
+@pytest.mark.parametrize(
+    ("only", "said"),
+    [
+        (0.1, "add step = 0.1 to [fmu]"),
+        (0.02, "add step = 0.02 to [fmu] and run with --time-step 0.02"),
+    ],
+)
+def test_a_refused_step_names_the_one_of_the_default_experiment(zoo, only, said):
+    car = zoo.car(
+        only_step=only, step=only, flags={"canHandleVariableCommunicationStepSize": "false"}
+    )
+    values = zoo.profile(car)
+    values.get("fmu", {}).pop("step", None)
+    with VehicleFmu(car, step_size=0.05, profile=fmus.make_profile(values, "test")) as vehicle:
+        vehicle.start()
+        with pytest.raises(fmus.FmuStepError) as caught:
+            vehicle.step(100.0)
+    assert str(caught.value).endswith(said)

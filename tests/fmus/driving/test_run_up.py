@@ -6,7 +6,14 @@ import re
 
 import pytest
 
-from fmus import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
+from fmus import (
+    FmuOutputError,
+    FmuStartError,
+    FmuStateError,
+    FmuStepError,
+    VehicleFmu,
+    make_profile,
+)
 
 H = 0.05  # [s]
 KMH = ("km/h", 1 / 3.6, 0.0)
@@ -222,3 +229,28 @@ def test_a_failure_on_the_way_says_that_it_was_before_the_start(zoo, open_car, b
     with pytest.raises(FmuStateError):
         car.step(0.0)
     car.start()
+
+
+def test_a_car_that_no_force_moves_names_the_inputs_that_nobody_sets(zoo):
+    car = zoo.car(initial=(), values={"engaged": 0.0}, extra=("spare_input",))
+    values = zoo.profile(car)
+    values.pop("initial", None)
+    values["parameters"] = {"engaged": False}
+    with (
+        VehicleFmu(car, step_size=0.05, profile=make_profile(values, "test")) as vehicle,
+        pytest.raises(FmuStartError, match=r"no force moves it .* spare_input = "),
+    ):
+        vehicle.start(speed=4.0)
+
+
+def test_a_car_with_the_sign_of_its_force_turned_is_told_the_line(zoo):
+    car = zoo.car(initial=(), spoken={"force": (-1.0, 0.0)})
+    values = zoo.profile(car)
+    values.pop("initial", None)
+    with (
+        VehicleFmu(car, step_size=0.05, profile=make_profile(values, "test")) as vehicle,
+        pytest.raises(
+            FmuStartError, match=r"drive it backwards .* gain = -1.0 in \[inputs.force\]"
+        ),
+    ):
+        vehicle.start(speed=4.0)

@@ -1,4 +1,4 @@
-"""Drafts and messages for what common tools export: pedals, torques, tunables, fixed steps."""
+"""The questions of drafts for what common tools export: pedals, torques, tunable parameters."""
 
 from __future__ import annotations
 
@@ -6,11 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from fmus import VehicleFmu
 from fmus.description.model import Interface, Kind, Model, Variable
-from fmus.errors import FmuStartError, FmuStepError
 from fmus.profile.draft_profile import draft_profile
-from fmus.profile.vehicle_profile import make_profile
 
 
 def drafted(inputs=(), parameters=()):
@@ -97,48 +94,3 @@ def test_a_draft_says_how_its_marked_lines_are_meant():
     closed = drafted(["force [N]"])
     assert not closed.open_lines
     assert "# ?" not in closed.toml
-
-
-@pytest.mark.parametrize(
-    ("only", "said"),
-    [
-        (0.1, "add step = 0.1 to [fmu]"),
-        (0.02, "add step = 0.02 to [fmu] and run with --time-step 0.02"),
-    ],
-)
-def test_a_refused_step_names_the_one_of_the_default_experiment(zoo, only, said):
-    car = zoo.car(
-        only_step=only, step=only, flags={"canHandleVariableCommunicationStepSize": "false"}
-    )
-    values = zoo.profile(car)
-    values.get("fmu", {}).pop("step", None)
-    with VehicleFmu(car, step_size=0.05, profile=make_profile(values, "test")) as vehicle:
-        vehicle.start()
-        with pytest.raises(FmuStepError) as caught:
-            vehicle.step(100.0)
-    assert str(caught.value).endswith(said)
-
-
-def test_a_car_that_no_force_moves_names_the_inputs_that_nobody_sets(zoo):
-    car = zoo.car(initial=(), values={"engaged": 0.0}, extra=("spare_input",))
-    values = zoo.profile(car)
-    values.pop("initial", None)
-    values["parameters"] = {"engaged": False}
-    with (
-        VehicleFmu(car, step_size=0.05, profile=make_profile(values, "test")) as vehicle,
-        pytest.raises(FmuStartError, match=r"no force moves it .* spare_input = "),
-    ):
-        vehicle.start(speed=4.0)
-
-
-def test_a_car_with_the_sign_of_its_force_turned_is_told_the_line(zoo):
-    car = zoo.car(initial=(), spoken={"force": (-1.0, 0.0)})
-    values = zoo.profile(car)
-    values.pop("initial", None)
-    with (
-        VehicleFmu(car, step_size=0.05, profile=make_profile(values, "test")) as vehicle,
-        pytest.raises(
-            FmuStartError, match=r"drive it backwards .* gain = -1.0 in \[inputs.force\]"
-        ),
-    ):
-        vehicle.start(speed=4.0)
