@@ -134,7 +134,7 @@ def test_the_initial_speed(name):
 
 
 def test_an_output_with_a_start_value_is_its_own_initial_value():
-    speed = variable("speed [m/s]", "output", initial="exact", start="0", settable=True)
+    speed = variable("speed [m/s]", "output", start="0", settable=True)
     assert drafted(["force [N]"], [speed]).values["initial"] == {"speed": {"variable": "speed"}}
 
 
