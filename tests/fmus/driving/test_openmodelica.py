@@ -73,8 +73,8 @@ def test_its_model_exchange_is_integrated_rightly(mass_damper):
     ends = []
     for force in (0.0, 100.0):
         made = profile(kind="model-exchange", tolerance=1e-8)
-        with open_vehicle(mass_damper, step_size=0.005, profile=made) as vehicle:
-            ends.append(drive(vehicle, force, steps=1000)[-1])
+        with open_vehicle(mass_damper, step_size=0.02, profile=made) as vehicle:
+            ends.append(drive(vehicle, force, steps=250)[-1])
     (free, at_rest), (pushed, also_at_rest) = ends
     assert at_rest == pytest.approx(0.0, abs=1e-6)
     assert also_at_rest == pytest.approx(0.0, abs=1e-6)
