@@ -181,9 +181,9 @@ class Loop:
             if ego.lights.systems:
                 states = parts.sumo.light_states(ego.lights.systems)
                 ego.lights.update(states, ego.front, ego.vehicle.speed)
-        cars, yielding = self._mirror.background, parts.yielding
-        if yielding is not None and (cars.ids or yielding.limited):
-            yielding.update(cars, self._roster.crowd)
+        background, yielding = self._mirror.background, parts.yielding
+        if yielding is not None and (background.ids or yielding.limited):
+            yielding.update(background, self._roster.crowd)
         self._record_background()
         self._recorder.ledger(self._roster.ledger)
 
