@@ -147,8 +147,8 @@ def path_from(
     path: Array,
     stations: Array,
 ) -> int:
-    """Fill ``path`` and ``stations`` from a front bumper on until ``sight``; the number of points."""
-    points, along, start, first, nominal = ways
+    """Fill ``path`` and ``stations`` from a front bumper on until ``sight``; how many points."""
+    points, along, start, first, nominal = pool
     begin = start[lane_path]
     share = position / nominal[lane_path]
     driven = share * along[begin + first[lane_path] - 1]
