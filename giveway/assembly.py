@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.departures import BODY, Departures
-from giveway.drivers import make_driver, make_regulator
+from giveway.drivers import make_controller, make_driver
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.exchange import Exchange
 from giveway.population import Population
@@ -120,7 +120,7 @@ def assemble(
     _require_distinct(egos)
     time_step = control_step(config, files)
     require_vehicles(egos, time_step)
-    regulators = [make_regulator(ego, time_step) for ego in egos]
+    controllers = [make_controller(ego, time_step) for ego in egos]
     walkers = not zone.nowhere and not (zone.follows_egos and not egos)
     moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
     sumo = stack.enter_context(
@@ -135,8 +135,8 @@ def assemble(
         zone.require_overlap(network.boundary)
         remarks += _remarks_on(network, files.net_file)
     drivers = tuple(
-        make_driver(ego, regulator, time_step, stack)
-        for ego, regulator in zip(egos, regulators, strict=True)
+        make_driver(ego, controller, time_step, stack)
+        for ego, controller in zip(egos, controllers, strict=True)
     )
     departures = Departures(drivers, sumo, scenario.config_file, time_step)
     departures.run_until_first(goes_on)

@@ -1,21 +1,23 @@
-"""What a manoeuvre would lead to: the crowd predicted under it, seen from the ego on its way."""
+"""What a manoeuvre would lead to: the crowd predicted under it, seen from the ego on its path."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from controller.planning import Prospect
-from giveway.courses import Alarm, courses
+from controller import Prospect
+from giveway.corridor import fill_poses
+from giveway.courses import Alarm, conflicts_and_calm
 from giveway.ego_path import body_pose
 from giveway.in_front import closest_in_front, window
 from giveway.jit import kernel
+from giveway.metrics.critical import CRITICAL_TTC
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from controller.planning import Manoeuvre
+    from controller import Manoeuvre
     from giveway.ego_path import EgoPath
     from giveway.tracks import VehicleShape
     from pedestrian_model import Crowd, Predictor, Surroundings
@@ -26,20 +28,31 @@ PASSED = 0.3  # [m] behind the front bumper people still count as in front: they
 _EVERY = 2  # steps from one look for conflicts to the next
 
 
+class View(NamedTuple):
+    """The ego's body and how it looks ahead, as the kernel takes it."""
+
+    length: float  # of the body [m]
+    width: float  # [m]
+    half_width: float  # of the corridor [m]
+    growth: float  # of it with the look-ahead, on each side [m/s]
+    conflict_time: float  # time to collision of a conflict [s]
+    time_step: float  # [s]
+
+
 class CrowdForesight:
     """Predicts the crowd under one manoeuvre after the other.
 
     Args:
         predictor: of N steps.
-        path: the ego's way.
+        path: the ego's.
         shape: its body.
         half_width: of the corridor [m].
         growth: of it with the look-ahead, on each side [m/s].
-        conflict_time: time to collision of a conflict [s].
         planned_speed: people are predicted under the manoeuvre, else under the present speed.
         clearance: [m] that the safety layer keeps to people's bodies.
         braking: [m/s^2] of the ego at most.
         safety_layer: whether there is one: only then it matters what it would do.
+        conflict_time: time to collision of a conflict [s] (FHWA-HRT-08-051).
     """
 
     def __init__(
@@ -50,23 +63,28 @@ class CrowdForesight:
         *,
         half_width: float,
         growth: float,
-        conflict_time: float,
         planned_speed: bool,
         clearance: float,
         braking: float,
         safety_layer: bool,
+        conflict_time: float = CRITICAL_TTC,
     ) -> None:
         N = predictor.horizon
         self._predictor = predictor
         self._path = path
-        self._shape = shape
-        self._half_width = half_width
-        self._growth = growth
-        self._conflict_time = conflict_time
         self._planned_speed = planned_speed
-        self._clearance = clearance
-        self._braking = braking
-        self._layer = safety_layer
+        self._view = View(
+            shape.length, shape.width, half_width, growth, conflict_time, predictor.time_step
+        )
+        people = predictor.parameters
+        self._alarm = Alarm(
+            people.body_radius,
+            clearance,
+            people.max_acceleration,
+            people.max_speed,
+            braking,
+            safety_layer,
+        )
         self._constant = np.arange(N + 1) * predictor.time_step
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
         self._prospect = Prospect(np.empty(N), np.zeros(N), np.zeros(N))
@@ -111,7 +129,7 @@ class CrowdForesight:
             self._speed[:] = self._now
             self._predict(self._distance, self._speed)
         gap, conflicts, calm = self._prospect
-        path, people = self._path, self._predictor.parameters
+        path = self._path
         assess(
             path.vertices,
             path.stations,
@@ -120,19 +138,8 @@ class CrowdForesight:
             self._front,
             manoeuvre.distance,
             manoeuvre.speed,
-            self._shape.length,
-            self._shape.width,
-            self._half_width,
-            self._growth,
-            self._conflict_time,
-            self._predictor.time_step,
-            Alarm(
-                people.body_radius,
-                self._clearance,
-                people.max_acceleration,
-                self._braking,
-                self._layer,
-            ),
+            self._view,
+            self._alarm,
             gap,
             conflicts,
             calm,
@@ -148,40 +155,19 @@ class CrowdForesight:
 
     def _predict(self, distance: Array, speed: Array) -> None:
         path = self._path
-        fill_planned_poses(
+        fill_poses(
             path.vertices,
             path.stations,
             path.headings,
             self._front,
             distance,
             speed,
-            self._shape.length,
+            self._view.length,
             self._row,
             self._poses,
         )
         self._predicted = self._predictor.predict(self._people, self._poses, self._surroundings)
         self._stale = False
-
-
-@kernel
-def fill_planned_poses(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
-    front: float,
-    distance: Array,
-    speeds: Array,
-    length: float,
-    row: int,
-    poses: Array,
-) -> None:
-    """The body's centre, heading and speed at steps 0 ... N-1 of a manoeuvre."""
-    for i in range(poses.shape[0]):
-        x, y, heading = body_pose(vertices, stations, headings, front + distance[i], length)
-        poses[i, row, 0] = x - 0.5 * length * np.cos(heading)
-        poses[i, row, 1] = y - 0.5 * length * np.sin(heading)
-        poses[i, row, 2] = heading
-        poses[i, row, 3] = speeds[i]
 
 
 @kernel
@@ -193,12 +179,7 @@ def assess(
     front: float,
     distance: Array,
     speeds: Array,
-    length: float,
-    width: float,
-    half_width: float,
-    growth: float,
-    conflict_time: float,
-    time_step: float,
+    view: View,
     alarm: Alarm,
     gap: Array,
     conflicts: Array,
@@ -209,18 +190,19 @@ def assess(
     Between two looks at people's courses the numbers are held.
     """
     N = predicted.shape[0]
+    length, time_step = view.length, view.time_step
     first, last = window(stations, front, PASSED + length)
     conflicts[0], calm[0] = 0.0, np.inf
     for i in range(N):
         at = front + distance[i + 1]
-        wide = half_width + growth * (i + 1) * time_step
+        wide = view.half_width + view.growth * (i + 1) * time_step
         closest, _ = closest_in_front(
             vertices, stations, first, last, predicted[i], at - PASSED, wide, 0.0
         )
         gap[i] = closest - at
         if i % _EVERY == 0 and i + 1 < N:
             x, y, heading = body_pose(vertices, stations, headings, at, length)
-            conflicts[i], calm[i] = courses(
+            conflicts[i], calm[i] = conflicts_and_calm(
                 predicted[i],
                 predicted[i + 1],
                 x,
@@ -228,8 +210,8 @@ def assess(
                 heading,
                 speeds[i + 1],
                 length / 2.0,
-                width / 2.0,
-                conflict_time,
+                view.width / 2.0,
+                view.conflict_time,
                 time_step,
                 alarm,
             )

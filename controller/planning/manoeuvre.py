@@ -9,14 +9,12 @@ crowd would move under it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
 
 from controller._jit import kernel
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from controller.planning.parameters import ManoeuvreParameters, PlannerParameters
@@ -24,47 +22,6 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _EASING = 0.4  # [s] in which an acceleration is taken back before standstill or the wanted speed
-
-
-@dataclass(frozen=True, slots=True)
-class Manoeuvre:
-    """The ego's motion at steps 0 ... N under forward Euler, as the vehicle's model has it.
-
-    Attributes:
-        distance: (N + 1,) [m] driven from now on.
-        speed: (N + 1,) [m/s].
-        acceleration: (N + 1,) [m/s^2]; from each step to the next.
-    """
-
-    distance: Array
-    speed: Array
-    acceleration: Array
-
-    @classmethod
-    def empty(cls, horizon: int) -> Manoeuvre:
-        """Room for a manoeuvre of N steps."""
-        return cls(np.zeros(horizon + 1), np.zeros(horizon + 1), np.zeros(horizon + 1))
-
-    def copy_from(self, other: Manoeuvre) -> None:
-        """Become another one of the same length."""
-        self.distance[:] = other.distance
-        self.speed[:] = other.speed
-        self.acceleration[:] = other.acceleration
-
-
-class Prospect(NamedTuple):
-    """What a manoeuvre would lead to: arrays over steps 1 ... N, overwritten by the next one.
-
-    Attributes:
-        gap: (N,) [m] to the closest person in front; inf: nobody.
-        conflicts: (N,) persons who would be less than the conflict time from a collision.
-        calm: (N,) [m/s] the speed up to which nobody could force an emergency stop, whatever
-            people did that they can; inf: the manoeuvre's is calm.
-    """
-
-    gap: Array
-    conflicts: Array
-    calm: Array
 
 
 class Weights(NamedTuple):

@@ -3,39 +3,23 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from controller.planning.manoeuvre import (
-    Manoeuvre,
-    Weights,
-    aim,
-    cost,
-    shift,
-    stopping_need,
-)
+from controller.foresight import Manoeuvre
+from controller.planning.manoeuvre import Weights, aim, cost, shift, stopping_need
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from controller.foresight import Foresight
     from controller.model import LongitudinalModel
-    from controller.planning.manoeuvre import Prospect
     from controller.planning.parameters import PlannerParameters
 
     Array = NDArray[np.float64]
 
 _WORSE = 1e-6  # [m] by which a smoothed plan may come closer than the manoeuvre it follows
-
-
-class Foresight(Protocol):
-    """Who knows what the crowd would do."""
-
-    def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
-        """What a manoeuvre would lead to; valid until the next call."""
-
-    def prefer(self) -> None:
-        """The latest manoeuvre is the best so far: remember what it would lead to."""
 
 
 class Search:

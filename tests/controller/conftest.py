@@ -8,7 +8,9 @@ either way; everything beyond is exact.
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import daqp
@@ -16,12 +18,15 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, nnls
 
-from controller import LongitudinalModel, MpcParameters, quadratic_program
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
+from paper_qp import quadratic_program
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from numpy.typing import NDArray
+
+    from controller import LongitudinalModel, MpcParameters
 
     Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from controller import (
     Observation,
     Pid,
     PidParameters,
-    Regulator,
+    SpeedController,
 )
 from giveway.api import RunResult
 from giveway.simulation import Ending, Progress
@@ -98,7 +98,7 @@ def in_front(position: np.ndarray, front: float) -> float:
 
 def test_the_controller_acts_on_the_state_at_t_k_without_lag(mpc_run: RunResult) -> None:
     # Everything is predicted here, without the loop's gate, which must not change a bit.
-    regulator = Regulator(
+    regulator = SpeedController(
         Mpc(LongitudinalModel(), MpcParameters()), Pid(PidParameters(), TIME_STEP)
     )
     predictor = Predictor(SIM, TIME_STEP, 15)

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from controller import LongitudinalModel, SafetyLayer, SafetyParameters
-from controller.planning import Manoeuvre
+from controller import LongitudinalModel, Manoeuvre, SafetyLayer, SafetyParameters
 from giveway.courses import Alarm, is_threat
 from giveway.ego_path import EgoPath
 from giveway.foresight import PASSED, CrowdForesight, assess
@@ -18,7 +17,7 @@ N, DT = 20, 0.05
 LENGTH, WIDTH, RADIUS = 5.0, 2.0, SIM.body_radius
 HALF_WIDTH, CONFLICT_TIME = 1.25, 1.5
 FRONT = 20.0  # [m]
-ALARM = Alarm(RADIUS, 0.05, SIM.max_acceleration, 8.0, heeded=True)
+ALARM = Alarm(RADIUS, 0.05, SIM.max_acceleration, SIM.max_speed, 8.0, heeded=True)
 EDGE = 1e-6
 
 angles = np.linspace(-np.pi / 2, np.pi / 2, 200)

@@ -9,7 +9,7 @@ import tomlkit
 
 import giveway as library
 from giveway.configfile import Layer, read_toml
-from giveway.drivers import make_regulator
+from giveway.drivers import make_controller
 from giveway.errors import ConfigError, VehicleError
 from giveway.loading import load
 from giveway.vehicles import model_margin
@@ -185,7 +185,7 @@ def test_the_mpc_keeps_what_the_model_is_wrong_by(profile):
     config, _ = load([flags(profile=str(profile(**IDENTIFIED)))])
     plain, _ = load([flags(profile=str(profile("plain.toml")))])
     config, plain = (c.model_copy(update={"controller": "mpc-paper"}) for c in (config, plain))
-    kept, usual = (make_regulator(c, H).mpc.parameters.safe_distance for c in (config, plain))
+    kept, usual = (make_controller(c, H).mpc.parameters.safe_distance for c in (config, plain))
     margin = model_margin(config, H)
     assert margin >= 0.7
     assert kept == pytest.approx(usual + margin)

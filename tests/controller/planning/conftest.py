@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from controller import LongitudinalModel, PlannerParameters
-from controller.planning import Prospect
+from controller import LongitudinalModel, PlannerParameters, Prospect
 from controller.planning.smoothing import nodes_of
 
 if TYPE_CHECKING:

@@ -10,9 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controller import LongitudinalModel, Planner, PlannerParameters
+from controller import LongitudinalModel, Planner, PlannerParameters, Prospect
 from controller.active_set import solve_exactly
-from controller.planning import Prospect
 from controller.planning.smoothing import WIDER, SmoothingProblem, nodes_of
 
 N = 60
@@ -183,7 +182,7 @@ def test_the_force_is_that_of_the_plain_problems_optimum(plain_problem, seed, so
     )
     assert flag == 1
     plan = Planner(MODEL, plain.parameters).plan(
-        plain.speed, plain.previous_force, 4.0, None, Fixed(plain.room)
+        plain.speed, plain.previous_force, 4.0, FREE, Fixed(plain.room)
     )
     assert plan.status == "solved"
     wanted = (v[0] - MODEL.decay * plain.speed) / MODEL.speed_per_force
@@ -205,7 +204,7 @@ def test_a_soft_corridor_always_leaves_a_plan(speed, force, room, calm):
     assert (reached <= problem.upper + 1e-9).all()
     for gap_choice in (True, False):
         planner = Planner(MODEL, replace(FOLLOWING, gap_choice=gap_choice))
-        plan = planner.plan(speed, force, 4.0, None, Fixed(corridor))
+        plan = planner.plan(speed, force, 4.0, FREE, Fixed(corridor))
         assert plan.found
         assert "no QP solution" not in plan.status
         assert abs(plan.force) <= 8000.0
@@ -222,7 +221,7 @@ def test_a_hard_corridor_is_refused_if_and_only_if_braking_cannot_keep_it(
     plain = plain_problem(speed, force, 0.0, wanted, 4.0, room_of(*room), MODEL, parameters)
     each, _ = plain.unavoidable()
     _, found = bounded(plain, soft=False)
-    plan = Planner(MODEL, parameters).plan(speed, force, 4.0, None, Fixed(plain.room))
+    plan = Planner(MODEL, parameters).plan(speed, force, 4.0, FREE, Fixed(plain.room))
     if each.max() > 1e-6:
         assert not found
         assert plan.status == "infeasible: cannot keep the distance"
