@@ -42,6 +42,8 @@ class View(NamedTuple):
 class CrowdForesight:
     """Predicts the crowd under one manoeuvre after the other.
 
+    The manoeuvres are tried in poses of its own: what other egos see does not change by them.
+
     Args:
         predictor: of N steps.
         path: the ego's.
@@ -90,7 +92,8 @@ class CrowdForesight:
         self._prospect = Prospect(np.empty(N), np.zeros(N), np.zeros(N))
         self._predicted = np.empty((N, 0, 2))
         self._best = np.empty((N, 0, 2))
-        self._stale, self._preferred = True, False
+        self._poses = np.empty((N, 0, 7))
+        self._copied, self._stale, self._preferred = False, True, False
 
     def look(
         self,
@@ -106,14 +109,14 @@ class CrowdForesight:
         Args:
             people: whom to predict.
             surroundings: the walls and lights that they heed.
-            poses: (N, m, 7) of all vehicles at steps 0 ... N-1; the ego's row is overwritten.
+            poses: (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
             row: the ego's.
             front: the front bumper's station [m].
             speed: the ego's [m/s].
         """
         self._people, self._surroundings = people, surroundings
-        self._poses, self._row, self._front, self._now = poses, row, front, speed
-        self._stale, self._preferred = True, False
+        self._given, self._row, self._front, self._now = poses, row, front, speed
+        self._copied, self._stale, self._preferred = False, True, False
 
     @property
     def best(self) -> Array | None:
@@ -155,6 +158,8 @@ class CrowdForesight:
 
     def _predict(self, distance: Array, speed: Array) -> None:
         path = self._path
+        if not self._copied:
+            self._copy()
         fill_poses(
             path.vertices,
             path.stations,
@@ -168,6 +173,13 @@ class CrowdForesight:
         )
         self._predicted = self._predictor.predict(self._people, self._poses, self._surroundings)
         self._stale = False
+
+    def _copy(self) -> None:
+        """Take over the poses of this instant."""
+        if self._poses.shape != self._given.shape:
+            self._poses = np.empty_like(self._given)
+        self._poses[:] = self._given
+        self._copied = True
 
 
 @kernel
