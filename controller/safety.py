@@ -101,6 +101,7 @@ class SafetyLayer:
             margin=p.margin,
             position_error=p.position_error,
         )
+        self._plain_limits = tuple(self._limits)
         self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
         delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
         self._commands = np.zeros(1 + max(delay, 0))
@@ -147,7 +148,7 @@ class SafetyLayer:
             spacing,
             position,
             velocity,
-            self._limits,
+            self._plain_limits,
             self._commands,
             self._boxes,
         )

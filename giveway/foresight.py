@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 PASSED = 0.3  # [m] behind the front bumper people still count as in front: they are squeezed past
-_EVERY = 2  # steps from one look for conflicts to the next
+_EVERY = 2  # steps from one search for conflicts to the next
 
 
 class View(NamedTuple):
@@ -75,18 +75,22 @@ class CrowdForesight:
         self._predictor = predictor
         self._path = path
         self._planned_speed = planned_speed
-        self._view = View(
-            shape.length, shape.width, half_width, growth, conflict_time, predictor.time_step
+        # Plain tuples: each call would look the class of a named one up anew (2 us).
+        self._view = tuple(
+            View(shape.length, shape.width, half_width, growth, conflict_time, predictor.time_step)
         )
         people = predictor.parameters
-        self._alarm = Alarm(
-            people.body_radius,
-            clearance,
-            people.max_acceleration,
-            people.max_speed,
-            braking,
-            safety_layer,
+        self._alarm = tuple(
+            Alarm(
+                people.body_radius,
+                clearance,
+                people.max_acceleration,
+                people.max_speed,
+                braking,
+                safety_layer,
+            )
         )
+        self._length = shape.length
         self._constant = np.arange(N + 1) * predictor.time_step
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
         self._prospect = Prospect(np.empty(N), np.zeros(N), np.zeros(N))
@@ -167,7 +171,7 @@ class CrowdForesight:
             self._front,
             distance,
             speed,
-            self._view.length,
+            self._length,
             self._row,
             self._poses,
         )
@@ -191,23 +195,25 @@ def assess(
     front: float,
     distance: Array,
     speeds: Array,
-    view: View,
-    alarm: Alarm,
+    view: tuple[float, ...],
+    alarm: tuple[float, ...],
     gap: Array,
     conflicts: Array,
     calm: Array,
 ) -> None:
     """Fill gaps in front, persons on a collision course, and calm speeds at steps 1 ... N.
 
-    Between two looks at people's courses the numbers are held.
+    Conflicts and calm speeds are found at every second step and held in between. ``view`` and
+    ``alarm`` are the numbers of a :class:`View` and an :class:`Alarm`.
     """
     N = predicted.shape[0]
-    length, time_step = view.length, view.time_step
+    v, limits = View(*view), Alarm(*alarm)
+    length, time_step = v.length, v.time_step
     first, last = window(stations, front, PASSED + length)
     conflicts[0], calm[0] = 0.0, np.inf
     for i in range(N):
         at = front + distance[i + 1]
-        wide = view.half_width + view.growth * (i + 1) * time_step
+        wide = v.half_width + v.growth * (i + 1) * time_step
         closest, _ = closest_in_front(
             vertices, stations, first, last, predicted[i], at - PASSED, wide, 0.0
         )
@@ -222,10 +228,10 @@ def assess(
                 heading,
                 speeds[i + 1],
                 length / 2.0,
-                view.width / 2.0,
-                view.conflict_time,
+                v.width / 2.0,
+                v.conflict_time,
                 time_step,
-                alarm,
+                limits,
             )
         elif i > 0:
             conflicts[i], calm[i] = conflicts[i - 1], calm[i - 1]

@@ -25,7 +25,11 @@ _EASING = 0.4  # [s] in which an acceleration is taken back before standstill or
 
 
 class Weights(NamedTuple):
-    """The numbers of the cost, as the kernel takes them."""
+    """The numbers of the cost.
+
+    What is called from outside gets them as a plain tuple: numba looks the class of a named one up
+    in each call, which takes 2 us.
+    """
 
     reference_speed: float
     safe_distance: float
@@ -158,7 +162,7 @@ def cost(
     calm: Array,
     allowed: Array,
     time_step: float,
-    w: Weights,
+    weights: tuple[float, ...],
 ) -> tuple[float, float, float]:
     """What a manoeuvre costs [s].
 
@@ -171,13 +175,13 @@ def cost(
         calm: (N,) [m/s].
         allowed: (N,) [m] that may be driven until then: vehicles, lights.
         time_step: [s].
-        w: the weights.
+        weights: the numbers of :class:`Weights`.
 
     Returns:
         The whole cost; the part of it that other people and vehicles cause; the longest missing
         stopping distance [m].
     """
-    N = len(gap)
+    w, N = Weights(*weights), len(gap)
     own, others, missing = 0.0, 0.0, 0.0
     for i in range(N):
         v = speeds[i + 1]
@@ -206,7 +210,7 @@ def corridor(
     gap: Array,
     allowed: Array,
     chosen: bool,
-    w: Weights,
+    weights: tuple[float, ...],
     room: Array,
 ) -> None:
     """Fill ``room`` (N,) [m]: how far a plan may have driven at steps 1 ... N.
@@ -214,6 +218,7 @@ def corridor(
     Behind everybody who is in front of the manoeuvre then: with the stopping distance of its own
     speed where it was chosen by what it leads to, and never less than itself; else with d_safe.
     """
+    w = Weights(*weights)
     for i in range(len(gap)):
         station = distance[i + 1] + gap[i]
         if chosen:

@@ -30,7 +30,7 @@ class Search:
         parameters: the horizon, the manoeuvres and their weights.
 
     Attributes:
-        weights: of the cost.
+        weights: of the cost, a plain tuple of :class:`Weights`.
         best: the manoeuvre of least cost.
         gap: (N,) [m] what it would lead to, as in :class:`Prospect`.
         conflicts: (N,) persons, likewise.
@@ -41,7 +41,8 @@ class Search:
     def __init__(self, model: LongitudinalModel, parameters: PlannerParameters) -> None:
         N, m, v_r = parameters.horizon, parameters.manoeuvres, parameters.reference_speed
         self._manoeuvres, self._time_step = m, model.time_step
-        self.weights = Weights.of(parameters, m)
+        self._weights = Weights.of(parameters, m)
+        self.weights = tuple(self._weights)
         self._kinds = [
             (a, share * v_r) for a, share in zip(m.accelerations, m.slowest, strict=True)
         ]
@@ -186,4 +187,4 @@ class Search:
         """Whether a stop stays possible if the plan's last speed is kept on."""
         v = plan.speed[-1]
         gap = self.gap[-1] + self.best.distance[-1] - plan.distance[-1]
-        return bool(gap - self._time_step * v >= stopping_need(v, self.weights))
+        return bool(gap - self._time_step * v >= stopping_need(v, self._weights))

@@ -9,7 +9,7 @@ import shapely
 from controller import LongitudinalModel, Manoeuvre, SafetyLayer, SafetyParameters
 from giveway.courses import Alarm, is_threat
 from giveway.ego_path import EgoPath
-from giveway.foresight import PASSED, CrowdForesight, assess
+from giveway.foresight import PASSED, CrowdForesight, View, assess
 from giveway.tracks import VehicleShape
 from pedestrian_model import OPEN_GROUND, SIM, Crowd, Predictor
 
@@ -52,12 +52,7 @@ def assessed(path, people, m, *, growth=0.0, alarm=ALARM):
         FRONT,
         m.distance,
         m.speed,
-        LENGTH,
-        WIDTH,
-        HALF_WIDTH,
-        growth,
-        CONFLICT_TIME,
-        DT,
+        View(LENGTH, WIDTH, HALF_WIDTH, growth, CONFLICT_TIME, DT),
         alarm,
         *out,
     )
