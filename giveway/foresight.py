@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -196,7 +196,7 @@ def assess(
     distance: Array,
     speeds: Array,
     view: tuple[float, ...],
-    alarm: tuple[float, ...],
+    alarm: tuple[Any, ...],
     gap: Array,
     conflicts: Array,
     calm: Array,

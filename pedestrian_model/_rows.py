@@ -53,7 +53,7 @@ class Scratch(NamedTuple):
     """The memory that a step works in; what it holds before does not matter."""
 
     rows: NDArray[np.float64]  # (ROWS, padded n)
-    index: NDArray[np.int64]  # (3, cells): order of the pedestrians, cell of each, first of each
+    sorting: NDArray[np.int64]  # (3, cells): order of the pedestrians, cell of each, first of each
     buffer: NDArray[np.float64]  # (10 STRIDE,) of the pair loops
     back: NDArray[np.float64]  # (2 STRIDE,) likewise
 

@@ -143,7 +143,7 @@ def _march(
     c = constants[0]
     position, velocity, waypoint_index = state
     desired_speed, routes, closed, walls, wall_cells = scene
-    rows, index = scratch.rows, scratch.index
+    rows, index = scratch.rows, scratch.sorting
     n = position.shape[0]
     insane = first_insane(position, velocity)
     if n == 0 or insane != FINE:

@@ -9,7 +9,7 @@ crowd would move under it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from controller._jit import kernel
 
@@ -162,7 +162,7 @@ def cost(
     calm: Array,
     allowed: Array,
     time_step: float,
-    weights: tuple[float, ...],
+    weights: tuple[Any, ...],
 ) -> tuple[float, float, float]:
     """What a manoeuvre costs [s].
 
@@ -210,7 +210,7 @@ def corridor(
     gap: Array,
     allowed: Array,
     chosen: bool,
-    weights: tuple[float, ...],
+    weights: tuple[Any, ...],
     room: Array,
 ) -> None:
     """Fill ``room`` (N,) [m]: how far a plan may have driven at steps 1 ... N.

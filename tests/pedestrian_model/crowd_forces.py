@@ -161,7 +161,7 @@ def _fill_forces(
         return insane
     memory = Scratch(*scratch)
     gather_forces(position, velocity, vehicles, 0.0, memory, constants, cell_list_from)
-    rows, order = memory.rows, memory.index[0]
+    rows, order = memory.rows, memory.sorting[0]
     for k in range(n):
         i = order[k]
         out[0, i], out[1, i], out[2, i], out[3, i] = (
