@@ -21,8 +21,8 @@ from fmpy.fmi3 import FMU3Slave
 from controller import Observation
 from fmus.controller_fmu.export import export_controller
 from fmus.controller_fmu.parameters import ControllerParameters
-from giveway.config import RunConfig
-from giveway.drivers import make_controller
+from giveway.config import EgoRunConfig
+from giveway.ego.controllers import make_controller
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -67,7 +67,7 @@ def compare(horizon: int, decisions: int, seed: int) -> tuple[np.ndarray, float]
     p, random = ControllerParameters(horizon=horizon), np.random.default_rng(seed)
     h = p.time_step
     settings = {"controller": "mpc-paper", "mpc": {"horizon": horizon}}
-    own = make_controller(RunConfig.model_validate(settings), h)
+    own = make_controller(EgoRunConfig.model_validate(settings), h)
     ahead = h * np.arange(1, horizon + 1)
     position, speed, apart = 0.0, 4.0, 0.0
     walker, walks, present = 30.0, 0.0, True

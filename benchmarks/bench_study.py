@@ -14,11 +14,11 @@ from dataclasses import asdict
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from giveway.configfile import Layer
-from giveway.loading import load
+from giveway.config.layers import Layer
+from giveway.config.loading import load
 from giveway.studies.execution import cluster_executor, local_executor
+from giveway.studies.execution.perform import perform
 from giveway.studies.identity import software_identity
-from giveway.studies.performing import perform
 from giveway.studies.record import RunRecord, Task
 
 if TYPE_CHECKING:

@@ -12,14 +12,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from giveway._environment import check_rooms, choose_kernel_cache
+from giveway._version import __version__
 from giveway.errors import GivewayError
 
 if TYPE_CHECKING:
     from giveway.api import run
     from giveway.config import RunConfig
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
 
-__version__ = "0.1.0"
 __all__ = ["GivewayError", "RunConfig", "RunResult", "__version__", "run"]
 
 check_rooms()

@@ -8,37 +8,38 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from giveway import mismatch
-from giveway.assembly import Parts, assemble
-from giveway.configfile import dump_toml
+from giveway.config.layers import dump_toml
+from giveway.config.loading import as_layer, load
+from giveway.cosimulation.assembly import Parts, assemble
+from giveway.cosimulation.loop import Loop
+from giveway.cosimulation.preflight import CheckedRun, preflight
+from giveway.ego.vehicle import model_margin
 from giveway.errors import GivewayError
-from giveway.heartbeat import Phase
-from giveway.interrupts import DeferredInterrupt
-from giveway.journal import Journal
-from giveway.loading import as_layer, load
-from giveway.manifest import manifest
-from giveway.recorder import Recorder
-from giveway.results import (
+from giveway.processes.child import STDERR_FILE
+from giveway.processes.heartbeat import Phase
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.journal import Journal
+from giveway.recording.recorder import Recorder
+from giveway.records.progress import Ending, Progress, Watcher
+from giveway.results import mismatch
+from giveway.results.folder import (
     release_folder,
     require_parquet,
     sumo_folder,
     take_folder,
-    write_pictures,
     write_results,
 )
-from giveway.run_result import RunResult, results_of_egos
-from giveway.simulation import Ending, Loop, Progress, Watcher
-from giveway.supervised import STDERR_FILE
-from giveway.vehicles import model_margin
+from giveway.results.provenance import manifest
+from giveway.results.run_result import RunResult, results_of_egos
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from giveway.config import RunConfig
-    from giveway.run_result import EgoResult
+    from giveway.results.run_result import EgoResult
     from sumo_scenarios import Scenario
 
-__all__ = ["RunResult", "run", "run_layers", "simulate"]
+__all__ = ["RunResult", "run", "run_checked", "simulate"]
 
 
 def run(
@@ -72,8 +73,8 @@ def run(
         GivewayError: one line that says what to do. If the run had begun, its rows are written
             all the same and the partial result is the error's ``result`` attribute.
     """
-    return run_layers(
-        [as_layer(config)],
+    return run_checked(
+        preflight(*load([as_layer(config)])),
         results=results,
         force=force,
         parquet=parquet,
@@ -82,8 +83,8 @@ def run(
     )
 
 
-def run_layers(
-    layers: list[Any],
+def run_checked(
+    checked: CheckedRun,
     *,
     results: str | Path | None,
     force: bool = False,
@@ -92,10 +93,10 @@ def run_layers(
     watcher: Watcher | None = None,
     journal: Path | None = None,
 ) -> RunResult:
-    """As :func:`run`, from layers of settings with their origins.
+    """As :func:`run`, after the preflight.
 
     Args:
-        layers: of settings.
+        checked: what is to be run.
         results: as for :func:`run`.
         force: as for :func:`run`.
         parquet: as for :func:`run`.
@@ -103,7 +104,6 @@ def run_layers(
         watcher: as for :func:`run`.
         journal: an empty folder for the rows, to be read should this process die.
     """
-    config, scenario = load(layers)
     folder = None if results is None else Path(results)
     if parquet:
         require_parquet()
@@ -111,14 +111,13 @@ def run_layers(
     rows = Journal(journal)
     where = None if folder is None else str(folder.absolute())
     wanted = {"results": where, "taken": taken, "parquet": parquet, "pictures": pictures}
-    rows.write_meta({"config": dump_toml(config), **wanted})
+    rows.write_meta({"config": dump_toml(checked.config), **wanted})
     native_log = None if journal is None or rows.failure else journal / STDERR_FILE
     with DeferredInterrupt() as interrupt:  # writing is not to be torn either
         try:
             outputs = None if folder is None else sumo_folder(folder)
             result = simulate(
-                config,
-                scenario,
+                checked,
                 watcher,
                 interrupt,
                 outputs=outputs,
@@ -148,14 +147,15 @@ def keep(result: RunResult, folder: Path, *, parquet: bool, pictures: bool, take
     if len(result.time):
         write_results(result, folder, parquet=parquet)
         if pictures:
+            from giveway.results.pictures import write_pictures
+
             write_pictures(result, folder)
     elif taken:
         release_folder(folder)
 
 
 def simulate(
-    config: RunConfig,
-    scenario: Scenario,
+    checked: CheckedRun,
     watcher: Watcher | None = None,
     interrupt: DeferredInterrupt | None = None,
     *,
@@ -166,8 +166,7 @@ def simulate(
     """Run one configuration; an error on the way becomes the result's ``error``.
 
     Args:
-        config: the effective configuration.
-        scenario: its scenario.
+        checked: what is to be run.
         watcher: called at every control step.
         interrupt: looked at between two steps.
         outputs: folder for SUMO's own outputs; None drops them.
@@ -187,9 +186,7 @@ def simulate(
         return not interrupted()
 
     with ExitStack() as stack:
-        parts = assemble(
-            config, scenario, stack, outputs=outputs, native_log=native_log, goes_on=goes_on
-        )
+        parts = assemble(checked, stack, outputs=outputs, native_log=native_log, goes_on=goes_on)
         recorder = Recorder(journal)
         loop = Loop(parts, recorder)
         began = perf_counter()
@@ -199,7 +196,7 @@ def simulate(
         except Exception as failure:  # whatever it is, the rows so far are the user's
             error, ending = failure, Ending.FAILED
         elapsed = perf_counter() - began
-        return _result(parts, scenario, recorder, loop, ending, error, elapsed)
+        return _result(parts, checked.scenario, recorder, loop, ending, error, elapsed)
 
 
 def _result(
@@ -212,8 +209,8 @@ def _result(
     elapsed: float,
 ) -> RunResult:
     """What the loop has left behind."""
-    tables = recorder.tables()
-    egos = results_of_egos(parts.config, tables, ending, loop.endings)
+    rows = recorder.rows()
+    egos = results_of_egos(parts.config, rows, ending, loop.endings)
     remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos))
     if recorder.journal.failure:
         remarks = (*remarks, recorder.journal.failure)
@@ -222,18 +219,18 @@ def _result(
         scenario=scenario,
         ending=ending,
         error=error,
-        time=tables.time,
+        time=rows.time,
         egos=egos,
-        crowd_track=tables.crowd_track(),
-        background_track=tables.background_track(),
-        timings=tables.timings(),
+        crowd_track=rows.crowd_track(),
+        background_track=rows.background_track(),
+        timings=rows.timings(),
         elapsed=elapsed,
         manifest=manifest(
             parts.config,
             scenario,
             config_text=dump_toml(parts.config),
             vehicles={driver.id: driver.description for driver in parts.drivers},
-            pedestrians=parts.population.ledger,
+            pedestrians=parts.roster.ledger,
             traffic={} if parts.yielding is None else parts.yielding.report,
             sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
             time_step=parts.time_step,

@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 from giveway.cli.fmu import build_export, build_fmu
-from giveway.cli.recorded import add_recorded
 from giveway.cli.studies import add_studies
+from giveway.cli.validation import add_recorded
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
 
@@ -61,7 +61,7 @@ def _with_flags(
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        from giveway import __version__
+        from giveway._version import __version__
 
         typer.echo(f"giveway {__version__}")
         raise typer.Exit
@@ -103,7 +103,7 @@ def _run(
 ) -> None:
     """Drive the ego through a crowd once: summary, CSVs, pictures."""
     from giveway.cli.isolated import run_isolated, supervised
-    from giveway.supervised import take_journal_folder
+    from giveway.processes.child import take_journal_folder
 
     journal = take_journal_folder()
     if isolate and journal is None:
@@ -121,8 +121,8 @@ def _config(
 ) -> None:
     """Print the effective configuration as TOML, with units."""
     from giveway.cli.run import layers_of
-    from giveway.configfile import dump_toml
-    from giveway.loading import load
+    from giveway.config.layers import dump_toml
+    from giveway.config.loading import load
 
     typer.echo(dump_toml(load(layers_of(scenario, config, settings))[0]), nl=False)
 

@@ -10,19 +10,19 @@ from controller import Pid, SpeedController
 from fmus.controller_fmu.export import export_controller
 from fmus.controller_fmu.parameters import CONTROLLER_FILES, ControllerParameters
 from fmus.errors import FmuError
-from giveway.assembly import control_step
 from giveway.cli.run import layers_of
-from giveway.drivers import make_controller
+from giveway.config.loading import load
+from giveway.cosimulation.preflight import control_step
+from giveway.ego.controllers import make_controller
+from giveway.ego.vehicle import model_margin
 from giveway.errors import ConfigError, ControlError, ResultsError
-from giveway.loading import load
 from giveway.scenario_files import read_scenario
-from giveway.vehicles import model_margin
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig, RunConfig
 
 
 def export_command(
@@ -78,7 +78,7 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
     raise ConfigError(msg)
 
 
-def _parameters(config: RunConfig, time_step: float) -> ControllerParameters:
+def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
     """What giveway's own controller of one ego is set to."""
     own = make_controller(config, time_step)
     if not isinstance(own, SpeedController) or not isinstance(own.pid, Pid):

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from giveway.config import RunConfig
-from giveway.configfile import Layer, build_config, dump_toml, flag_of, options, read_toml
+from giveway.config.layers import Layer, build_config, dump_toml, flag_of, options, read_toml
+from giveway.config.loading import as_layer, load
 from giveway.errors import ConfigError, ScenarioError
-from giveway.loading import as_layer, load
 
 
 def explain(values: dict, *, flags: bool = False) -> str:
@@ -234,7 +234,7 @@ def test_texts_that_sumo_could_not_use_are_refused(settings: dict, expected: str
 
 
 def test_a_long_clock_keeps_its_fractions_on_the_way_to_sumo() -> None:
-    from giveway.assembly import _start_options
+    from giveway.cosimulation.assembly import _start_options
 
     config = RunConfig.model_validate({"sumo": {"end": 54012.35}})
     assert _start_options(config, True, None).extra == ("--end", "54012.350")

@@ -9,13 +9,13 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from giveway.config import RunConfig
-from giveway.drivers import make_controller, make_driver
-from giveway.ego import Ego
-from giveway.ego_path import EgoPath
-from giveway.lanes import Light
-from giveway.lights import Lights
-from giveway.tracks import VehicleShape
+from giveway.config import EgoRunConfig
+from giveway.ego.controllers import make_controller, make_driver
+from giveway.ego.ego import Ego
+from giveway.ego.lights import Lights
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import EgoPath
+from giveway.sumo.lanes import Light
 from pedestrian_model import OPEN_GROUND, Crowd
 
 STEP = 0.05  # [s]
@@ -27,7 +27,7 @@ TOO_LATE = 2.0  # [s] of red in which who cannot stop passes
 
 
 def drive(
-    config: RunConfig, line: float, yellow_at: float, every: int
+    config: EgoRunConfig, line: float, yellow_at: float, every: int
 ) -> list[tuple[float, float, str]]:
     """Front [m], speed [m/s] and colour at each step until the red is over.
 
@@ -80,7 +80,7 @@ def test_an_ego_stands_before_the_line_or_passes_and_never_halts_beyond(
     gap_from: Literal["bumper", "centre"],
     safe_distance: float,
 ) -> None:
-    config = RunConfig.model_validate(
+    config = EgoRunConfig.model_validate(
         {
             "controller": controller,
             "ego": {"initial_speed": speed * share},

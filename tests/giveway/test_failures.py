@@ -8,25 +8,27 @@ import numpy as np
 import pytest
 
 import giveway
-from giveway.assembly import Parts, assemble
-from giveway.configfile import Layer
-from giveway.ego_path import Pose
+from giveway.config.layers import Layer
+from giveway.config.loading import load
+from giveway.cosimulation.assembly import Parts, assemble
+from giveway.cosimulation.loop import Loop
+from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, GivewayError, SumoError
-from giveway.interrupts import DeferredInterrupt
-from giveway.loading import load
-from giveway.recorder import Recorder
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import Pose
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.recorder import Recorder
+from giveway.records.progress import Ending
 from giveway.scenario_files import StartOptions, read_scenario
-from giveway.simulation import Ending, Loop
-from giveway.sumo import SumoSession
-from giveway.sumo_types import all_types, inserted_type
-from giveway.tracks import VehicleShape
+from giveway.sumo.session import SumoSession
+from giveway.sumo.types import all_types, inserted_type
 from sumo_scenarios import find
 
 PLAZA = find("shared_space").config_file
 
 
 def parts_of(stack: ExitStack, **settings: object) -> Parts:
-    return assemble(*load([Layer("test", settings)]), stack)
+    return assemble(preflight(*load([Layer("test", settings)])), stack)
 
 
 def session(step_length: float | None = None) -> SumoSession:
@@ -39,7 +41,7 @@ def test_a_nan_in_the_crowd_is_named_by_id_and_step() -> None:
         parts = parts_of(stack, controller="pid")
         recorder = Recorder()
         loop = Loop(parts, recorder)
-        parts.population.crowd.position[3] = np.nan
+        parts.roster.crowd.position[3] = np.nan
         with pytest.raises(GivewayError, match=r"ped3.*step 0"):
             loop.run(None, lambda: False)
         assert recorder.steps == 1
@@ -124,7 +126,7 @@ def test_an_impatient_ctrl_c_is_noted_and_python_goes_on() -> None:
 
 
 def test_angles_convert_between_the_conventions() -> None:
-    from giveway.traffic import angle_to_heading, heading_to_angle
+    from giveway.geometry.angles import angle_to_heading, heading_to_angle
 
     assert heading_to_angle(0.0) == 90.0
     assert heading_to_angle(math.pi / 2) == pytest.approx(0.0)

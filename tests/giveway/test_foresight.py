@@ -7,10 +7,10 @@ import pytest
 import shapely
 
 from controller import LongitudinalModel, Manoeuvre, SafetyLayer, SafetyParameters
-from giveway.courses import Alarm, is_threat
-from giveway.ego_path import EgoPath
-from giveway.foresight import PASSED, CrowdForesight, View, assess
-from giveway.tracks import VehicleShape
+from giveway.ego.foresight import PASSED, CrowdForesight, View, assess
+from giveway.ego.threats import Alarm, is_threat
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, SIM, Crowd, Predictor
 
 N, DT = 20, 0.05

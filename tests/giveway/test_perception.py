@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from giveway.config import RunConfig
-from giveway.perception import Perception
+from giveway.config import EgoRunConfig
+from giveway.crowd.perception import Perception
 from pedestrian_model import Crowd, CrowdModel, Vehicles
 
 
@@ -18,7 +18,7 @@ def make_crowd(n: int = 40) -> Crowd:
 
 
 def eyes(seed: int = 1, ego: str = "ego", **perception) -> Perception:
-    return Perception(RunConfig(seed=seed, perception=perception, ego={"id": ego}))
+    return Perception(EgoRunConfig(seed=seed, perception=perception, ego={"id": ego}))
 
 
 def test_without_errors_the_very_crowd_is_seen():

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 
 from controller import Manoeuvre
-from giveway.config import RunConfig
-from giveway.drivers import make_controller, make_driver
-from giveway.ego import Ego
-from giveway.ego_path import EgoPath
-from giveway.lights import Lights
-from giveway.tracks import VehicleShape
+from giveway.config import EgoRunConfig
+from giveway.ego.controllers import make_controller, make_driver
+from giveway.ego.ego import Ego
+from giveway.ego.lights import Lights
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, Crowd
 
 BEND = [(-50.0, 0.0), (0.0, 0.0), (30.0, 0.0), (60.0, 20.0), (100.0, 60.0)]
-CONFIG = RunConfig(controller="mpc-paper")
-PLANNING = RunConfig(controller="mpc")
+CONFIG = EgoRunConfig(controller="mpc-paper")
+PLANNING = EgoRunConfig(controller="mpc")
 
 
 def crowd(rng: np.random.Generator, widest: float = 60.0) -> Crowd:
@@ -41,7 +41,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
         people = crowd(rng)
         seen = []
         for predict_all in (150, 10**9):
-            monkeypatch.setattr("giveway.ego._PREDICT_ALL", predict_all)
+            monkeypatch.setattr("giveway.ego.ego._PREDICT_ALL", predict_all)
             with ExitStack() as stack:
                 driver = make_driver(CONFIG, make_controller(CONFIG, 0.05), 0.05, stack)
                 driver.start(speed)
@@ -71,7 +71,7 @@ def test_who_is_left_out_changes_nothing_that_a_manoeuvre_would_lead_to(
         people = crowd(rng, widest=150.0)
         seen = []
         for predict_all in (150, 10**9):
-            monkeypatch.setattr("giveway.ego._PREDICT_ALL", predict_all)
+            monkeypatch.setattr("giveway.ego.ego._PREDICT_ALL", predict_all)
             with ExitStack() as stack:
                 driver = make_driver(PLANNING, make_controller(PLANNING, 0.05), 0.05, stack)
                 driver.start(speed)

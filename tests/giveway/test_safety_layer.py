@@ -7,11 +7,11 @@ import pytest
 
 from controller import Decision, SafetyParameters
 from giveway.api import RunResult
-from giveway.config import RunConfig
-from giveway.ego_path import EgoPath
-from giveway.guard import Guard
-from giveway.tracks import VehicleShape
-from giveway.way_ahead import WayAhead
+from giveway.config import EgoRunConfig
+from giveway.ego.safety import Guard
+from giveway.ego.way_ahead import WayAhead
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
 
 Run = Callable[..., RunResult]
@@ -85,7 +85,7 @@ def test_where_it_does_not_act_not_a_bit_is_changed(run_once: Run, controller: s
 def test_it_is_on_but_not_for_the_papers_controllers(
     controller: str, enabled: bool | None, on: bool
 ) -> None:
-    config = RunConfig.model_validate({"controller": controller, "safety": {"enabled": enabled}})
+    config = EgoRunConfig.model_validate({"controller": controller, "safety": {"enabled": enabled}})
     assert config.safety_layer is on
 
 
@@ -104,7 +104,7 @@ def quarter_turn(radius: float) -> EgoPath:
 
 
 def guard(path: EgoPath) -> Guard:
-    config = RunConfig.model_validate({"controller": "mpc"})
+    config = EgoRunConfig.model_validate({"controller": "mpc"})
     return Guard(SafetyParameters(), config, path, VehicleShape(5.0, 2.0), 0.05)
 
 

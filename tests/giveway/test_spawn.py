@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from giveway.ego_path import EgoPath
+from giveway.config.sections import CrowdConfig
+from giveway.crowd.spawn import spawn
 from giveway.errors import CrowdError
-from giveway.sections import CrowdConfig
-from giveway.spawn import spawn
+from giveway.geometry.path import EgoPath
 
 AXIS = EgoPath.through([(-20, 0), (100, 0)])
 

@@ -1,0 +1,191 @@
+"""The tables of the configuration about who drives: controllers, safety, perception."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from giveway.config.option import Preset, Section, option
+
+CORRIDOR_MARGIN = 0.25
+"""[m] The corridor of a vehicle is wider than its body by this much on each side."""
+
+
+class RegulationConfig(Section):
+    """What both controllers aim at, and who counts as being in front."""
+
+    reference_speed: float = option(4.0, "m/s", "desired speed v_r", gt=0, le=60)
+    safe_distance: float = option(
+        8.0, "m", "distance d_safe to keep to who is in front", ge=0, le=1e4
+    )
+    corridor_half_width: float | None = option(
+        None,
+        "m",
+        "in front: the body centre is this close to the ego's path; none: half its width + "
+        f"{CORRIDOR_MARGIN:g}",
+        gt=0,
+        le=20,
+    )
+    gap_from: Literal["bumper", "centre"] = option(
+        "bumper", None, "where the distance to who is in front starts"
+    )
+    vehicles: bool = option(
+        True, None, "vehicles in front are obstacles too", flag="--respect-vehicles"
+    )
+    traffic_lights: bool = option(True, None, "the ego stops at red lights", flag="--obey-lights")
+    comfortable_deceleration: float = option(
+        2.0, "m/s^2", "of the approach to a red light or a slower vehicle", gt=0, le=10
+    )
+
+
+class MpcConfig(Section):
+    """The model predictive controller (Yang & Özgüner 2019, section 3, table 1)."""
+
+    horizon: int = option(15, "steps", "prediction horizon N", ge=2, le=200)
+    force_limit: float = option(8000.0, "N", "u_max, of the PID's output too", gt=0, le=1e6)
+    force_rate_limit: float = option(1000.0, "N/step", "du_max", gt=0, le=1e6)
+    speed_min: float = option(0.0, "m/s", "v_min", ge=0, le=60)
+    speed_max: float = option(20.0, "m/s", "v_max", gt=0, le=100)
+    solver: Literal["osqp", "daqp"] = option("osqp", None, "QP solver")
+
+
+class PidConfig(Section):
+    """The PID controller, fallback and rival (Yang & Özgüner 2019, section 3.4, table 1)."""
+
+    proportional_gain: float = option(
+        2400.0, "N.s/m", "K_p; the printed 300 contradicts the printed error", ge=0, le=1e6
+    )
+    integral_gain: float = option(10.0, "N/m", "K_i", ge=0, le=1e6)
+    derivative_gain: float = option(100.0, "N.s^2/m", "K_d", ge=0, le=1e6)
+    buffer_distance: float = option(
+        10.0, "m", "d_buffer over which the reference speed rises to v_r", gt=0, le=1e4
+    )
+
+
+class TunedPidConfig(Section):
+    """The well-tuned PID, the fair rival (controller = "pid-tuned"); docs/controllers.md."""
+
+    profile: Literal["braking-curve", "linear"] = option(
+        "braking-curve", None, "how the reference speed falls towards who is in front"
+    )
+    buffer_distance: float = option(
+        10.0, "m", "over which the linear profile rises to v_r", gt=0, le=1e4
+    )
+    deceleration: float = option(
+        1.0, "m/s^2", "b of the braking curve, and of braking in comfort", gt=0, le=10
+    )
+    approach_lag: float = option(
+        0.5, "s", "near d_safe the braking curve is the line (gap - d_safe)/tau", gt=0, le=10
+    )
+    acceleration: float = option(3.0, "m/s^2", "of driving off", gt=0, le=10)
+    jerk: float = option(10.0, "m/s^3", "of a change of acceleration in comfort", gt=0, le=200)
+    firm_deceleration: float = option(
+        3.0,
+        "m/s^2",
+        "that keeping d_safe may take; where it is not enough, last_distance",
+        ge=0,
+        le=10,
+    )
+    last_distance: float = option(
+        2.0, "m", "it stops before this distance however hard that is", ge=0, le=1e4
+    )
+    bandwidth: float = option(2.5, "rad/s", "omega of the closed loop's poles", gt=0, le=100)
+    damping: float = option(0.85, None, "zeta of the closed loop's poles", gt=0, le=10)
+    acceleration_feed_forward: bool = option(
+        True, None, "M dv_ref/dt is fed forward beside alpha v_ref"
+    )
+
+
+class PlannerConfig(Section):
+    """The planning MPC (controller = "mpc"); every ingredient is a switch, docs/controllers.md."""
+
+    horizon: float = option(3.0, "s", "how far it plans", ge=0.3, le=10)
+    gap_choice: bool = option(
+        True, None, "search whom to pass before and whom behind; else the plan just keeps d_safe"
+    )
+    soft: bool = option(
+        True, None, "distances give way as far as braking cannot keep them; else the PID takes over"
+    )
+    terminal: bool = option(
+        True, None, "a stop stays possible at every step of the plan, its end included"
+    )
+    planned_speed: bool = option(
+        True, None, "people are predicted under the planned speeds; else under the present one"
+    )
+    effort_weight: float = option(0.02, "s", "of squared accelerations in the plan", ge=0, le=100)
+    jerk_weight: float = option(0.02, "s^3", "of squared jerks in the plan", ge=0, le=100)
+    conflict_weight: float = option(
+        0.6,
+        None,
+        "seconds of delay that one person-second with less than 1.5 s to a collision is worth",
+        ge=0,
+        le=1e3,
+    )
+    nearness_weight: float = option(
+        0.3,
+        None,
+        "seconds of delay that a second at v_r right before somebody is worth, none at d_safe",
+        ge=0,
+        le=1e3,
+    )
+    threat_weight: float = option(
+        1.0,
+        None,
+        "seconds of delay that a second is worth in which somebody could force an emergency stop",
+        ge=0,
+        le=1e3,
+    )
+    minimum_distance: float = option(
+        1.0, "m", "least distance to a person in front, at standstill", ge=0, le=100
+    )
+    deceleration: float = option(
+        6.0, "m/s^2", "a stop that is no harder stays possible", gt=0, le=10
+    )
+    calm_time: float = option(
+        0.5, "s", "of the plan in which nobody may be able to force an emergency stop", ge=0, le=10
+    )
+    margin_growth: float = option(
+        0.0, "m/s", "what the corridor grows by per second of look-ahead, on each side", ge=0, le=5
+    )
+    block_growth: float = option(
+        0.25, None, "how the plan's intervals grow from one to the next; 0: not", ge=0, le=2
+    )
+
+
+class SafetyConfig(Section):
+    """The safety layer below every controller: a stop stays possible; docs/safety.md."""
+
+    enabled: bool | None = option(
+        None,
+        None,
+        "brakes where the controller would not; none: yes, but not for the paper's controllers",
+        flag="--safety",
+    )
+    margin: float = option(
+        0.05, "m", "kept between the front bumper and whoever may get there", ge=0, le=5
+    )
+    reaction_time: float | None = option(
+        None,
+        "s",
+        "within which the vehicle does what it is told; none: as its profile identified, else 0",
+        ge=0,
+        le=5,
+    )
+    rate_limited: bool = option(False, None, "the layer's braking keeps to du_max too")
+
+
+class PerceptionConfig(Section):
+    """What the controllers know of the pedestrians, as far as it is not the truth."""
+
+    position_noise: float = option(
+        0.0,
+        "m",
+        "people are seen this far off (standard deviation per axis, cut off at twice that)",
+        ge=0,
+        le=5,
+    )
+    desired_speeds: Literal["known", "typical"] = option(
+        "known", None, "of each person, or [crowd] desired_speed_mean for everybody"
+    )
+    preset: Preset = option(
+        "", None, "parameters the pedestrians are predicted with, as [crowd] preset; none: the same"
+    )

@@ -1,0 +1,193 @@
+"""Which settings win: the scenario's, then the user's file, then flags or arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fmus import FmuError, read_profile
+from giveway.config.layers import Layer, build_config, merge, read_toml
+from giveway.config.presets import parameters_of
+from giveway.config.run_config import RunConfig
+from giveway.errors import ConfigError, ScenarioError, VehicleError
+from sumo_scenarios import ScenarioError as UnknownScenario
+from sumo_scenarios import available, find
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sumo_scenarios import Scenario
+
+_FILES = ("fmu", "profile", "preset")  # keys that may name a file
+_WITH_FILES = ("vehicle", "crowd", "perception")  # tables that have such keys
+_KINDS_OF_EGO = ("take_over", "route", "none")
+
+
+def load(layers: Sequence[Layer]) -> tuple[RunConfig, Scenario]:
+    """The configuration that ``layers`` amount to on top of their scenario's own settings.
+
+    Raises:
+        ConfigError: a key or value cannot be used.
+        ScenarioError: the scenario does not exist.
+    """
+    wanted = merge(layers).get("scenario", RunConfig.model_fields["scenario"].default)
+    if not isinstance(wanted, str) or not wanted:
+        build_config(layers)  # names the layer and what was expected
+    try:
+        scenario = find(wanted)
+    except UnknownScenario as error:
+        raise ScenarioError(str(error)) from error
+    for layer in layers:
+        _require_one_ego(layer)
+    own = []
+    if scenario.settings_file is not None:
+        layer = read_toml(scenario.settings_file)
+        settings = {key: value for key, value in layer.values.items() if key != "description"}
+        own = [Layer(layer.origin, settings)]
+    layers = [*own, *layers]
+    identified = _identified(layers)
+    config = build_config([*identified, *layers])
+    own_model = _model_of(build_config(layers) if identified else config)
+    config = _with_one_ego(_each_identified(config, own_model), layers)
+    return _placed(config, scenario), scenario
+
+
+def _identified(layers: Sequence[Layer]) -> list[Layer]:
+    """What the profile of the run's vehicle knows of it: the lowest layer.
+
+    Raises:
+        VehicleError: the profile cannot be used.
+    """
+    vehicle = merge(layers).get("vehicle")
+    profile = vehicle.get("profile") if isinstance(vehicle, Mapping) else None
+    return [Layer(str(profile), {"vehicle": _model_in(profile)})] if profile else []
+
+
+def _model_of(config: RunConfig) -> dict[str, float]:
+    return {"mass": config.vehicle.mass, "friction": config.vehicle.friction}
+
+
+def _each_identified(config: RunConfig, set_model: dict[str, float]) -> RunConfig:
+    """``config`` in which those entries of ``egos`` that name an FMU have what belongs to it.
+
+    Args:
+        config: of the run; its vehicle's M and alpha may be those of its profile.
+        set_model: M and alpha without that: what was identified of another FMU is no other's.
+    """
+    identified = {} if _model_of(config) == set_model else set_model
+    entries = []
+    for entry in config.egos:
+        vehicle = entry.get("vehicle")
+        if isinstance(vehicle, Mapping) and {"fmu", "profile"} & set(vehicle):
+            profile = vehicle.get("profile", "")
+            known = _model_in(profile) if profile else {}
+            entry = {**entry, "vehicle": {"profile": profile, **identified, **known, **vehicle}}
+        entries.append(entry)
+    return config.model_copy(update={"egos": tuple(entries)})
+
+
+def _model_in(profile: object) -> dict[str, float]:
+    """M and alpha as identified; empty if they have not been."""
+    try:
+        model = read_profile(Path(str(profile))).model
+    except FmuError as error:
+        raise VehicleError(str(error)) from error
+    return {} if model is None else {"mass": model.mass, "friction": model.friction}
+
+
+def _with_one_ego(config: RunConfig, layers: Sequence[Layer]) -> RunConfig:
+    """``config`` with the kind of ego that was asked for last, and nothing left of the others.
+
+    A scenario's own route means nothing to a run that takes over a vehicle; written down beside
+    it, the two would contradict each other.
+    """
+    asked = [key for layer in layers for key in _KINDS_OF_EGO if _ego_of(layer).get(key)]
+    nothing: dict[str, Any] = {"take_over": (), "route": (), "none": False}
+    others = {key: value for key, value in nothing.items() if asked and key != asked[-1]}
+    return config.model_copy(update={"ego": config.ego.model_copy(update=others)})
+
+
+def _ego_of(layer: Layer) -> Mapping[str, Any]:
+    ego = layer.values.get("ego")
+    return ego if isinstance(ego, Mapping) else {}
+
+
+def _require_one_ego(layer: Layer) -> None:
+    """Make sure that one origin does not ask for several kinds of ego at once.
+
+    Raises:
+        ConfigError: it does.
+    """
+    ego = _ego_of(layer)
+    named = [layer.name(("ego", key)) for key in _KINDS_OF_EGO if ego.get(key)]
+    if len(named) > 1:
+        msg = (
+            f"{' and '.join(named)}: contradict each other; expected one of them: a vehicle of the "
+            "scenario, an inserted one, or none"
+        )
+        raise ConfigError(msg)
+
+
+def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
+    """``config`` with absolute paths, so that it means the same from any folder."""
+    if config.scenario not in available():
+        config = config.model_copy(update={"scenario": str(scenario.config_file)})
+    placed: dict[str, Any] = {
+        name: section.model_copy(update=_absolute(section.model_dump()))
+        for name, section in config
+        if name in _WITH_FILES
+    }
+    placed["egos"] = tuple(
+        {name: _table_placed(name, table) for name, table in ego.items()} for ego in config.egos
+    )
+    return _presets_read(config.model_copy(update=placed))
+
+
+def _table_placed(name: str, table: Any) -> Any:
+    is_table = name in _WITH_FILES and isinstance(table, Mapping)
+    return {**table, **_absolute(table)} if is_table else table
+
+
+def _absolute(table: Mapping[str, Any]) -> dict[str, str]:
+    """The files that a table's settings name, as far as there are such files."""
+    named = {key: Path(str(table[key])) for key in _FILES if table.get(key)}
+    return {key: str(path.absolute()) for key, path in named.items() if path.is_file()}
+
+
+def _presets_read(config: RunConfig) -> RunConfig:
+    """``config``, whose preset files can be used.
+
+    Raises:
+        ConfigError: one cannot.
+    """
+    named = {config.crowd.preset: "[crowd] preset"}
+    named |= {ego.perception.preset: "[perception] preset" for ego in config.each_ego()}
+    for preset, key in named.items():
+        if preset:
+            try:
+                parameters_of(preset)
+            except ConfigError as error:
+                msg = f"{key}: {error}"
+                raise ConfigError(msg) from error
+    return config
+
+
+def as_layer(config: RunConfig | dict[str, Any] | str | Path) -> Layer:
+    """What a caller of the Python API has set, and nothing of the defaults.
+
+    Raises:
+        ConfigError: it is neither a configuration nor the name of a scenario or TOML file.
+    """
+    if isinstance(config, str | Path):
+        path = Path(config)
+        return read_toml(path) if path.suffix == ".toml" else Layer("", {"scenario": str(config)})
+    if isinstance(config, RunConfig):
+        return Layer("RunConfig", config.model_dump(exclude_unset=True))
+    if isinstance(config, dict):
+        return Layer("configuration", config)
+    msg = (  # type: ignore[unreachable]  # callers without a type checker
+        f"configuration = {config!r}: expected a RunConfig, a dictionary with the keys of the TOML "
+        "file, a scenario's name or a .toml file"
+    )
+    raise ConfigError(msg)

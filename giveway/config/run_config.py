@@ -1,0 +1,191 @@
+"""The configuration of a run: everything that shapes it, and what each of its egos gets of it.
+
+The TOML file, the command line's flags and the Python API are all derived from these classes.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, ValidationError, model_validator
+
+from giveway.config.controller_sections import (
+    MpcConfig,
+    PerceptionConfig,
+    PidConfig,
+    PlannerConfig,
+    RegulationConfig,
+    SafetyConfig,
+    TunedPidConfig,
+)
+from giveway.config.option import Section, option
+from giveway.config.sections import (
+    CrowdConfig,
+    EgoConfig,
+    RecordConfig,
+    SumoConfig,
+    TrafficConfig,
+    VehicleConfig,
+)
+
+
+def _full_name(value: Any) -> Any:
+    """``pid`` was the paper's before there was another one."""
+    return "pid-paper" if value == "pid" else value
+
+
+ControllerName = Annotated[
+    Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"], BeforeValidator(_full_name)
+]
+
+EGO_TABLES = (
+    "controller",
+    "ego",
+    "vehicle",
+    "regulation",
+    "mpc",
+    "pid",
+    "tuned_pid",
+    "planner",
+    "safety",
+    "perception",
+)
+"""What may differ from ego to ego."""
+
+
+class RunConfig(Section):
+    """One run: a scenario, a seed, a controller, and everything that shapes them."""
+
+    scenario: str = option("shared_space", None, "bundled name, folder or .sumocfg", min_length=1)
+    seed: int = option(1, None, "seed of the crowd that giveway adds", ge=0, le=2**31 - 1)
+    controller: ControllerName = option(
+        "mpc",
+        None,
+        "who drives: mpc (plans ahead), pid-tuned, or the paper's: mpc-paper, pid-paper",
+    )
+    time_step: float | None = option(
+        None,
+        "s",
+        "step of vehicle, controller and crowd; none: 0.05 s, or what divides SUMO's step",
+        flag="--time-step",
+        ge=0.001,
+        le=0.5,
+    )
+    time_limit: float | None = option(
+        None,
+        "s",
+        "the run ends this long after the first departure; none: with the scenario",
+        gt=0,
+        le=1e7,
+    )
+    ego: EgoConfig = EgoConfig()
+    vehicle: VehicleConfig = VehicleConfig()
+    crowd: CrowdConfig = CrowdConfig()
+    regulation: RegulationConfig = RegulationConfig()
+    mpc: MpcConfig = MpcConfig()
+    pid: PidConfig = PidConfig()
+    tuned_pid: TunedPidConfig = TunedPidConfig()
+    planner: PlannerConfig = PlannerConfig()
+    safety: SafetyConfig = SafetyConfig()
+    perception: PerceptionConfig = PerceptionConfig()
+    traffic: TrafficConfig = TrafficConfig()
+    sumo: SumoConfig = SumoConfig()
+    record: RecordConfig = RecordConfig()
+    egos: tuple[dict[str, Any], ...] = Field(
+        (), description="one table per ego; what it leaves out is as in the run's own tables"
+    )
+
+    @model_validator(mode="after")
+    def _check_egos(self) -> RunConfig:
+        for ego in self.each_ego():
+            ego.require_speeds_in_reach()
+        return self
+
+    def each_ego(self) -> tuple[EgoRunConfig, ...]:
+        """The configuration of each ego, complete and without ``egos``.
+
+        Raises:
+            ValueError: an entry of ``egos`` holds an unknown key or a value out of range.
+        """
+        if self.ego.none:
+            return ()
+        entries = [self._with(*entry) for entry in enumerate(self.egos)] or [self]
+        return tuple(own for entry in entries for own in entry._one_per_vehicle())
+
+    def _with(self, number: int, entry: dict[str, Any]) -> RunConfig:
+        """This configuration with the keys of one entry of ``egos``, and without ``egos``."""
+        unknown = sorted(set(entry) - set(EGO_TABLES))
+        if unknown:
+            expected = ", ".join(EGO_TABLES)
+            msg = f"egos[{number}]: unknown key '{unknown[0]}'; expected one of {expected}"
+            raise ValueError(msg)
+        values = self.model_dump(exclude={"egos"})
+        for key, value in entry.items():
+            values[key] = {**values[key], **value} if isinstance(value, dict) else value
+        try:
+            return RunConfig.model_validate(values)
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            key = ".".join(map(str, first["loc"]))
+            msg = f"egos[{number}]: {key} = {first['input']!r}: {first['msg']}"
+            raise ValueError(msg) from None
+
+    def _one_per_vehicle(self) -> list[EgoRunConfig]:
+        """One for each vehicle that is taken over, or the one of an inserted ego."""
+        taken = [{"take_over": (name,)} for name in self.ego.take_over] or [{}]
+        return [
+            EgoRunConfig.model_construct(
+                _fields_set=self.model_fields_set,
+                **{**dict(self), "ego": self.ego.model_copy(update=own), "egos": ()},
+            )
+            for own in taken
+        ]
+
+
+class EgoRunConfig(RunConfig):
+    """What a run's configuration amounts to for one of its egos; ``egos`` is empty."""
+
+    @model_validator(mode="after")
+    def _check_egos(self) -> EgoRunConfig:
+        self.require_speeds_in_reach()
+        return self
+
+    @property
+    def ego_id(self) -> str:
+        """SUMO's id of the ego."""
+        return self.ego.take_over[0] if self.ego.take_over else self.ego.id
+
+    @property
+    def optimises(self) -> bool:
+        """Whether a model predictive controller drives: it has a model and a horizon."""
+        return self.controller in {"mpc", "mpc-paper"}
+
+    @property
+    def safety_layer(self) -> bool:
+        """Whether the safety layer watches over the controller."""
+        enabled = self.safety.enabled
+        return not self.controller.endswith("-paper") if enabled is None else enabled
+
+    @property
+    def buffer_distance(self) -> float:
+        """Over which the reference speed rises linearly to v_r beyond d_safe [m]; 0: not so."""
+        if self.controller.endswith("-paper"):
+            return self.pid.buffer_distance
+        linear = self.controller == "pid-tuned" and self.tuned_pid.profile == "linear"
+        return self.tuned_pid.buffer_distance if linear else 0.0
+
+    def require_speeds_in_reach(self) -> None:
+        """Make sure that the MPC may drive at the speeds asked for.
+
+        Raises:
+            ValueError: it may not.
+        """
+        low, high = self.mpc.speed_min, self.mpc.speed_max
+        for key, speed in (
+            ("[regulation] reference_speed", self.regulation.reference_speed),
+            ("[ego] initial_speed", self.ego.initial_speed),
+        ):
+            if self.optimises and speed is not None and not low <= speed <= high:
+                msg = f"{key} = {speed:g}: expected within [mpc] speed_min and speed_max"
+                msg += f", {low:g} to {high:g} [m/s]"
+                raise ValueError(msg)

@@ -1,0 +1,219 @@
+"""The tables of the configuration: every option once, with its unit, bounds, default and source.
+
+Defaults are the reproduction of Yang & Özgüner 2019 (arXiv 1907.05178), their table 1, read as
+docs/reproduction.md explains.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import model_validator
+
+from giveway.config.option import (
+    Displacement,
+    NameList,
+    OptionList,
+    Preset,
+    Rectangle,
+    Section,
+    SumoSeed,
+    TextOrNumber,
+    option,
+)
+
+_SUMO_ID = r"^[^\s|\\'\";,:!<>&*?]+$"  # what SUMO accepts as the name of anything
+_FARTHEST = 1e7  # [m] beyond it a millimetre is lost in rounding
+
+DEFAULT_SPEED = 4.0
+"""[m/s] of an inserted ego at its departure (Yang & Özgüner 2019, table 1)."""
+
+
+class EgoConfig(Section):
+    """The ego: a vehicle of the scenario, or one that giveway inserts; and how far it drives."""
+
+    take_over: NameList = option(
+        (),
+        None,
+        "ids of the scenario's vehicles to drive from their departure on, comma-separated",
+        flag="--ego",
+    )
+    none: bool = option(False, None, "drive no vehicle at all", flag="--no-ego")
+    id: str = option("ego", None, "SUMO id of an inserted ego", pattern=_SUMO_ID)
+    route: NameList = option((), None, "edges that an inserted ego drives along, comma-separated")
+    lane: int | None = option(
+        None,
+        None,
+        "index of its departure lane, 0 is the rightmost; none: the first for cars",
+        ge=0,
+    )
+    depart_time: float = option(
+        0.0, "s", "simulation time at which it enters; at begin if that is later", ge=0, le=1e7
+    )
+    depart_position: float = option(
+        0.0, "m", "its front bumper's place on the first edge at departure", ge=0, le=1e6
+    )
+    initial_speed: float | None = option(
+        None, "m/s", "speed at departure; none: 4 m/s, or SUMO's when taken over", ge=0, le=70
+    )
+    travel_distance: float | None = option(
+        None, "m", "its goal is this far along its way; none: the end of its route", gt=0, le=1e6
+    )
+
+
+class VehicleConfig(Section):
+    """The vehicle FMU, its body, and the plant parameters that the MPC shares with it."""
+
+    fmu: str = option(
+        "fmi2",
+        None,
+        "vehicle FMU: 'fmi2' or 'fmi3' (bundled), or a path",
+        flag="--vehicle",
+        min_length=1,
+    )
+    profile: str = option(
+        "",
+        None,
+        "vehicle profile (TOML) of an FMU of your own; none: drafted from its names and units",
+        flag="--profile",
+    )
+    isolation: Literal["auto", "process", "none"] = option(
+        "auto", None, "where the FMU runs: in a process of its own (auto: unless bundled), or ours"
+    )
+    mass: float = option(
+        1000.0,
+        "kg",
+        "M of the controller's M s'' + alpha s' = u; a profile may know it",
+        gt=0,
+        le=1e6,
+    )
+    friction: float = option(100.0, "N.s/m", "alpha of it; likewise", ge=0, le=1e6)
+    exact: bool = option(
+        False, None, "the bundled FMU solves exactly instead of by the paper's forward Euler"
+    )
+    length: float | None = option(
+        None, "m", "body length; none: 5 m, or SUMO's when taken over", gt=0, le=50
+    )
+    width: float | None = option(
+        None, "m", "body width; none: 2 m, or SUMO's when taken over", gt=0, le=10
+    )
+
+
+class CrowdConfig(Section):
+    """The pedestrians that giveway adds: how many, where, where to and how fast."""
+
+    pedestrians: int = option(
+        0, "persons", "pedestrians to add", flag="--pedestrians", ge=0, le=20_000
+    )
+    spawn_area: Rectangle = option(
+        (23.3, -23.4, 33.2, -12.0),
+        "m",
+        "x_min,y_min,x_max,y_max of the rectangle they start in",
+        flag="--spawn-area",
+    )
+    walk: Displacement = option(
+        (0.0, 30.0), "m", "dx,dy from each one's start to the destination", flag="--walk"
+    )
+    two_sided: bool = option(
+        False, None, "every second pedestrian comes from the other side", flag="--two-sided"
+    )
+    desired_speed_mean: float = option(1.394, "m/s", "mean desired speed", gt=0, le=2.5)
+    desired_speed_sd: float = option(0.26, "m/s", "its standard deviation", ge=0, le=2)
+    desired_speed_min: float = option(0.5, "m/s", "its lower truncation", gt=0, le=2.5)
+    desired_speed_max: float = option(2.2, "m/s", "its upper truncation", gt=0, le=2.5)
+    acceleration_noise: float = option(
+        0.0,
+        "m/s^2",
+        "random acceleration in each step (standard deviation per axis, cut off at twice that)",
+        ge=0,
+        le=5,
+    )
+    minimum_spacing: float = option(0.5, "m", "no two start closer than this", ge=0, le=10)
+    host_edge: str = option(
+        "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"
+    )
+    preset: Preset = option(
+        "SIM",
+        None,
+        "parameters of the VCI model: SIM, TABLE2, or a preset file (TOML)",
+        min_length=1,
+    )
+    zone: TextOrNumber = option(
+        "50",
+        None,
+        "where the scenario's own walkers follow the VCI model: metres round each ego, "
+        "'everywhere', 'none', or a polygon 'x,y x,y x,y ...' [m]",
+        flag="--zone",
+    )
+    zone_margin: float = option(
+        5.0, "m", "they are handed back to SUMO this far outside the zone", ge=0, le=1e4
+    )
+    walls: bool = option(
+        False,
+        None,
+        "the edges of sidewalks, crossings and walkingareas hold people back",
+        flag="--walls",
+    )
+
+    @model_validator(mode="after")
+    def _ordered(self) -> CrowdConfig:
+        if max(map(abs, (*self.spawn_area, *self.walk))) > _FARTHEST:
+            msg = f"spawn_area and walk: expected numbers within +-{_FARTHEST:g} [m]"
+            raise ValueError(msg)
+        x_min, y_min, x_max, y_max = self.spawn_area
+        if not (x_min < x_max and y_min < y_max):
+            msg = "spawn_area: expected x_min < x_max and y_min < y_max [m]"
+            raise ValueError(msg)
+        if not self.desired_speed_min <= self.desired_speed_mean <= self.desired_speed_max:
+            msg = "desired_speed_mean: expected between desired_speed_min and _max [m/s]"
+            raise ValueError(msg)
+        return self
+
+
+class TrafficConfig(Section):
+    """What SUMO's own vehicles know of the pedestrians that giveway moves."""
+
+    yielding: bool = option(
+        True, None, "SUMO's vehicles brake for pedestrians in their way", flag="--yield"
+    )
+    yield_distance: float = option(
+        2.0, "m", "they want to stop this far before a pedestrian", ge=0, le=50
+    )
+
+
+class SumoConfig(Section):
+    """How SUMO is run, and which of its own outputs are wanted."""
+
+    step_length: float | None = option(
+        None, "s", "SUMO's step; none: the scenario's own", gt=0, le=60
+    )
+    seed: SumoSeed = option(
+        "scenario", None, "SUMO's seed: a number, 'scenario' (its own) or 'run' (the run's)"
+    )
+    end: float | None = option(None, "s", "SUMO's end; none: the scenario's own", gt=0, le=1e7)
+    fcd: bool = option(False, None, "write SUMO's floating car data", flag="--fcd")
+    tripinfo: bool = option(False, None, "write SUMO's trip information", flag="--tripinfo")
+    ssm: bool = option(False, None, "write SUMO's surrogate safety measures", flag="--ssm")
+    summary: bool = option(False, None, "write SUMO's summary of each step")
+    options: OptionList = option(
+        (), None, "more options for SUMO, like '--emission-output e.xml'", flag="--sumo-options"
+    )
+
+
+class RecordConfig(Section):
+    """How densely trajectories are recorded, and what counts as a stop."""
+
+    near: float = option(
+        50.0, "m", "who is this near to an ego is recorded at every control step", ge=0, le=1e6
+    )
+    far_period: float = option(
+        1.0, "s", "everybody else is recorded once in this time", gt=0, le=1e6
+    )
+    predictions: float | None = option(
+        None,
+        "s",
+        "keep the predicted positions this far apart in look-ahead; none: keep none",
+        gt=0,
+        le=1e3,
+    )
+    stop_speed: float = option(0.2, "m/s", "a stop of the ego: it is slower than this", gt=0, le=20)

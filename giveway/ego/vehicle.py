@@ -1,0 +1,257 @@
+"""An ego's vehicle FMU: from the configuration to one that is ready to start."""
+
+from __future__ import annotations
+
+import dataclasses
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from fmus import (
+    FmuError,
+    FmuOutputError,
+    FmuStartCrashError,
+    Vehicle,
+    VehicleProfile,
+    bundled_fmu,
+    choose_profile,
+    describe,
+    is_bundled,
+    open_vehicle,
+    prepare,
+    read_profile,
+)
+from fmus.checking import convergence, goes_the_wrong_way, opener_of, remedy
+from fmus.profile import Axis
+from giveway.config import RunConfig
+from giveway.config.sections import DEFAULT_SPEED
+from giveway.errors import VehicleError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from contextlib import ExitStack
+
+    from fmus.profile import FittedModel
+    from giveway.config import EgoRunConfig
+    from giveway.config.sections import VehicleConfig
+
+_CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
+_SAME_STEP = 1e-6  # relative
+_OTHER_SIZE = 2.0  # times as heavy, or as light, as the defaults' car
+_sound: set[tuple[str, str, float, float, float]] = set()  # what has passed in this process
+_BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
+
+
+def fmu_path(settings: VehicleConfig) -> Path:
+    """The .fmu file that a configuration names."""
+    version = _BUNDLED.get(settings.fmu)
+    return Path(settings.fmu) if version is None else bundled_fmu(version)
+
+
+def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
+    """Make sure, before anything runs, that every FMU can be read and its profile fits.
+
+    Args:
+        egos: the configuration of each.
+        time_step: of the co-simulation [s].
+
+    Raises:
+        VehicleError: one cannot be driven.
+    """
+    for config in egos:
+        path = fmu_path(config.vehicle)
+        try:
+            prepare(path, step_size=time_step, profile=_profile(config.vehicle))
+        except FmuError as error:
+            raise VehicleError(str(error)) from error
+
+
+def open_for(
+    config: EgoRunConfig, time_step: float, stack: ExitStack
+) -> tuple[Vehicle, dict[str, object]]:
+    """The vehicle of one ego, and what the manifest says of it.
+
+    An FMU that is not ours is first driven for some seconds in full and in half steps.
+
+    Args:
+        config: of the ego.
+        time_step: of the co-simulation [s].
+        stack: closes the vehicle.
+
+    Raises:
+        FmuError: it cannot be loaded, its steps do not converge, or it goes the wrong way.
+    """
+    settings = config.vehicle
+    path, profile = fmu_path(settings), _profile(settings)
+    ours = is_bundled(path)
+    start_values: dict[str, Any] = {}
+    if ours and profile is None:
+        start_values = {
+            "M": settings.mass,
+            "alpha": settings.friction,
+            "exact": settings.exact,
+        }
+    isolated = {"auto": None, "process": True, "none": False}[settings.isolation]
+
+    if not ours:
+        profile = choose_profile(path, profile)
+        if profile.fmu.self_check:
+            _require_sound(path, profile, config, time_step)
+    vehicle = open_vehicle(
+        path,
+        step_size=time_step,
+        profile=profile,
+        start_values=start_values,
+        isolated=isolated,
+    )
+    stack.callback(vehicle.close)
+    described: dict[str, object] = dataclasses.asdict(describe(path))
+    described["bundled"] = ours
+    described["isolated"] = not ours if isolated is None else isolated
+    if profile is not None:
+        described["profile"] = profile.model_dump(exclude_unset=True)
+    return vehicle, described
+
+
+def _require_sound(
+    path: Path,
+    profile: VehicleProfile,
+    config: EgoRunConfig,
+    time_step: float,
+) -> None:
+    """Drive an FMU for some seconds in its full steps and in smaller ones, once per process.
+
+    It is always isolated: a crash here would cost the rows of the run that is to come.
+
+    One that fails whatever its step is left to the run, which keeps the rows up to then.
+
+    Raises:
+        FmuError: its steps do not converge, or it goes the wrong way.
+    """
+    speed = config.ego.initial_speed
+    speed = DEFAULT_SPEED if speed is None else speed
+    force = min(_CHECK_FORCE, config.mpc.force_limit)
+    digest = sha256(path.read_bytes()).hexdigest()
+    key = (digest, profile.model_dump_json(), time_step, speed, force)
+    if key in _sound:
+        return
+    try:
+        result = convergence(
+            opener_of(path, step_size=time_step, profile=profile),
+            profile.fmu.step or time_step,
+            force=force,
+            start_speed=speed,
+        )
+    except FmuStartCrashError:
+        raise  # there will be no rows; and a hang is not to be waited for twice
+    except FmuError:
+        return
+    if result.problem:
+        raise FmuOutputError(f"{path}: {result.problem}; {remedy(result)}")
+    if any(goes_the_wrong_way(trace) for trace in result.traces[:1]):
+        role = next(role for role, axis in profile.inputs if isinstance(axis, Axis))
+        msg = (
+            f"{path}: a force forwards slows it down, and one backwards does not; turn the sign: "
+            f"add the line gain = -1.0 to [inputs.{role}], or to [outputs.speed]"
+        )
+        raise FmuOutputError(msg)
+    _sound.add(key)
+
+
+def model_margin(config: EgoRunConfig, time_step: float) -> float:
+    """What the MPC keeps beyond the safe distance [m]: what the identified model is wrong by.
+
+    Over a horizon that is longer than the fit's it grows with the square, as the way under an
+    acceleration that is not accounted for.
+
+    Args:
+        config: of the ego.
+        time_step: of the co-simulation [s].
+
+    Raises:
+        VehicleError: the profile cannot be read.
+    """
+    model = _model(config)
+    if model is None:
+        return 0.0
+    return model.position_error * max(1.0, config.mpc.horizon * time_step / model.horizon) ** 2
+
+
+def identified_reaction_time(config: EgoRunConfig) -> float:
+    """The dead time and the lag of the actuator [s], as the profile knows them.
+
+    Args:
+        config: of the ego.
+
+    Raises:
+        VehicleError: the profile cannot be read.
+    """
+    model = _model(config)
+    return 0.0 if model is None else model.delay + model.lag
+
+
+def model_remark(config: EgoRunConfig, time_step: float) -> str:
+    """What the controller knows of its vehicle by identification; empty if nothing.
+
+    Args:
+        config: of the ego.
+        time_step: of the co-simulation [s].
+    """
+    model = _model(config)
+    if model is None:
+        return ""
+    settings = config.vehicle
+    text = (
+        f"ego '{config.ego_id}': identified M = {model.mass:.4g} kg, alpha = {model.friction:.4g} "
+        f"N.s/m (R² = {model.r_squared:.3f})"
+    )
+    if (settings.mass, settings.friction) != (model.mass, model.friction):
+        text += f", overruled by M = {settings.mass:g} kg, alpha = {settings.friction:g} N.s/m"
+    if config.optimises:
+        margin = model_margin(config, time_step)
+        text += f"; the MPC keeps {margin:.2g} m more than the safe distance for its errors"
+    if abs(model.time_step - time_step) > _SAME_STEP * time_step:
+        text += f"; it was fitted for steps of {model.time_step:g} s and not {time_step:g} s"
+    return text + _other_size(config)
+
+
+def _other_size(config: EgoRunConfig) -> str:
+    """The flags for a vehicle of another size than that of the defaults; empty for a car.
+
+    Forces that move 1000 kg as they should hardly brake a truck.
+    """
+    usual = RunConfig()
+    ratio = config.vehicle.mass / usual.vehicle.mass
+    if 1.0 / _OTHER_SIZE < ratio < _OTHER_SIZE:
+        return ""
+    flags = [
+        f"{flag} {float(f'{ratio * default:.2g}'):.10g}"
+        for flag, value, default in (
+            ("--mpc-force-limit", config.mpc.force_limit, usual.mpc.force_limit),
+            ("--mpc-force-rate-limit", config.mpc.force_rate_limit, usual.mpc.force_rate_limit),
+            (
+                "--pid-proportional-gain",
+                config.pid.proportional_gain,
+                usual.pid.proportional_gain,
+            ),
+        )
+        if value == default
+    ]
+    if not flags:
+        return ""
+    return (
+        f"; forces and gains that are still those of {usual.vehicle.mass:g} kg would be, for the "
+        f"same accelerations, {' '.join(flags)}"
+    )
+
+
+def _model(config: EgoRunConfig) -> FittedModel | None:
+    try:
+        profile = _profile(config.vehicle)
+    except FmuError as error:
+        raise VehicleError(str(error)) from error
+    return None if profile is None else profile.model
+
+
+def _profile(settings: VehicleConfig) -> VehicleProfile | None:
+    return read_profile(Path(settings.profile)) if settings.profile else None

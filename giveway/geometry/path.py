@@ -1,0 +1,157 @@
+"""The ego's path: a polyline along which the vehicle's one-dimensional motion is laid out.
+
+A *station* is the arc length [m] along the polyline; the ego's station is that of the centre of
+its front bumper, which is also SUMO's reference point of a vehicle. Beyond its ends the path goes
+on straight.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from giveway.errors import ScenarioError
+from giveway.geometry.kernel import kernel
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    Array = NDArray[np.float64]
+
+
+class Pose(NamedTuple):
+    """A place and a direction in the network's frame."""
+
+    x: float  # [m]
+    y: float  # [m]
+    heading: float  # [rad] counter-clockwise from +x
+
+
+_SEARCH = 20.0  # [m] SUMO's metres along a lane differ from the polyline's by less
+
+
+@dataclass(frozen=True)
+class EgoPath:
+    """A polyline with its stations and headings.
+
+    Attributes:
+        vertices: (k + 1, 2) [m].
+        stations: (k + 1,) [m] arc length at each vertex, from 0.
+        headings: (k,) [rad] of each segment.
+    """
+
+    vertices: Array
+    stations: Array
+    headings: Array
+
+    @classmethod
+    def through(cls, points: ArrayLike) -> EgoPath:
+        """The path through ``points`` (k, 2) [m]; repeated points are dropped.
+
+        Raises:
+            ScenarioError: fewer than two distinct finite points.
+        """
+        vertices = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        if len(vertices):
+            moved = np.hypot(*np.diff(vertices, axis=0).T) > 1e-9
+            vertices = np.ascontiguousarray(vertices[np.concatenate([[True], moved])])
+        if len(vertices) < 2 or not np.isfinite(vertices).all():
+            msg = f"ego path: {len(vertices)} distinct points; expected at least two finite ones"
+            raise ScenarioError(msg)
+        steps = np.diff(vertices, axis=0)
+        stations = np.concatenate([[0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))])
+        return cls(vertices, stations, np.arctan2(steps[:, 1], steps[:, 0]))
+
+    @property
+    def length(self) -> float:
+        """Arc length [m]."""
+        return float(self.stations[-1])
+
+    def pose(self, station: float, length: float = 0.0) -> Pose:
+        """A body's pose whose front's middle is at ``station`` [m]; its rear's is on the path too.
+
+        Args:
+            station: [m].
+            length: of the body [m]; 0 gives the path's own direction.
+        """
+        return Pose(*body_pose(self.vertices, self.stations, self.headings, station, length))
+
+    def locate(self, x: float, y: float, *, near: float) -> tuple[float, float]:
+        """Station [m] and lateral offset [m] of (x, y), looked for about the station ``near``."""
+        first = segment_at(self.stations, near - _SEARCH)
+        last = segment_at(self.stations, near + _SEARCH)
+        part = slice(first, last + 2)
+        station, lateral = project(self.vertices[part], self.stations[part], x, y)
+        return station, lateral
+
+    def project(self, points: ArrayLike) -> tuple[Array, Array]:
+        """Stations (n,) [m] and lateral offsets (n,) [m, left positive] of ``points`` (n, 2)."""
+        points = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        frenet = np.array([project(self.vertices, self.stations, x, y) for x, y in points])
+        frenet = frenet.reshape(-1, 2)
+        return frenet[:, 0], frenet[:, 1]
+
+
+@kernel
+def segment_at(stations: Array, station: float) -> int:
+    """Index of the segment that ``station`` [m] lies on; the first or last one beyond the ends."""
+    i: int = np.searchsorted(stations, station, side="right") - 1  # type: ignore[assignment]
+    return min(max(i, 0), len(stations) - 2)
+
+
+@kernel
+def point_on(vertices: Array, stations: Array, i: int, station: float) -> tuple[float, float]:
+    """x, y [m] at ``station`` [m] on the line through segment i."""
+    along = station - stations[i]
+    length = stations[i + 1] - stations[i]
+    x = vertices[i, 0] + along * ((vertices[i + 1, 0] - vertices[i, 0]) / length)
+    y = vertices[i, 1] + along * ((vertices[i + 1, 1] - vertices[i, 1]) / length)
+    return x, y
+
+
+@kernel
+def body_pose(
+    vertices: Array, stations: Array, headings: Array, station: float, length: float
+) -> tuple[float, float, float]:
+    """x, y [m] of the front's middle and heading [rad] of a body; straight beyond the ends.
+
+    The heading is that of the line from rear to front, as SUMO draws vehicles.
+    """
+    i = segment_at(stations, station)
+    x, y = point_on(vertices, stations, i, station)
+    j = segment_at(stations, station - length)
+    if i == j:
+        return x, y, headings[i]
+    x_r, y_r = point_on(vertices, stations, j, station - length)
+    if (x - x_r) ** 2 + (y - y_r) ** 2 < 1e-12:  # a path that returns to where it was
+        return x, y, headings[i]
+    return x, y, np.arctan2(y - y_r, x - x_r)
+
+
+@kernel
+def project(vertices: Array, stations: Array, x: float, y: float) -> tuple[float, float]:
+    """Station and signed lateral offset [m] of the path's point nearest to (x, y)."""
+    best_distance = np.inf
+    best_station = 0.0
+    best_lateral = 0.0
+    last = len(vertices) - 2
+    for i in range(last + 1):
+        x_0, y_0 = vertices[i, 0], vertices[i, 1]
+        length = stations[i + 1] - stations[i]
+        e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
+        along = (x - x_0) * e_x + (y - y_0) * e_y
+        if along < 0.0 and i > 0:  # the first and the last segment go on for ever
+            along = 0.0
+        if along > length and i < last:
+            along = length
+        d_x, d_y = x - (x_0 + along * e_x), y - (y_0 + along * e_y)
+        distance = d_x * d_x + d_y * d_y
+        if distance < best_distance:
+            best_distance = distance
+            best_station = stations[i] + along
+            best_lateral = np.sqrt(distance)
+            if e_x * d_y - e_y * d_x < 0.0:
+                best_lateral = -best_lateral
+    return best_station, best_lateral

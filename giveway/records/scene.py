@@ -1,0 +1,59 @@
+"""What stands still in a run, or never changes: the road's outlines and the vehicles' bodies.
+
+A results folder keeps it in ``scene.json``, so that a replay needs neither SUMO nor the scenario,
+which may be gone by then.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+SCENE_FILE = "scene.json"
+
+Outline = tuple[tuple[float, float], ...]
+Body = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """The road and the bodies on it.
+
+    Attributes:
+        road: closed outlines [m] of lanes, crossings and walkingareas.
+        bodies: length and width [m] of vehicles, by their ids.
+    """
+
+    road: tuple[Outline, ...] = ()
+    bodies: dict[str, Body] | None = None
+
+    def body(self, vehicle: str, otherwise: Body) -> Body:
+        """Length and width [m] of a vehicle, as far as they are known."""
+        return (self.bodies or {}).get(vehicle, otherwise)
+
+    def to_json(self) -> str:
+        """The scene as one line of JSON."""
+        return json.dumps(asdict(self), separators=(",", ":"), ensure_ascii=False) + "\n"
+
+    @classmethod
+    def read(cls, folder: Path) -> Scene:
+        """The scene that a results folder keeps; an empty one where there is none."""
+        try:
+            kept = json.loads((folder / SCENE_FILE).read_text(encoding="utf-8"))
+            road = tuple(tuple((float(x), float(y)) for x, y in line) for line in kept["road"])
+            bodies = {
+                str(name): (float(length), float(width))
+                for name, (length, width) in (kept["bodies"] or {}).items()
+            }
+        except (OSError, ValueError, TypeError, KeyError, AttributeError):
+            return cls()
+        return cls(road, bodies)

@@ -1,0 +1,117 @@
+"""What happened in a run, in words: why each controller acted, and the events on the time line."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import pandas as pd
+    from numpy.typing import NDArray
+
+    from giveway.config import EgoRunConfig
+
+_INFEASIBLE = {
+    "infeasible: too close": "no plan: the next position is already inside the safe distance",
+    "infeasible: cannot stop": "no plan: not even full braking keeps the safe distance",
+    "infeasible: speed bounds": "no plan: the speed is outside its bounds",
+    "infeasible: cannot hold speed": "no plan: the speed cannot be held within its bounds",
+    "infeasible: certified": "no plan keeps all constraints (proven)",
+}
+_REASONS = {
+    "optimal": "the MPC's plan keeps every constraint",
+    "selected": "this run is driven by the PID alone",
+    "infeasible": "no plan keeps all constraints",
+}
+_MANOEUVRES = {
+    "clear": "nobody is in the way of driving on",
+    "drive on": "driving on costs least, for all that people may answer to it",
+    "as planned": "nothing costs less than what was planned before",
+}
+_AIMED = re.compile(r"(?P<rate>[-+][\d.e+-]+ m/s\^2) to (?P<speed>[\d.e+-]+ m/s)")
+_SAFETY = {
+    "safety layer": "the safety layer brakes: a stop must stay possible",
+    "unavoidable": "the safety layer brakes: no braking is surely enough",
+}
+
+
+def why(reason: str, status: str) -> dict[str, Any]:
+    """Why a controller acted, and whether the QP was infeasible.
+
+    Args:
+        reason: as in ``ego.csv``.
+        status: the solver's.
+    """
+    infeasible = reason.startswith("infeasible") or status.startswith("infeasible")
+    text = _SAFETY.get(reason) or _INFEASIBLE.get(status) or _REASONS.get(reason)
+    text = text or _manoeuvre(reason)
+    if text is None:
+        text = f"the plan was rejected ({reason})" if reason.startswith("solver") else reason
+    return {"text": text, "infeasible": infeasible}
+
+
+def _manoeuvre(name: str) -> str | None:
+    """Why the planning MPC chose a manoeuvre; None: it is none of its."""
+    aimed = _AIMED.fullmatch(name)
+    if aimed is None:
+        return _MANOEUVRES.get(name)
+    if float(aimed["rate"].split()[0]) == 0.0:
+        return "keeping the speed costs least"
+    return f"slowing down to {aimed['speed']} at {aimed['rate'].lstrip('-')} costs least"
+
+
+def events(rows: pd.DataFrame, people: pd.DataFrame, config: EgoRunConfig) -> list[dict[str, Any]]:
+    """What to look at, in the order of time.
+
+    Args:
+        rows: one ego's of ``ego.csv``.
+        people: its rows of ``pedestrians.csv``.
+        config: of this ego.
+
+    Returns:
+        For each event its ``kind``, ``from`` and ``to`` [s], a ``text``, and ``who`` was met.
+    """
+    time = rows["time"].to_numpy(dtype=np.float64)
+    found = []
+    for start, end in _phases(rows["speed"].to_numpy() < config.record.stop_speed, time):
+        found.append(_event("stop", start, end, f"stands for {end - start:.1f} s"))
+    for acting in ("pid", "safety") if config.optimises else ("safety",):
+        for start, end in _phases(rows["controller"].to_numpy() == acting, time):
+            at = int(np.searchsorted(time, start))
+            told = why(str(rows["reason"].iloc[at]), str(rows["solver_status"].iloc[at]))
+            found.append(_event(acting, start, end, told["text"]))
+    found += _encounters(people)
+    return sorted(found, key=lambda event: (event["from"], event["to"], event["kind"]))
+
+
+def _encounters(people: pd.DataFrame) -> Iterator[dict[str, Any]]:
+    """The closest approach of all, and everybody whom the ego touched."""
+    if not {"id", "minimum_clearance", "time_of_minimum_clearance"} <= set(people):
+        return
+    known = people.dropna(subset=["minimum_clearance", "time_of_minimum_clearance"])
+    if not len(known):
+        return
+    closest = known["minimum_clearance"].idxmin()
+    for index, row in known.iterrows():
+        clearance, at = float(row["minimum_clearance"]), float(row["time_of_minimum_clearance"])
+        if clearance < 0.0:
+            text = f"overlaps with {row['id']} by {-clearance:.2f} m"
+            yield _event("overlap", at, at, text, str(row["id"]))
+        elif index == closest:
+            text = f"closest approach: {clearance:.2f} m to {row['id']}"
+            yield _event("closest", at, at, text, str(row["id"]))
+
+
+def _event(kind: str, start: float, end: float, text: str, who: str = "") -> dict[str, Any]:
+    return {"kind": kind, "from": round(start, 6), "to": round(end, 6), "text": text, "who": who}
+
+
+def _phases(active: NDArray[np.bool_], time: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
+    """From when to when [s] something was so; a command holds until the next instant."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], active, [False])).astype(np.int8)))
+    for start, end in zip(edges[::2], edges[1::2], strict=True):
+        yield float(time[start]), float(time[min(end, len(time) - 1)])

@@ -1,0 +1,106 @@
+"""What a run was made of, so that anybody can make it again: versions, hashes, seeds, command."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from giveway._version import __version__
+from giveway.scenario_files import read_scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from giveway.config import RunConfig
+    from sumo_scenarios import Scenario
+
+_PACKAGES = ("daqp", "fmpy", "libsumo", "numba", "numpy", "osqp", "pandas", "shapely")
+
+
+def sha256(content: bytes) -> str:
+    """The hexadecimal SHA-256 of ``content``."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def software_versions() -> dict[str, str]:
+    """Versions of everything whose version can change a number."""
+    versions = {"giveway": __version__, "python": platform.python_version()}
+    for name in _PACKAGES:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            versions[name] = "unknown"
+    return versions | {"platform": platform.platform(), "machine": platform.machine()}
+
+
+def scenario_inputs(scenario: Scenario) -> dict[str, Path]:
+    """The scenario's configuration, settings and every input file, by path from its folder."""
+    files = [scenario.config_file]
+    files += [path for _, path in read_scenario(scenario.config_file).inputs]
+    if scenario.settings_file is not None:
+        files.append(scenario.settings_file)
+    folder = scenario.config_file.parent
+    return {_seen_from(folder, file): file for file in files if file.is_file()}
+
+
+def scenario_hashes(scenario: Scenario) -> dict[str, str]:
+    """SHA-256 of each of the :func:`scenario_inputs`."""
+    inputs = scenario_inputs(scenario)
+    return {name: sha256(file.read_bytes()) for name, file in inputs.items()}
+
+
+def _seen_from(folder: Path, file: Path) -> str:
+    try:
+        return Path(os.path.relpath(file, folder)).as_posix()
+    except ValueError:  # on another drive
+        return file.name
+
+
+def manifest(
+    config: RunConfig,
+    scenario: Scenario,
+    *,
+    config_text: str,
+    vehicles: dict[str, dict[str, Any]],
+    pedestrians: dict[str, int],
+    traffic: dict[str, float],
+    sumo: dict[str, float],
+    time_step: float | None,
+    remarks: Sequence[str],
+    ending: str,
+    error: str | None,
+) -> dict[str, Any]:
+    """The contents of ``manifest.json``; nothing in it depends on when the run was made.
+
+    Args:
+        config: the run's.
+        scenario: its scenario.
+        config_text: the configuration as it is written.
+        vehicles: each ego's FMU.
+        pedestrians: the ledger of who was moved.
+        traffic: what the yield layer did.
+        sumo: seed and step length in effect.
+        time_step: of the co-simulation [s]; None: unknown, the process died.
+        remarks: for the user.
+        ending: why the run ended.
+        error: what ended it, if it failed.
+    """
+    return {
+        "ending": ending,
+        "error": error,
+        "remarks": list(remarks),
+        "reproduce": "giveway run --config config.toml --out ANOTHER_FOLDER",
+        "seed": config.seed,
+        "time_step": time_step,
+        "sumo": sumo,
+        "scenario": {"name": scenario.name, "sha256": scenario_hashes(scenario)},
+        "vehicles": vehicles,
+        "pedestrians": pedestrians,
+        "traffic": traffic,
+        "configuration_sha256": sha256(config_text.encode()),
+        "software": software_versions(),
+    }

@@ -1,0 +1,144 @@
+"""The run's tables as pandas frames, columns as in :mod:`giveway.records.columns`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from giveway.geometry.angles import headings_to_angles
+from giveway.records.columns import (
+    EGO_COLUMNS,
+    PREDICTION_COLUMNS,
+    TIMING_COLUMNS,
+    TRAJECTORY_COLUMNS,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from giveway.records.tracks import (
+        BackgroundTrack,
+        CrowdTrack,
+        EgoTrack,
+        PredictionTrack,
+        Timings,
+    )
+
+    Array = NDArray[np.float64]
+
+_STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
+
+
+def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
+    """``ego.csv``: one row per control instant."""
+    gaps = (track.gap, track.vehicle_gap, track.stop_gap)
+    gap, vehicle_gap, stop_gap = (np.where(np.isfinite(each), each, np.nan) for each in gaps)
+    values = (
+        track.time,
+        ego_id,
+        track.position,
+        track.front_x,
+        track.front_y,
+        headings_to_angles(track.heading),
+        track.speed,
+        track.acceleration,
+        track.force,
+        track.acting,
+        track.reason,
+        track.solver_status,
+        track.solver_iterations,
+        gap,
+        track.reference_speed,
+        vehicle_gap,
+        stop_gap,
+    )
+    names = [column.name for column in EGO_COLUMNS]
+    return pd.DataFrame(dict(zip(names, values, strict=True)), index=range(len(track.time)))
+
+
+def prediction_table(track: PredictionTrack, ego_id: str, ids: Sequence[str]) -> pd.DataFrame:
+    """``predictions.csv``: one row per control instant, pedestrian and look-ahead."""
+    names = np.array(ids, dtype=object)
+    values = (
+        track.time,
+        ego_id,
+        names[track.pedestrian],
+        track.look_ahead,
+        track.x,
+        track.y,
+    )
+    columns = [column.name for column in PREDICTION_COLUMNS]
+    table = dict(zip(columns, values, strict=True))
+    return pd.DataFrame(table, index=range(len(track.time)))
+
+
+def trajectory_table(
+    time: Array,
+    egos: Sequence[tuple[str, EgoTrack]],
+    crowd: CrowdTrack,
+    background: BackgroundTrack,
+) -> pd.DataFrame:
+    """``trajectories.csv``: at each instant the egos, SUMO's own vehicles, the pedestrians."""
+    driven = [
+        _moving(ego.time, name, "ego", ego.front_x, ego.front_y, ego.heading, ego.speed)
+        for name, ego in egos
+    ]
+    frames = [
+        *driven,
+        _moving(
+            background.time,
+            background.id,
+            background.type,
+            background.x,
+            background.y,
+            background.heading,
+            background.speed,
+        ),
+        _walking(time, crowd),
+    ]
+    frames = [frame for frame in frames if len(frame)]
+    names = [column.name for column in TRAJECTORY_COLUMNS]
+    if not frames:
+        return pd.DataFrame(columns=names)
+    table = pd.concat(frames, ignore_index=True)
+    table["time"] = table["time"].round(6)  # SUMO's clock and ours differ in the last digit
+    return table.sort_values("time", kind="stable", ignore_index=True)[names]
+
+
+def _moving(
+    time: Array,
+    name: object,
+    kind: object,
+    x: Array,
+    y: Array,
+    heading: Array,
+    speed: Array,
+) -> pd.DataFrame:
+    velocity = {"vx": speed * np.cos(heading), "vy": speed * np.sin(heading)}
+    placed = {"time": time, "id": name, "type": kind, "x": x, "y": y}
+    angle = headings_to_angles(heading)
+    return pd.DataFrame({**placed, "angle": angle, "speed": speed, **velocity})
+
+
+def _walking(time: Array, crowd: CrowdTrack) -> pd.DataFrame:
+    speed = np.hypot(crowd.vx, crowd.vy)
+    angle = headings_to_angles(np.arctan2(crowd.vy, crowd.vx))
+    angle = np.where(speed < _STANDING, np.nan, angle)
+    angles = pd.Series(angle).groupby(crowd.pedestrian).ffill().fillna(0.0)
+    ids = np.array(crowd.ids, dtype=object)[crowd.pedestrian]
+    placed = {"time": time[crowd.step], "id": ids, "type": "pedestrian"}
+    moving = {"angle": angles, "speed": speed, "vx": crowd.vx, "vy": crowd.vy}
+    return pd.DataFrame({**placed, "x": crowd.x, "y": crowd.y, **moving})
+
+
+def timing_table(time: Array, timings: Timings) -> pd.DataFrame:
+    """``timing.csv``: computing times [us]; the only table that differs between equal runs."""
+    names = [column.name for column in TIMING_COLUMNS]
+    microseconds = np.round(timings.seconds * 1e6, 1)
+    frame = pd.DataFrame(microseconds, columns=names[1:])
+    frame.insert(0, names[0], time[: len(frame)])
+    return frame

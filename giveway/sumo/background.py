@@ -1,0 +1,33 @@
+"""SUMO's own vehicles at one instant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class BackgroundVehicles:
+    """SUMO's own vehicles at one instant; ``x``, ``y`` are front-bumper centres."""
+
+    ids: tuple[str, ...]
+    types: tuple[str, ...]
+    x: NDArray[np.float64]  # (m,) [m]
+    y: NDArray[np.float64]  # (m,) [m]
+    heading: NDArray[np.float64]  # (m,) [rad] counter-clockwise from +x
+    speed: NDArray[np.float64]  # (m,) [m/s]
+    length: NDArray[np.float64]  # (m,) [m]
+    width: NDArray[np.float64]  # (m,) [m]
+
+    @property
+    def numbers(self) -> tuple[NDArray[np.float64], ...]:
+        """All columns but ids and types."""
+        return self.x, self.y, self.heading, self.speed, self.length, self.width
+
+
+NO_VEHICLES = BackgroundVehicles((), (), *(np.empty(0) for _ in range(6)))
