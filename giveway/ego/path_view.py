@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_WINDOW = 5.0  # [m] over which the curvature of a polyline is taken: its corners are none of ours
+_HALF = 2.5  # [m] before and behind a place, whose mean headings give the curvature there
 
 
 class PathView:
@@ -28,8 +28,11 @@ class PathView:
 
     def __init__(self, path: EgoPath) -> None:
         self._path = path
-        self._middles = (path.stations[1:] + path.stations[:-1]) / 2.0
-        self._turned = np.unwrap(path.headings)
+        headings = np.unwrap(path.headings)
+        beyond = 3.0 * _HALF  # it goes on straight
+        self._at = np.concatenate([[-beyond], path.stations, [path.length + beyond]])
+        steps = np.diff(self._at) * np.concatenate([headings[:1], headings, headings[-1:]])
+        self._turned = np.concatenate([[0.0], np.cumsum(steps)])  # the heading's integral
         self.station = 0.0
 
     def remaining(self) -> float:
@@ -46,8 +49,14 @@ class PathView:
         return np.column_stack([x, y, heading])
 
     def curvature(self, distances: Array) -> Array:
-        """(k,) [1/m] at ``distances`` (k,) [m] ahead, the mean over 5 m; positive to the left."""
-        at, half = self.station + distances, _WINDOW / 2.0
-        turned = np.interp(at + half, self._middles, self._turned)
-        curvature: Array = (turned - np.interp(at - half, self._middles, self._turned)) / _WINDOW
+        """(k,) [1/m] at ``distances`` (k,) [m] ahead, the mean over 5 m; positive to the left.
+
+        A polyline turns in its corners only: what counts is how the mean headings of the 2.5 m
+        before and behind a place differ.
+        """
+        at = np.clip(self.station + distances, -_HALF, self._path.length + _HALF)
+        before, here, behind = (
+            np.interp(at + shift, self._at, self._turned) for shift in (-_HALF, 0.0, _HALF)
+        )
+        curvature: Array = (before - 2.0 * here + behind) / _HALF**2
         return curvature
