@@ -19,8 +19,8 @@ from fmpy import extract, read_model_description
 from fmpy.fmi3 import FMU3Slave
 
 from controller import Observation
-from fmus.controller_fmu.export import export_controller
-from fmus.controller_fmu.parameters import ControllerParameters
+from fmus.sources.export import export_controller
+from fmus.sources.parameters import ControllerParameters
 from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 

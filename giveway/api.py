@@ -176,14 +176,12 @@ def simulate(
     Raises:
         GivewayError: the run could not begin.
     """
-
-    def interrupted() -> bool:
-        return interrupt is not None and interrupt.requested
+    interrupt = interrupt or DeferredInterrupt()  # one that is not entered requests nothing
 
     def goes_on(clock: float) -> bool:
         if watcher is not None:
             watcher(Progress(0.0, clock, math.nan, math.nan, math.nan, "", 0))
-        return not interrupted()
+        return not interrupt.requested
 
     with ExitStack() as stack:
         parts = assemble(checked, stack, outputs=outputs, native_log=native_log, goes_on=goes_on)
@@ -192,7 +190,7 @@ def simulate(
         began = perf_counter()
         error: Exception | None = None
         try:
-            ending = loop.run(watcher, interrupted)
+            ending = loop.run(watcher, interrupt)
         except Exception as failure:  # whatever it is, the rows so far are the user's
             error, ending = failure, Ending.FAILED
         elapsed = perf_counter() - began

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from controller import Pid, SpeedController
-from fmus.controller_fmu.export import export_controller
-from fmus.controller_fmu.parameters import CONTROLLER_FILES, ControllerParameters
 from fmus.errors import FmuError
+from fmus.sources.export import export_controller
+from fmus.sources.parameters import CONTROLLER_FILES, ControllerParameters
 from giveway.cli.run import layers_of
 from giveway.config.loading import load
 from giveway.cosimulation.preflight import control_step

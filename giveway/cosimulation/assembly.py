@@ -29,7 +29,6 @@ from pedestrian_model import (
     CrowdModel,
     PedestrianModelError,
     Surroundings,
-    arrived,
 )
 
 if TYPE_CHECKING:
@@ -37,13 +36,9 @@ if TYPE_CHECKING:
     from contextlib import ExitStack
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from giveway.config import EgoRunConfig, RunConfig
     from giveway.cosimulation.preflight import CheckedRun
     from giveway.ego.ego import Driver
-
-ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
 
 
 @dataclass(frozen=True)
@@ -81,10 +76,6 @@ class Parts:
                 "walkway; they take the straight line"
             )
         return (*self.remarks, *remarks)
-
-    def arrived(self, crowd: Crowd) -> NDArray[np.bool_]:
-        """(n,) who of ``crowd`` has reached the last way-point."""
-        return arrived(crowd, ARRIVAL_RADIUS)
 
 
 def assemble(

@@ -22,7 +22,7 @@ from fmus import (
     read_profile,
 )
 from fmus.checking import convergence, goes_the_wrong_way, opener_of, remedy
-from fmus.profile import Axis
+from fmus.profile.vehicle_profile import Axis
 from giveway.config import RunConfig
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.errors import VehicleError
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from contextlib import ExitStack
 
-    from fmus.profile import FittedModel
+    from fmus.profile.vehicle_profile import FittedModel
     from giveway.config import EgoRunConfig
     from giveway.config.sections import VehicleConfig
 

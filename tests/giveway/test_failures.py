@@ -43,7 +43,7 @@ def test_a_nan_in_the_crowd_is_named_by_id_and_step() -> None:
         loop = Loop(parts, recorder)
         parts.roster.crowd.position[3] = np.nan
         with pytest.raises(GivewayError, match=r"ped3.*step 0"):
-            loop.run(None, lambda: False)
+            loop.run(None, DeferredInterrupt())
         assert recorder.steps == 1
 
 
