@@ -15,7 +15,7 @@ from giveway.crowd.exchange import Exchange
 from giveway.crowd.roster import Roster
 from giveway.crowd.spawn import PREFIX, Spawned, spawn
 from giveway.crowd.zone import Zone
-from giveway.ego.controllers import make_driver, make_regulator
+from giveway.ego.controllers import make_controller, make_driver
 from giveway.ego.vehicle import model_remark
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
@@ -102,7 +102,7 @@ def assemble(
     """
     config, files, zone = checked.config, checked.files, checked.zone
     egos, time_step = checked.egos, checked.time_step
-    regulators = [make_regulator(ego, time_step) for ego in egos]
+    controllers = [make_controller(ego, time_step) for ego in egos]
     walkers = not zone.nowhere and not (zone.follows_egos and not egos)
     moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
     sumo = stack.enter_context(
@@ -117,8 +117,8 @@ def assemble(
         zone.require_overlap(network.boundary)
         remarks += _remarks_on(network, files.net_file)
     drivers = tuple(
-        make_driver(ego, regulator, time_step, stack)
-        for ego, regulator in zip(egos, regulators, strict=True)
+        make_driver(ego, controller, time_step, stack)
+        for ego, controller in zip(egos, controllers, strict=True)
     )
     departures = Departures(drivers, sumo, files.config_file, time_step)
     departures.run_until_first(goes_on)

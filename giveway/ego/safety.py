@@ -39,8 +39,10 @@ class Guard:
         self._layer = SafetyLayer(model, replace(limits, width=shape.width))
         self._way = WayAhead(path, shape.length)
 
-    def watch(self, decision: Decision, front: float, speed: float, crowd: Crowd) -> Decision:
-        """The very same decision, or the safety layer's.
+    def overrule(
+        self, decision: Decision, front: float, speed: float, crowd: Crowd
+    ) -> Decision | None:
+        """The safety layer's decision instead of the controller's; None: it lets that through.
 
         Args:
             decision: the controller's.
@@ -53,5 +55,5 @@ class Guard:
             decision.force, speed, way, spacing, crowd.position, crowd.velocity
         )
         if not safe.acted:
-            return decision
+            return None
         return decision._replace(force=safe.force, acting="safety", reason=safe.reason)

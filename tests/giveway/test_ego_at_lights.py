@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.config import EgoRunConfig
-from giveway.ego.controllers import make_driver, make_regulator
+from giveway.ego.controllers import make_controller, make_driver
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
 from giveway.geometry.bodies import VehicleShape
@@ -41,7 +41,7 @@ def drive(
     path = EgoPath.through([(0.0, 0.0), (2000.0, 0.0)])
     rows = []
     with ExitStack() as stack:
-        driver = make_driver(config, make_regulator(config, STEP), STEP, stack)
+        driver = make_driver(config, make_controller(config, STEP), STEP, stack)
         driver.start(config.ego.initial_speed or 0.0)
         lights = Lights([Light(line, "tls", 0)], comfortable=2.0, hardest=8.0)
         ego = Ego(driver, path, DEPARTURE, shape, lights, 1900.0, STEP)
@@ -54,7 +54,7 @@ def drive(
                 lights.update({"tls": colour}, ego.front, ego.vehicle.speed)
             rows.append((ego.front, ego.vehicle.speed, colour))
             ego.corridor.fill_poses(poses, 0, ego.front, ego.vehicle.speed)
-            ego.decide(k, ego.look(0, poses, nobody, OPEN_GROUND))
+            ego.decide(k, time, ego.look(0, poses, nobody, OPEN_GROUND))
             ego.advance()
     return rows
 

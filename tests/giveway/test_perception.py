@@ -49,7 +49,8 @@ def test_the_truth_is_not_touched_and_the_rest_is_seen_as_it_is():
     assert (seen.position != crowd.position).all()
     assert (seen.velocity == crowd.velocity).all()
     assert (seen.desired_speed == crowd.desired_speed).all()
-    assert (seen.target == crowd.target).all()
+    assert (seen.waypoints == crowd.waypoints).all()
+    assert (seen.waypoint_index == crowd.waypoint_index).all()
 
 
 def test_a_crowd_that_has_been_stepped_is_seen_where_it_is_now():

@@ -138,11 +138,11 @@ def test_in_a_bend_it_brakes_for_who_is_round_the_corner_not_for_who_is_straight
     front = 20.0 + 0.25 * np.pi * 5.0  # half way round
     on_it, heading = path.pose(front + 1.8), path.pose(front, 5.0).heading
     here = path.pose(front)
-    assert guard(path).watch(ASKED, front, 4.0, person_at(on_it.x, on_it.y)).acting == "safety"
+    assert guard(path).overrule(ASKED, front, 4.0, person_at(on_it.x, on_it.y)).acting == "safety"
     tangent = here.x + 4.0 * np.cos(heading), here.y + 4.0 * np.sin(heading)
-    assert guard(path).watch(ASKED, front, 4.0, person_at(*tangent)) is ASKED
+    assert guard(path).overrule(ASKED, front, 4.0, person_at(*tangent)) is None
 
 
 def test_who_is_in_sight_of_nobody_keeps_the_very_decision() -> None:
     path = EgoPath.through([(0.0, 0.0), (100.0, 0.0)])
-    assert guard(path).watch(ASKED, 10.0, 4.0, person_at(40.0, 0.0)) is ASKED
+    assert guard(path).overrule(ASKED, 10.0, 4.0, person_at(40.0, 0.0)) is None

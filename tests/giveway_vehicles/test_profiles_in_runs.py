@@ -10,7 +10,7 @@ import tomlkit
 import giveway as library
 from giveway.config.layers import Layer, read_toml
 from giveway.config.loading import load
-from giveway.ego.controllers import make_regulator
+from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ConfigError, VehicleError
 
@@ -187,7 +187,7 @@ def test_the_mpc_keeps_what_the_model_is_wrong_by(profile):
     config, plain = (
         c.model_copy(update={"controller": "mpc-paper"}).each_ego()[0] for c in (config, plain)
     )
-    kept, usual = (make_regulator(c, H).mpc.parameters.safe_distance for c in (config, plain))
+    kept, usual = (make_controller(c, H).mpc.parameters.safe_distance for c in (config, plain))
     margin = model_margin(config, H)
     assert margin >= 0.7
     assert kept == pytest.approx(usual + margin)

@@ -21,7 +21,7 @@ from controller import (
     Observation,
     Pid,
     PidParameters,
-    Regulator,
+    SpeedController,
 )
 from fmus.sources.export import export_controller
 
@@ -158,10 +158,10 @@ def new_host(tmp_path: Path) -> Iterator[Callable[..., Host]]:
 
 
 @pytest.fixture(scope="session")
-def regulator_of() -> Callable[[ControllerParameters], Regulator]:
+def regulator_of() -> Callable[[ControllerParameters], SpeedController]:
     """giveway's own regulator with the parameters of an export."""
 
-    def make(p: ControllerParameters) -> Regulator:
+    def make(p: ControllerParameters) -> SpeedController:
         pid = Pid(
             PidParameters(
                 K_p=p.proportional_gain,
@@ -175,7 +175,7 @@ def regulator_of() -> Callable[[ControllerParameters], Regulator]:
             p.time_step,
         )
         if not p.mpc:
-            return Regulator(None, pid)
+            return SpeedController(None, pid)
         model = LongitudinalModel(p.mass, p.friction, p.time_step)
         mpc = MpcParameters(
             horizon=p.horizon,
@@ -186,7 +186,7 @@ def regulator_of() -> Callable[[ControllerParameters], Regulator]:
             force_limit=p.force_limit,
             force_rate_limit=p.force_rate_limit,
         )
-        return Regulator(Mpc(model, mpc), pid)
+        return SpeedController(Mpc(model, mpc), pid)
 
     return make
 

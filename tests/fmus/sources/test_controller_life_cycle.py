@@ -10,7 +10,7 @@ import pytest
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from controller import Observation, Regulator
+    from controller import Observation, SpeedController
     from fmus.sources.parameters import ControllerParameters
 
     Seen = Callable[..., Observation]
@@ -78,7 +78,7 @@ def test_a_step_without_new_inputs_decides_anew(
 def test_reading_in_between_changes_nothing(
     fmi_version: str,
     new_host: NewHost,
-    regulator_of: Callable[[ControllerParameters], Regulator],
+    regulator_of: Callable[[ControllerParameters], SpeedController],
     defaults: ControllerParameters,
     seen: Seen,
 ) -> None:
@@ -238,7 +238,7 @@ def test_infinity_and_the_start_value_both_mean_nobody(
 def test_the_horizon_can_be_shortened_at_run_time(
     fmi_version: str,
     new_host: NewHost,
-    regulator_of: Callable[[ControllerParameters], Regulator],
+    regulator_of: Callable[[ControllerParameters], SpeedController],
     seen: Seen,
 ) -> None:
     from fmus.sources.parameters import ControllerParameters

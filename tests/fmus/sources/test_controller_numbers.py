@@ -9,7 +9,7 @@ import pytest
 from numpy.random import Generator, default_rng
 
 import giveway
-from controller import Decision, Observation, Regulator
+from controller import Decision, Observation, SpeedController
 from fmus.sources.export import bundled_controller
 from fmus.sources.parameters import ControllerParameters
 
@@ -81,7 +81,7 @@ def meetings(
 
 
 def test_in_thousands_of_decisions_with_any_parameters(
-    fmi_version: str, new_host: Callable[..., Any], regulator_of: Callable[..., Regulator]
+    fmi_version: str, new_host: Callable[..., Any], regulator_of: Callable[..., SpeedController]
 ) -> None:
     statuses = set()
     for case in range(15):
@@ -90,7 +90,10 @@ def test_in_thousands_of_decisions_with_any_parameters(
         host, regulator = new_host(fmi_version, p), regulator_of(p)
 
         def act(
-            observation: Observation, host: Any = host, own: Regulator = regulator, case: int = case
+            observation: Observation,
+            host: Any = host,
+            own: SpeedController = regulator,
+            case: int = case,
         ) -> float:
             host.see(observation)
             decision = own.control(observation)
@@ -105,7 +108,7 @@ def test_in_thousands_of_decisions_with_any_parameters(
 
 @pytest.mark.parametrize("horizon", [2, 200])
 def test_at_the_shortest_and_the_longest_horizon(
-    horizon: int, new_host: Callable[..., Any], regulator_of: Callable[..., Regulator]
+    horizon: int, new_host: Callable[..., Any], regulator_of: Callable[..., SpeedController]
 ) -> None:
     p = ControllerParameters(horizon=horizon, safe_distance=2.0)
     host, regulator = new_host("3.0", p), regulator_of(p)
@@ -121,7 +124,7 @@ def test_at_the_shortest_and_the_longest_horizon(
 
 
 def test_with_the_pid_alone(
-    fmi_version: str, new_host: Callable[..., Any], regulator_of: Callable[..., Regulator]
+    fmi_version: str, new_host: Callable[..., Any], regulator_of: Callable[..., SpeedController]
 ) -> None:
     p = ControllerParameters(mpc=False)
     host, regulator = new_host(fmi_version, p), regulator_of(p)
@@ -142,16 +145,16 @@ def test_with_the_pid_alone(
 def real_run(request: pytest.FixtureRequest) -> list[tuple[Observation, Decision]]:
     """What the regulator saw and did in a run with SUMO, the vehicle FMU and the crowd."""
     record: list[tuple[Observation, Decision]] = []
-    control = Regulator.control
+    control = SpeedController.control
 
-    def note(self: Regulator, observation: Observation) -> Decision:
+    def note(self: SpeedController, observation: Observation) -> Decision:
         own = observation._replace(obstacle_positions=observation.obstacle_positions.copy())
         decision = control(self, observation)
         record.append((own, decision))
         return decision
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Regulator, "control", note)
+        patch.setattr(SpeedController, "control", note)
         settings = {"scenario": "shared_space", "controller": "mpc-paper", "seed": request.param}
         giveway.run(settings)
     return record

@@ -15,7 +15,7 @@ from fmus.sources.parameters import ControllerParameters
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from controller import Observation, Regulator
+    from controller import Observation, SpeedController
 
     Seen = Callable[..., Observation]
 
@@ -72,7 +72,7 @@ def drive(
 def test_controller_and_vehicle_in_fmpy_are_the_loop_without_lag(
     fmi_version: str,
     new_host: Callable[..., Any],
-    regulator_of: Callable[[ControllerParameters], Regulator],
+    regulator_of: Callable[[ControllerParameters], SpeedController],
     seen: Seen,
 ) -> None:
     host, regulator = new_host(fmi_version), regulator_of(ControllerParameters())
@@ -96,7 +96,7 @@ def test_controller_and_vehicle_in_fmpy_are_the_loop_without_lag(
 
 def test_connected_in_libcosim_the_loop_lags_one_step(
     cosim: Callable[..., Any],
-    regulator_of: Callable[[ControllerParameters], Regulator],
+    regulator_of: Callable[[ControllerParameters], SpeedController],
     seen: Seen,
 ) -> None:
     # libcosim steps all FMUs, then passes their outputs on: the force that the vehicle gets is
@@ -129,7 +129,7 @@ def test_connected_in_libcosim_the_loop_lags_one_step(
 
 def test_fmpys_own_simulation_reads_the_force_of_each_step(
     fmi_version: str,
-    regulator_of: Callable[[ControllerParameters], Regulator],
+    regulator_of: Callable[[ControllerParameters], SpeedController],
     seen: Seen,
 ) -> None:
     h = 0.0625  # a power of two: FMPy's grid of times is exact

@@ -7,9 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from controller import LongitudinalModel, TunedPidParameters
-from controller.tuning import (
+from pid_tuning import (
     OVERSHOOT_LIMIT,
     SENSITIVITY_LIMIT,
     Merits,
@@ -21,6 +19,8 @@ from controller.tuning import (
     table,
     tune,
 )
+
+from controller import LongitudinalModel, TunedPidParameters
 
 MODEL = LongitudinalModel()
 

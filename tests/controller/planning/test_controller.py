@@ -16,21 +16,22 @@ from hypothesis import strategies as st
 
 from controller import (
     LongitudinalModel,
+    Manoeuvre,
     ManoeuvreParameters,
+    Observation,
     Planner,
     PlannerParameters,
-    PlanningRegulator,
-    Situation,
+    PlanningController,
     TunedPid,
     TunedPidParameters,
 )
-from controller.planning import Manoeuvre
+from controller.defaults import STANDSTILL
 from controller.planning.manoeuvre import Weights, aim, stopping_need
-from controller.regulator import STANDSTILL
 
 MODEL = LongitudinalModel()
 N, DT, V_R = 60, MODEL.time_step, 4.0
 STEPS = 200  # 10 s
+FREE = np.full(N, np.inf)  # no vehicle, no light
 BOUGHT = 0.2  # [m]
 
 
@@ -47,13 +48,14 @@ def drive(bystanders, speed, at, until, **changes):
     """Ten seconds behind people at stations ``at`` [m] from a first step that can still stop."""
     parameters = PlannerParameters(manoeuvres=ManoeuvreParameters(**changes))
     weights = Weights.of(parameters, parameters.manoeuvres)
-    regulator = PlanningRegulator(Planner(MODEL, parameters), TunedPid(TunedPidParameters(), MODEL))
-    regulator.applied(MODEL.friction * speed)
+    pid = TunedPid(TunedPidParameters(), MODEL)
+    controller = PlanningController(Planner(MODEL, parameters), pid)
+    controller.applied(MODEL.friction * speed)
     crowd = bystanders(room_for_a_stop(speed, weights) + np.asarray(at), until, N)
     x, v, lacking, closest = 0.0, speed, -np.inf, np.inf
     for k in range(STEPS):
         crowd.step, crowd.front = k, x
-        decision = regulator.control(Situation(v, crowd.gap(), np.inf, None, crowd))
+        decision = controller.control(Observation(x, v, crowd.gap(), FREE, foresight=crowd))
         assert decision.acting == "mpc"
         x += DT * v
         v = max(0.0, MODEL.decay * v + MODEL.speed_per_force * decision.force)

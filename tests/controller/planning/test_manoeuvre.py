@@ -7,8 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from controller import ControllerError, ManoeuvreParameters, PlannerParameters
-from controller.planning import Manoeuvre
+from controller import ControllerError, Manoeuvre, ManoeuvreParameters, PlannerParameters
 from controller.planning.manoeuvre import Weights, aim, corridor, cost, shift, stopping_need
 
 DT = 0.05
@@ -214,7 +213,6 @@ def cost_missing(m, gap, w):
         ({"jerk": 0.0}, "jerk"),
         ({"deceleration": -1.0}, "deceleration"),
         ({"conflict_weight": np.nan}, "conflict_weight"),
-        ({"conflict_time": 0.0}, "conflict_time"),
     ],
 )
 def test_parameters_out_of_range_are_refused_by_name(changes, name):

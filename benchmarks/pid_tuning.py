@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from controller.tuned_pid import TunedPid, TunedPidParameters
+from controller import TunedPid, TunedPidParameters
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
-    from controller.model import LongitudinalModel
+    from controller import LongitudinalModel
 
     Array = NDArray[np.float64]
 

@@ -1,6 +1,7 @@
 """The paper's QP, in its own unknowns and units: the definition that everything is tested against.
 
-The solvers get the same problem in speeds (``speed_problem``), where it is well conditioned.
+The solvers get the same problem in speeds (``controller.speed_problem``), where it is well
+conditioned. The tests of ``controller`` and bench_qp.py use this file.
 """
 
 from __future__ import annotations
@@ -38,6 +39,29 @@ class QuadraticProgram:
         return float(np.maximum(self.lower - values, values - self.upper).max(initial=0.0))
 
 
+def state_matrices(model: LongitudinalModel) -> tuple[Array, Array]:
+    """A (2, 2) and B (2, 1) of x(k+1) = A x(k) + B u(k), eqs. (2) and (3)."""
+    A = np.array([[1.0, model.time_step], [0.0, model.decay]])
+    return A, np.array([[0.0], [model.speed_per_force]])
+
+
+def prediction_matrices(model: LongitudinalModel, horizon: int) -> tuple[Array, Array]:
+    """S_x (2N, 2) and S_u (2N, N) of X = S_x x_k + S_u U, eq. (5).
+
+    S_x holds the powers A, A^2, ..., A^N; S_u holds A^(i-j) B at step i + 1 and input j.
+    """
+    A, B = state_matrices(model)
+    powers, impulse = [A], [B]
+    for _ in range(horizon - 1):
+        powers.append(A @ powers[-1])
+        impulse.append(A @ impulse[-1])
+    response = np.concatenate(impulse)  # of all steps to the first input
+    S_u = np.zeros((2 * horizon, horizon))
+    for j in range(horizon):
+        S_u[2 * j :, j : j + 1] = response[: 2 * (horizon - j)]
+    return np.concatenate(powers), S_u
+
+
 def quadratic_program(
     model: LongitudinalModel,
     parameters: MpcParameters,
@@ -58,7 +82,7 @@ def quadratic_program(
         obstacle_positions: (N,) x_p(k+1) ... x_p(k+N) [m]; inf where nobody is in front.
     """
     N = parameters.horizon
-    S_x, S_u = model.S_x(N), model.S_u(N)
+    S_x, S_u = prediction_matrices(model, N)
     A_r = np.kron(np.eye(N), [[0.0, 1.0]])  # picks the speeds; it is also the paper's M_v
     M_x = np.kron(np.eye(N), [[1.0, 0.0]])  # picks the positions
     M_u = np.eye(N) - np.eye(N, k=-1)

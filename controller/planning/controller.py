@@ -1,33 +1,19 @@
-"""Who drives: the planning MPC, and where it has no plan the well-tuned PID."""
+"""The planning MPC, and where it has no plan the well-tuned PID."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from controller.regulator import STANDSTILL, Decision
+from controller.defaults import STANDSTILL
+from controller.protocol import Decision
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from controller.planning.planner import Planner
-    from controller.planning.search import Foresight
+    from controller.protocol import Observation
     from controller.tuned_pid import TunedPid
 
-    Array = NDArray[np.float64]
 
-
-class Situation(NamedTuple):
-    """What the planning regulator sees at t_k."""
-
-    speed: float  # x_2(k) [m/s]
-    gap: float  # [m] to whatever is closest in front now; inf: nothing
-    speed_limit: float  # [m/s] caps the reference speed: a stop line, a vehicle ahead
-    allowed: Array | None  # (N,) [m] that may be driven until 1 ... N: vehicles, lights; None: all
-    foresight: Foresight | None  # None: nobody can get in the way within the horizon
-
-
-class PlanningRegulator:
+class PlanningController:
     """The planner with a PID as its fallback.
 
     With a soft corridor there always is a plan; only a hard one (``soft`` off) needs the fallback.
@@ -37,10 +23,17 @@ class PlanningRegulator:
         pid: the fallback.
     """
 
+    foresees = True
+
     def __init__(self, planner: Planner, pid: TunedPid) -> None:
         self.planner = planner
         self.pid = pid
         self._previous_force = 0.0
+
+    @property
+    def horizon(self) -> int:
+        """Steps that the plan looks ahead."""
+        return self.planner.parameters.horizon
 
     def reset(self) -> None:
         """Forget the past of both controllers."""
@@ -48,12 +41,14 @@ class PlanningRegulator:
         self.pid.reset()
         self.planner.reset()
 
-    def control(self, situation: Situation) -> Decision:
+    def control(self, observation: Observation) -> Decision:
         """Decide on the force at t_k."""
-        speed, gap, limit, allowed, foresight = situation
+        speed, gap, limit = observation.speed, observation.gap, observation.speed_limit
         previous = 0.0 if speed <= STANDSTILL else self._previous_force
         reference = min(self.planner.parameters.reference_speed, limit)
-        plan = self.planner.plan(speed, previous, reference, allowed, foresight)
+        plan = self.planner.plan(
+            speed, previous, reference, observation.allowed, observation.foresight
+        )
         if plan.found:
             force = plan.force
             if speed <= STANDSTILL and force < 0.0:
