@@ -18,7 +18,7 @@ from giveway.studies.statistics import metric
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.reports.study import Study
+    from giveway.studies.folder import StudyFolder
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ SLOWER = "Slower than the baseline by most"
 FASTER = "Faster than the baseline by most"
 
 
-def worst_runs(study: Study, count: int = 5) -> list[WorstRun]:
+def worst_runs(study: StudyFolder, count: int = 5) -> list[WorstRun]:
     """The runs that are extreme in safety or time, at most ``count`` for each reason.
 
     Args:
@@ -98,7 +98,7 @@ def worst_runs(study: Study, count: int = 5) -> list[WorstRun]:
     ]
 
 
-def example_pairs(study: Study, count: int = 4) -> list[ExamplePair]:
+def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
     """Pairs that show what the differences are made of: median, best, worst, one that waits.
 
     They are of the first context, ego and treatment that have pairs; the waiting pair is of a
@@ -153,7 +153,9 @@ def _example(reason: str, row: pd.Series, name: str) -> ExamplePair:
     )
 
 
-def _extreme(study: Study, reason: str, name: str, count: int, *, sign: float) -> list[WorstRun]:
+def _extreme(
+    study: StudyFolder, reason: str, name: str, count: int, *, sign: float
+) -> list[WorstRun]:
     """The runs with the smallest (+1) or largest (-1) numbers; a largest one of zero is none."""
     values = pd.to_numeric(study.runs[name], errors="coerce").to_numpy(float)
     cost = np.where((values > 0.0) | (sign > 0.0), sign * values, np.nan)
@@ -168,7 +170,7 @@ def _extreme(study: Study, reason: str, name: str, count: int, *, sign: float) -
     return found
 
 
-def _differing(study: Study, reason: str, count: int, *, sign: float) -> list[WorstRun]:
+def _differing(study: StudyFolder, reason: str, count: int, *, sign: float) -> list[WorstRun]:
     """The pairs with the most negative (+1) or positive (-1) differences."""
     pairs = paired(study)
     name = deciding_metric(pairs)

@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from giveway.figures.study_forest import Estimate
-from giveway.reports.study import context_key, level_label
+from giveway.reports.labels import context_key, level_label
 
 if TYPE_CHECKING:
-    from giveway.reports.study import Context, Study
+    from giveway.studies.folder import StudyFolder
 
 Key = tuple[tuple[str, ...], str, str, str, str]
 """Context, ego, treatment, situation, metric."""
 
 
-def estimates(study: Study) -> dict[Key, Estimate]:
+def estimates(study: StudyFolder) -> dict[Key, Estimate]:
     """Mean difference and interval of every row of the comparison; nan is N.A."""
     return {
         (
@@ -31,8 +31,3 @@ def estimates(study: Study) -> dict[Key, Estimate]:
         )
         for row in study.comparison.to_dict("records")
     }
-
-
-def estimate_key(context: Context, ego: str, treatment: str, situation: str, metric: str) -> Key:
-    """The key of one row."""
-    return (context.key, ego, treatment, situation, metric)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from giveway.reports.published import agreement, published_frame
-from giveway.reports.study import (
+from giveway.reports.labels import (
     baseline_label,
     compared_labels,
     context_key,
@@ -18,19 +17,20 @@ from giveway.reports.study import (
     level_label,
     treatment_labels,
 )
+from giveway.reports.published import agreement, published_frame
 from giveway.reports.wording import digits_for, interval, number, quantity, share, shown_ego
 from giveway.studies.statistics import metric
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from giveway.reports.study import Study
+    from giveway.studies.folder import StudyFolder
 
 TOLD = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
 IN_FULL = 4  # groups up to which each has a sentence of its own
 
 
-def lead(study: Study) -> str:
+def lead(study: StudyFolder) -> str:
     """What was compared, on how many crowds."""
     runs = study.runs
     compared = study.definition.comparison.factor
@@ -50,7 +50,7 @@ def lead(study: Study) -> str:
     return f"{compares} ({compared}){among}: {size}.{f' {paired}' if levels else ''}"
 
 
-def facts(study: Study) -> list[tuple[str, str]]:
+def facts(study: StudyFolder) -> list[tuple[str, str]]:
     """The study's size at a glance."""
     runs = study.runs
     failed = len(study.failures)
@@ -64,7 +64,7 @@ def facts(study: Study) -> list[tuple[str, str]]:
     ]
 
 
-def findings(study: Study) -> list[str]:
+def findings(study: StudyFolder) -> list[str]:
     """The main results, most important first."""
     said = [sentence for name in TOLD for sentence in _of_metric(study, name)]
     said += _overlaps(study)
@@ -72,7 +72,7 @@ def findings(study: Study) -> list[str]:
     return said
 
 
-def cautions(study: Study) -> list[str]:
+def cautions(study: StudyFolder) -> list[str]:
     """What a reader has to know before believing the findings."""
     said = []
     failed = len(study.failures)
@@ -98,7 +98,7 @@ def cautions(study: Study) -> list[str]:
     return [sentence for sentence in said if sentence]
 
 
-def _too_few(study: Study) -> str:
+def _too_few(study: StudyFolder) -> str:
     """Where so few pairs were compared that no difference could have been shown; or nothing."""
     frame = study.comparison[study.comparison["verdict"] != "N.A."]
     level = 1.0 - study.definition.comparison.confidence
@@ -112,7 +112,7 @@ def _too_few(study: Study) -> str:
     )
 
 
-def _of_metric(study: Study, name: str) -> list[str]:
+def _of_metric(study: StudyFolder, name: str) -> list[str]:
     """Sentences on one metric in general: each group's, or how many are better."""
     frame = study.comparison
     frame = frame[(frame["situation"] == "general") & (frame["metric"] == name)]
@@ -125,7 +125,7 @@ def _of_metric(study: Study, name: str) -> list[str]:
     return [_sentence(study, name, group.to_dict("records")) for _, group in groups]
 
 
-def _sentence(study: Study, name: str, rows: Sequence[Mapping[Any, Any]]) -> str:
+def _sentence(study: StudyFolder, name: str, rows: Sequence[Mapping[Any, Any]]) -> str:
     """One treatment, all contexts: better and worse with numbers, the others by name."""
     known, baseline = metric(name), _named(baseline_label(study))
     treatment = _named(level_label(rows[0]["treatment"])) + shown_ego(level_label(rows[0]["ego"]))
@@ -150,7 +150,7 @@ def _sentence(study: Study, name: str, rows: Sequence[Mapping[Any, Any]]) -> str
     return f"{label}{joint}{'; '.join(told)}."
 
 
-def _size(study: Study, row: Mapping[Any, Any], unit: str) -> str:
+def _size(study: StudyFolder, row: Mapping[Any, Any], unit: str) -> str:
     """As in "by 1.62 s (95 % interval 0.91 to 2.49 s) where crowd.pedestrians = 30"."""
     low, high = row["ci_low"], row["ci_high"]
     if row["mean_difference"] < 0:
@@ -161,7 +161,7 @@ def _size(study: Study, row: Mapping[Any, Any], unit: str) -> str:
     return f"by {size} ({within}){_where(study, [row])}"
 
 
-def _where(study: Study, rows: Sequence[Mapping[Any, Any]]) -> str:
+def _where(study: StudyFolder, rows: Sequence[Mapping[Any, Any]]) -> str:
     """The contexts of some rows, as in " where crowd.pedestrians = 30 or ..."; or nothing."""
     places = {context.key: context.label for context in contexts(study)}
     labels = [places.get(context_key(study, row), "") for row in rows]
@@ -180,7 +180,7 @@ def _counted(name: str, verdicts: list[str]) -> str:
     return f"{label}: {', '.join(parts)} of {len(verdicts)} comparisons with the baseline."
 
 
-def _overlaps(study: Study) -> list[str]:
+def _overlaps(study: StudyFolder) -> list[str]:
     """In how many runs a pedestrian touched the vehicle, level by level."""
     runs = study.runs
     numbers = pd.to_numeric(runs["overlaps"], errors="coerce")
@@ -198,7 +198,7 @@ def _overlaps(study: Study) -> list[str]:
     return [f"A pedestrian's circle overlapped the vehicle's rectangle in {_listed(parts)}."]
 
 
-def _in_all(study: Study) -> list[str]:
+def _in_all(study: StudyFolder) -> list[str]:
     verdicts = study.comparison["verdict"].astype(str)
     enough = int((verdicts != "N.A.").sum())
     if not enough and not drives(study):
@@ -215,7 +215,7 @@ def _in_all(study: Study) -> list[str]:
     ]
 
 
-def drives(study: Study) -> bool:
+def drives(study: StudyFolder) -> bool:
     """Whether the runs drive an ego, as far as can be told from those with a result."""
     return bool(study.runs["mean_speed"].notna().any()) or bool(len(study.failures))
 

@@ -22,10 +22,10 @@ from giveway.reports import findings, tables
 from giveway.reports.choice import example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
 from giveway.reports.examples import TITLES, example_pictures
+from giveway.reports.labels import contexts
 from giveway.reports.levels import levels_section
 from giveway.reports.pictures import Picture, study_pictures
 from giveway.reports.published import published_frame, published_table
-from giveway.reports.study import contexts
 from giveway.reports.wording import pretty_unit
 from giveway.studies.statistics import METRICS
 
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from giveway.reports.choice import ExamplePair, WorstRun
-    from giveway.reports.study import Study
     from giveway.results.run_result import RunResult
+    from giveway.studies.folder import StudyFolder
 
 REPORT = "report.html"
 FIGURES = "figures"
@@ -63,7 +63,7 @@ class Drawn:
     links: Sequence[tuple[str, str]] = ()
 
 
-def shown_runs(study: Study, *, examples: int = 4, worst: int = 5) -> list[str]:
+def shown_runs(study: StudyFolder, *, examples: int = 4, worst: int = 5) -> list[str]:
     """The ids of the runs that a report of the same arguments names, each once."""
     ids = [run for pair in example_pairs(study, examples) for run in (pair.run, pair.run_baseline)]
     ids += [run for row in worst_runs(study, worst) for run in (row.run, row.partner) if run]
@@ -71,7 +71,7 @@ def shown_runs(study: Study, *, examples: int = 4, worst: int = 5) -> list[str]:
 
 
 def write_report(
-    study: Study,
+    study: StudyFolder,
     *,
     examples: int = 4,
     worst: int = 5,
@@ -172,7 +172,9 @@ def _examples(
     return shown, missing
 
 
-def _content(study: Study, extremes: Sequence[WorstRun], replays: dict[str, str]) -> dict[str, Any]:
+def _content(
+    study: StudyFolder, extremes: Sequence[WorstRun], replays: dict[str, str]
+) -> dict[str, Any]:
     definition = study.definition
     published = published_frame(study)
     some = not study.comparison.empty
@@ -210,7 +212,7 @@ def _content(study: Study, extremes: Sequence[WorstRun], replays: dict[str, str]
     }
 
 
-def _execution(study: Study) -> dict[str, str]:
+def _execution(study: StudyFolder) -> dict[str, str]:
     frame = study.execution
     if frame.empty:
         return {}
@@ -244,7 +246,7 @@ def _glossary() -> list[dict[str, str]]:
     ]
 
 
-def _factors(study: Study) -> list[tuple[str, str, str]]:
+def _factors(study: StudyFolder) -> list[tuple[str, str, str]]:
     """Name, levels and meaning of what was varied."""
     known = {".".join(option.location): option.field.description or "" for option in options()}
     return [

@@ -15,10 +15,10 @@ from giveway.figures.study_distributions import DistributionColumn, distribution
 from giveway.figures.study_forest import Estimate, ForestColumn, forest_figure
 from giveway.figures.study_rows import Row, level_colours
 from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
-from giveway.reports.estimates import estimate_key, estimates
+from giveway.reports.estimates import estimates
+from giveway.reports.labels import baseline_label, compared_labels, contexts, treatment_labels
 from giveway.reports.pairing import BASELINE, DIFFERENCE, paired, situation_of
 from giveway.reports.published import SOURCE, published_numbers
-from giveway.reports.study import baseline_label, compared_labels, contexts, treatment_labels
 from giveway.reports.wording import shown_ego
 from giveway.studies.statistics import SITUATIONS, metric
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from giveway.reports.study import Context, Study
+    from giveway.studies.folder import StudyFolder
 
 ROWS_PER_PICTURE = 8
 FOREST = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
@@ -57,7 +57,7 @@ class Picture:
     figure: Figure
 
 
-def study_pictures(study: Study) -> Iterator[Picture]:
+def study_pictures(study: StudyFolder) -> Iterator[Picture]:
     """Everything that can be drawn of a study's tables; what has no numbers is left out.
 
     Args:
@@ -71,7 +71,7 @@ def study_pictures(study: Study) -> Iterator[Picture]:
     yield from _trade_off(study)
 
 
-def _histograms(study: Study) -> Iterator[Picture]:
+def _histograms(study: StudyFolder) -> Iterator[Picture]:
     pairs = paired(study)
     time = (
         "completion_time" if pairs["completion_time" + DIFFERENCE].notna().any() else "total_wait"
@@ -145,7 +145,7 @@ def _in_words(rows: Sequence[tuple[str, Sequence[Differences]]], names: dict[str
     return "; ".join(said) + "."
 
 
-def _forest(study: Study) -> Iterator[Picture]:
+def _forest(study: StudyFolder) -> Iterator[Picture]:
     reported, printed = estimates(study), published_numbers(study)
     groups = [
         (context, ego, treatment)
@@ -159,8 +159,7 @@ def _forest(study: Study) -> Iterator[Picture]:
         found = {}
         for row, (context, ego, treatment) in enumerate(groups):
             for situation in SITUATIONS:
-                key = estimate_key(context, ego, treatment, situation, name)
-                value = reported.get(key)
+                value = reported.get((context.key, ego, treatment, situation, name))
                 if value is not None:
                     known = printed.get((context.key, treatment, situation, name))
                     found[row, str(situation)] = replace(value, published=known)
@@ -189,7 +188,7 @@ def _forest(study: Study) -> Iterator[Picture]:
     )
 
 
-def _spreads(study: Study) -> Iterator[Picture]:
+def _spreads(study: StudyFolder) -> Iterator[Picture]:
     cells = [
         (context, label, cell)
         for context in contexts(study)
@@ -218,13 +217,13 @@ def _spreads(study: Study) -> Iterator[Picture]:
         )
 
 
-def _spread(study: Study, name: str, cells: Sequence[int]) -> DistributionColumn:
+def _spread(study: StudyFolder, name: str, cells: Sequence[int]) -> DistributionColumn:
     values = _by_cell(study, name)
     quantity = metric(name)
     return DistributionColumn(quantity.label, quantity.unit, [values[cell] for cell in cells])
 
 
-def _by_cell(study: Study, name: str) -> dict[int, NDArray[np.float64]]:
+def _by_cell(study: StudyFolder, name: str) -> dict[int, NDArray[np.float64]]:
     """A metric's finite numbers of every cell."""
     numbers = pd.to_numeric(study.runs[name], errors="coerce").to_numpy(float)
     cell = study.runs["cell"].to_numpy()
@@ -232,14 +231,14 @@ def _by_cell(study: Study, name: str) -> dict[int, NDArray[np.float64]]:
     return {c.number: numbers[kept & (cell == c.number)] for c in study.design.cells}
 
 
-def _trade_off(study: Study) -> Iterator[Picture]:
+def _trade_off(study: StudyFolder) -> Iterator[Picture]:
     times = _by_cell(study, "completion_time")
     name = "completion_time" if any(v.size for v in times.values()) else "total_wait"
     x, y = _by_cell(study, name), _by_cell(study, "minimum_clearance")
     confidence = study.definition.comparison.confidence
     points = [
         TradeOffPoint(
-            _tag(context), label, float(x[cell].mean()), float(y[cell].mean()),
+            " / ".join(context.key), label, float(x[cell].mean()), float(y[cell].mean()),
             mean_interval(x[cell], confidence), mean_interval(y[cell], confidence),
         )
         for context in contexts(study)
@@ -272,10 +271,6 @@ def _trade_off(study: Study) -> Iterator[Picture]:
             y_label=(f"Mean {clearance.label}", clearance.unit),
         ),
     )
-
-
-def _tag(context: Context) -> str:
-    return " / ".join(context.levels.values())
 
 
 def mean_interval(values: NDArray[np.float64], confidence: float) -> tuple[float, float]:

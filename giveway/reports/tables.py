@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from giveway.reports.study import contexts, level_label, short_name
+from giveway.reports.labels import level_label
 from giveway.reports.wording import digits_for, interval, number, pretty_unit, quantity, share
+from giveway.studies.contexts import other_factors, short_name
 from giveway.studies.statistics import METRICS, metric
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from giveway.reports.choice import WorstRun
-    from giveway.reports.study import Study
+    from giveway.studies.folder import StudyFolder
 
 SHOWN_IN_CELLS = (
     "completion_time",
@@ -88,19 +89,18 @@ def verdict_cell(verdict: str) -> Cell:
     return Cell(verdict, kinds.get(verdict, "none"))
 
 
-def comparison_table(study: Study) -> Table:
+def comparison_table(study: StudyFolder) -> Table:
     """The whole comparison."""
     frame = study.comparison
-    factors = [name for name in _factors(study) if name in frame.columns]
-    who = [name for name in ("ego", "treatment") if frame[name].nunique() > 1]
-    headings = [*(short_name(name) for name in factors), *who, "situation", "metric"]
+    names = _distinguishing(study, frame)
+    headings = [*map(short_name, names), "situation", "metric"]
     filters = tuple(range(len(headings)))
     verdict = len(headings) + 2
     headings += ["mean difference", "interval", "verdict", "pairs", "share", "treatment mean"]
     headings += ["baseline mean", "median difference", "q"]
     rows = [
         [
-            *(_level(row[name]) for name in (*factors, *who)),
+            *(_level(row[name]) for name in names),
             Cell(row["situation"]),
             Cell(_with_unit(row["metric"]), "text"),
             *_numbers(row),
@@ -138,12 +138,12 @@ def _probability(value: float) -> Cell:
     return _number(value, 3)
 
 
-def glance_table(study: Study) -> Table:
+def glance_table(study: StudyFolder) -> Table:
     """Every metric in the general situation: a row each, a column per context and treatment."""
     frame = study.comparison[study.comparison["situation"] == "general"]
     several = frame["treatment"].nunique() > 1
     egos = frame["ego"].nunique() > 1
-    names = _factors(study)
+    names = other_factors(study.design, study.definition.comparison)
     columns: dict[str, dict[str, Mapping[Any, Any]]] = {}
     for row in frame.to_dict("records"):
         parts = [f"{short_name(name)} = {level_label(row[name])}" for name in names]
@@ -173,11 +173,10 @@ def _glance(row: Mapping[Any, Any] | None) -> Cell:
                 verdict_cell(verdict).kind)  # fmt: skip
 
 
-def situations_table(study: Study) -> Table:
+def situations_table(study: StudyFolder) -> Table:
     """How often both, one or neither stopped."""
     frame = study.situations
-    factors = [name for name in _factors(study) if name in frame.columns]
-    who = [name for name in ("ego", "treatment") if frame[name].nunique() > 1]
+    names = _distinguishing(study, frame)
     shares = {
         "share_both_stop": "both stop",
         "share_neither_stops": "neither stops",
@@ -186,7 +185,7 @@ def situations_table(study: Study) -> Table:
     }
     rows = [
         [
-            *(_level(row[name]) for name in (*factors, *who)),
+            *(_level(row[name]) for name in names),
             _whole(row["pairs"]),
             *(Cell(share(row[name]), "number") for name in shares),
             _whole(row["lost"]),
@@ -194,7 +193,7 @@ def situations_table(study: Study) -> Table:
         ]
         for row in frame.to_dict("records")
     ]
-    headings = [*(short_name(name) for name in factors), *who, "pairs", *shares.values()]
+    headings = [*map(short_name, names), "pairs", *shares.values()]
     return Table(
         name="situations-table",
         caption="How often the vehicle had to stop",
@@ -204,7 +203,7 @@ def situations_table(study: Study) -> Table:
     )
 
 
-def cells_table(study: Study) -> Table:
+def cells_table(study: StudyFolder) -> Table:
     """Each cell: its levels, its runs, means of the main metrics."""
     runs = study.runs
     names = [factor.name for factor in study.design.factors]
@@ -271,7 +270,7 @@ def worst_tables(worst: Iterable[WorstRun], replays: Mapping[str, str]) -> list[
     return tables
 
 
-def failures_table(study: Study) -> Table:
+def failures_table(study: StudyFolder) -> Table:
     """Runs without a result, why, and how to make them again."""
     frame = study.failures
     rows = [
@@ -299,8 +298,11 @@ def settings_table(name: str, caption: str, values: Mapping[str, object]) -> Tab
     return Table(name, caption, ["name", "value"], rows)
 
 
-def _factors(study: Study) -> list[str]:
-    return list(contexts(study)[0].levels) if study.design.cells else []
+def _distinguishing(study: StudyFolder, frame: pd.DataFrame) -> list[str]:
+    """The columns that tell the rows of ``frame`` apart, but for situation and metric."""
+    names = other_factors(study.design, study.definition.comparison)
+    names = [name for name in names if name in frame.columns]
+    return names + [name for name in ("ego", "treatment") if frame[name].nunique() > 1]
 
 
 def _level(value: object) -> Cell:

@@ -9,9 +9,10 @@ import numpy as np
 import pandas as pd
 
 from giveway.studies.columns import COMPARISON_COLUMNS
+from giveway.studies.contexts import other_factors
 from giveway.studies.statistics.bootstrap import Interval, mean_interval, seed_of
 from giveway.studies.statistics.metrics import METRICS
-from giveway.studies.statistics.pairs import other_factors, paired
+from giveway.studies.statistics.pairs import paired
 from giveway.studies.statistics.rounding import mean, median, tabulated, to_decimals
 from giveway.studies.statistics.signed_rank import SignedRank, q_values, signed_rank
 from giveway.studies.statistics.situations import SITUATIONS, share, within

@@ -14,9 +14,10 @@ import numpy as np
 import pandas as pd
 
 from giveway.studies.columns import PRECISION_COLUMNS
+from giveway.studies.contexts import other_factors
 from giveway.studies.statistics.comparing import differences, interval
 from giveway.studies.statistics.metrics import metric
-from giveway.studies.statistics.pairs import other_factors, paired
+from giveway.studies.statistics.pairs import paired
 from giveway.studies.statistics.rounding import mean, tabulated
 
 if TYPE_CHECKING:

@@ -8,8 +8,9 @@ import numpy as np
 import pandas as pd
 
 from giveway.studies.columns import SITUATION_COLUMNS
+from giveway.studies.contexts import other_factors
 from giveway.studies.definition import Situation
-from giveway.studies.statistics.pairs import other_factors, paired
+from giveway.studies.statistics.pairs import paired
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
