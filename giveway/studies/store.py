@@ -9,7 +9,6 @@ from giveway.studies.atomic_files import write_whole
 from giveway.studies.record import RunRecord
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
 RECORDS = "records"
@@ -54,8 +53,3 @@ class RecordStore:
             ResultsError: the disk is full or not writable.
         """
         write_whole(self._path(record.key), record.to_json() + "\n", durable=True)
-
-    def keys(self) -> Iterator[str]:
-        """Of every record, also of those that no plan asks for any more."""
-        for path in sorted(self._folder.glob("*/*.json")):
-            yield path.stem

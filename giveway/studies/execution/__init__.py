@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from giveway.studies.execution.errors import WorkerError
-from giveway.studies.execution.executor import Executor
+from giveway.studies.execution.executor import Executor, WorkerError
 from giveway.studies.execution.limits import HANG_LIMIT, Limits
 
 if TYPE_CHECKING:

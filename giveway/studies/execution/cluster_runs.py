@@ -6,7 +6,7 @@ import queue
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS
 from giveway.studies.record import CRASHED, Computing, RunRecord
 

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol, Self
 
+from giveway.errors import GivewayError
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-    from types import TracebackType
 
     from giveway.studies.record import RunRecord, Task
+
+
+class WorkerError(GivewayError):
+    """No process can be started or reached that would make the runs; finished runs are kept."""
 
 
 class Executor(Protocol):
@@ -35,10 +40,5 @@ class Executor(Protocol):
     def __enter__(self) -> Self:
         """Begin; processes are started when there is something to do."""
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """End every process at once."""

@@ -18,7 +18,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
-from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS, Limits
 from giveway.studies.execution.scratch import Scratch
 from giveway.studies.execution.worker_process import (

@@ -18,7 +18,7 @@ from fmus.text import printable
 from giveway.processes.causes import cause_of_end, stood_still, text_in
 from giveway.processes.child import STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Stillness
-from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.starting import START_LIMIT, start
 from giveway.studies.execution.wire import (
     ERROR,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from giveway.studies.columns import COMPARISON_COLUMNS
+from giveway.studies.columns import COMPARISON_COLUMNS, numbers_of
 from giveway.studies.contexts import other_factors
 from giveway.studies.statistics.bootstrap import Interval, mean_interval, seed_of
 from giveway.studies.statistics.metrics import METRICS
@@ -100,7 +100,7 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
     ]
     names = [*other_factors(design, comparison), *(column.name for column in COMPARISON_COLUMNS)]
     frame = pd.DataFrame(rows, columns=[*names, "better", "direction", "excludes_zero"])
-    numbers = [column.name for column in COMPARISON_COLUMNS if column.type == "number"]
+    numbers = numbers_of(COMPARISON_COLUMNS)
     frame[numbers] = frame[numbers].astype(np.float64)
     frame["q_value"] = q_values(frame["p_value"].to_numpy())
     frame["verdict"] = [_verdict(row, comparison) for row in frame.to_dict("records")]
