@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.markup import escape
 
+from giveway.cli.printing import print_place
 from giveway.studies.folder import StudyFolder
 
 if TYPE_CHECKING:
@@ -39,5 +39,4 @@ def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> 
         write_tables(study, whole=True)
     with console.status("Drawing ...") as status:
         page = write_report_of(study, replays=replays, tell=status.update)
-    where = f"Report in [bold]{escape(str(page))}[/bold]"
-    console.print(where, highlight=False, soft_wrap=True)
+    print_place(console, "Report", page)

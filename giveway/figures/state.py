@@ -38,6 +38,8 @@ RED_LIGHT: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "label": "distan
 # Colour and opacity of a phase.
 SHADES = {"mpc": (SKY_BLUE, 0.14), "pid": (ORANGE, 0.28), "safety": (PURPLE, 0.40)}
 NAMES = {"mpc": "MPC acts", "pid": "PID acts", "safety": "safety layer acts"}
+DASHES = (0, (4, 2))
+DOTS = (0, (1, 2))
 OTHERS_SHOWN = 40.0  # [m] of the distance to a vehicle or a light is shown at least
 SINGLE_INSTANT = 0.5  # [s] shown to either side of a run of one instant
 
@@ -69,7 +71,7 @@ def state_figure(
     for column, (label, ego) in enumerate(columns):
         speed, gap, force = grid[:, column]
         for axes in (speed, gap, force):
-            _shade_phases(axes, ego)
+            shade_phases(axes, ego)
             quiet_grid(axes)
         _draw_speed(speed, ego)
         _draw_gap(gap, ego, safe_distance, buffer_distance)
@@ -108,7 +110,8 @@ def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
     ]
 
 
-def _shade_phases(axes: Axes, ego: EgoTrack) -> None:
+def shade_phases(axes: Axes, ego: EgoTrack) -> None:
+    """Colour the background by who acted."""
     for acting, start, end in phases(ego):
         colour, opacity = SHADES[acting]
         axes.axvspan(start, end, color=colour, alpha=opacity, linewidth=0, label=acting, zorder=0)
@@ -117,17 +120,17 @@ def _shade_phases(axes: Axes, ego: EgoTrack) -> None:
 def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
     axes.step(
         ego.time, ego.reference_speed, where="post", color=BLACK, linewidth=0.9,
-        linestyle=(0, (4, 2)), label="reference speed", marker=_marker(ego), markersize=9,
+        linestyle=DASHES, label="reference speed", marker=_marker(ego), markersize=9,
         markerfacecolor="none", zorder=4,
     )  # fmt: skip
     axes.plot(ego.time, ego.speed, color=BLUE, label="speed", marker=_marker(ego), zorder=3)
 
 
 def _draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: float) -> None:
-    axes.axhline(safe_distance, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)), label="d_safe")
+    axes.axhline(safe_distance, color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe")
     if buffer_distance > 0.0:
         axes.axhline(
-            safe_distance + buffer_distance, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)),
+            safe_distance + buffer_distance, color=GREY, linewidth=0.9, linestyle=DOTS,
             label="d_safe + d_buffer",
         )  # fmt: skip
     somebody = np.isfinite(ego.gap)
@@ -192,17 +195,23 @@ def _name_distances(axes: Axes, safe_distance: float, buffer_distance: float) ->
 
 
 def _legend(egos: Sequence[EgoTrack]) -> list[Artist]:
-    acted = {str(name) for ego in egos for name in np.unique(ego.acting)}
     handles: list[Artist] = [
         Line2D([], [], color=BLUE, label="speed"),
-        Line2D([], [], color=BLACK, linewidth=0.9, linestyle=(0, (4, 2)), label="reference speed"),
+        Line2D([], [], color=BLACK, linewidth=0.9, linestyle=DASHES, label="reference speed"),
         Line2D([], [], color=GREEN, label="gap"),
         Line2D([], [], color=VERMILION, linewidth=1.2, label="force"),
     ]
     for name, manner in (("vehicle_gap", VEHICLE), ("stop_gap", RED_LIGHT)):
         if any(np.isfinite(getattr(ego, name)).any() for ego in egos):
             handles.append(Line2D([], [], **manner))
-    for name, (colour, opacity) in SHADES.items():
-        if name in acted:
-            handles.append(Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name]))
-    return handles
+    return [*handles, *phase_handles(egos)]
+
+
+def phase_handles(egos: Sequence[EgoTrack]) -> list[Artist]:
+    """What the legend shows of the phases that some of the runs have."""
+    acted = {str(name) for ego in egos for name in np.unique(ego.acting)}
+    return [
+        Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name])
+        for name, (colour, opacity) in SHADES.items()
+        if name in acted
+    ]

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
-from giveway.figures.state import NAMES, SHADES, phases
+from giveway.figures.state import DASHES, DOTS, phase_handles, shade_phases
 from giveway.figures.study_rows import wrapped
 from giveway.figures.style import BLACK, BLUE, GREEN, GREY, quiet_grid, styled
 
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from giveway.records.tracks import EgoTrack
-
-DASHES = (0, (4, 2))
 
 
 @dataclass(frozen=True)
@@ -63,11 +60,7 @@ def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
     for (speed, gap), side in zip(grid.T, sides, strict=True):
         for axes in (speed, gap):
             quiet_grid(axes)
-            for acting, start, end in phases(side.ego):
-                colour, opacity = SHADES[acting]
-                axes.axvspan(
-                    start, end, color=colour, alpha=opacity, linewidth=0, label=acting, zorder=0
-                )  # fmt: skip
+            shade_phases(axes, side.ego)
         _draw_speed(speed, side.ego)
         _draw_gap(gap, side)
         speed.set_title(wrapped(side.label, 50))
@@ -94,7 +87,7 @@ def _draw_gap(axes: Axes, side: PairSide) -> None:
     axes.axhline(safe, color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe")
     if whole > safe:
         axes.axhline(
-            whole, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)), label="d_safe + d_buffer"
+            whole, color=GREY, linewidth=0.9, linestyle=DOTS, label="d_safe + d_buffer"
         )  # fmt: skip
     gap = np.where(np.isfinite(side.ego.gap), side.ego.gap, np.nan)
     axes.plot(side.ego.time, gap, color=GREEN, label="gap", zorder=3)
@@ -125,11 +118,6 @@ def _legend(sides: Sequence[PairSide]) -> list[Artist]:
         Line2D([], [], color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe"),
     ]
     if any(side.buffer_distance > 0.0 for side in sides):
-        dots = (0, (1, 2))
         name = "d_safe + d_buffer"
-        handles.append(Line2D([], [], color=GREY, linewidth=0.9, linestyle=dots, label=name))
-    acted = {str(name) for side in sides for name in np.unique(side.ego.acting)}
-    for name, (colour, opacity) in SHADES.items():
-        if name in acted:
-            handles.append(Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name]))
-    return handles
+        handles.append(Line2D([], [], color=GREY, linewidth=0.9, linestyle=DOTS, label=name))
+    return [*handles, *phase_handles([side.ego for side in sides])]

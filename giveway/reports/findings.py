@@ -18,7 +18,15 @@ from giveway.reports.labels import (
     treatment_labels,
 )
 from giveway.reports.published import agreement, published_frame
-from giveway.reports.wording import digits_for, interval, number, quantity, share, shown_ego
+from giveway.reports.wording import (
+    counted,
+    digits_for,
+    interval,
+    number,
+    quantity,
+    share,
+    shown_ego,
+)
 from giveway.studies.statistics import metric
 
 if TYPE_CHECKING:
@@ -43,9 +51,9 @@ def lead(study: StudyFolder) -> str:
         compares = f"The study has one level only, {_named(baseline_label(study))}"
     if not made:
         return f"{compares} ({compared}); there is no run yet."
-    among = f" in {_count(where, 'context')}" if where > 1 else ""
+    among = f" in {counted(where, 'context')}" if where > 1 else ""
     which = f"seeds {seeds[0]} to {seeds[-1]}" if len(seeds) > 1 else f"seed {seeds[0]}"
-    size = f"{_count(made, 'run')} on {_count(len(seeds), 'crowd')} per cell ({which})"
+    size = f"{counted(made, 'run')} on {counted(len(seeds), 'crowd')} per cell ({which})"
     paired = "All levels met the same crowds, so that differences are taken pair by pair."
     return f"{compares} ({compared}){among}: {size}.{f' {paired}' if levels else ''}"
 
@@ -89,7 +97,7 @@ def cautions(study: StudyFolder) -> list[str]:
             else "they have no completion time, which favours a level that gets stuck."
         )
         said.append(
-            f"In {incomplete:,} of {_count(pairs, 'pair')} a side did not reach its goal: {result}"
+            f"In {incomplete:,} of {counted(pairs, 'pair')} a side did not reach its goal: {result}"
         )
     said.append(_too_few(study))
     published = published_frame(study)
@@ -157,7 +165,7 @@ def _size(study: StudyFolder, row: Mapping[Any, Any], unit: str) -> str:
         low, high = -high, -low
     size = quantity(abs(row["mean_difference"]), unit, digits_for(high - low))
     percent = 100.0 * study.definition.comparison.confidence
-    within = f"{percent:g} % interval {interval(low, high, unit)}; {_count(int(row['n']), 'pair')}"
+    within = f"{percent:g} % interval {interval(low, high, unit)}; {counted(int(row['n']), 'pair')}"
     return f"by {size} ({within}){_where(study, [row])}"
 
 
@@ -193,7 +201,7 @@ def _overlaps(study: StudyFolder) -> list[str]:
     for label in compared_labels(study):
         here = numbers[level == label].dropna()
         if len(here):
-            count = f"{int((here > 0).sum()):,} of {_count(len(here), 'run')}"
+            count = f"{int((here > 0).sum()):,} of {counted(len(here), 'run')}"
             parts.append(f"{share(float((here > 0).mean()))} ({count}) with {_named(label)}")
     return [f"A pedestrian's circle overlapped the vehicle's rectangle in {_listed(parts)}."]
 
@@ -218,10 +226,6 @@ def _in_all(study: StudyFolder) -> list[str]:
 def drives(study: StudyFolder) -> bool:
     """Whether the runs drive an ego, as far as can be told from those with a result."""
     return bool(study.runs["mean_speed"].notna().any()) or bool(len(study.failures))
-
-
-def _count(n: int, noun: str) -> str:
-    return f"{n:,} {noun}" if n == 1 else f"{n:,} {noun}s"
 
 
 def _named(level: str) -> str:

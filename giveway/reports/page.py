@@ -47,18 +47,14 @@ class Drawn:
     """A picture in the page.
 
     Attributes:
-        name: of its files, and its id in the page.
+        picture: with its caption; its name is its id in the page.
         title: above it; may be empty.
-        caption: beneath it.
-        alt: what is to be seen.
-        svg: the picture.
+        svg: how it is drawn in the page.
         links: label and address of replays that belong to it.
     """
 
-    name: str
+    picture: Picture
     title: str
-    caption: str
-    alt: str
     svg: Markup
     links: Sequence[tuple[str, str]] = ()
 
@@ -108,7 +104,7 @@ def write_report(
         shown, missing = _examples(folder, pairs, rerun, replays)
         content = _content(study, extremes, replays)
         by_section = {
-            name: [d for s, d in pictures if s == name]
+            name: [drawn for drawn in pictures if drawn.picture.section == name]
             for name in ("differences", "cells", "trade-off")
         }
         html = (
@@ -145,14 +141,16 @@ def _clear(folder: Path) -> None:
                 path.unlink()
 
 
-def _drawn(picture: Picture, folder: Path, title: str = "", **more: Any) -> tuple[str, Drawn]:
-    """Write the picture's files; the section it belongs to, and the picture for the page."""
+def _drawn(
+    picture: Picture, folder: Path, title: str = "", links: Sequence[tuple[str, str]] = ()
+) -> Drawn:
+    """Write the picture's files, and draw it for the page."""
     picture.figure.draw_without_rendering()
     picture.figure.set_layout_engine("none")  # the arrangement is found once, for all formats
     for suffix in _FORMATS:
         save_figure(picture.figure, folder / f"{picture.name}{suffix}")
     svg = Markup(inline_svg(picture.figure, picture.name.replace("_", "")))
-    return picture.section, Drawn(picture.name, title, picture.caption, picture.alt, svg, **more)
+    return Drawn(picture, title, svg, links)
 
 
 def _examples(
@@ -168,7 +166,7 @@ def _examples(
     for pair, picture in pictures:
         runs = ((pair.treatment, pair.run), (pair.baseline, pair.run_baseline))
         links = [(f"{label} ({run})", replays[run]) for label, run in runs if run in replays]
-        shown.append(_drawn(picture, folder, TITLES[pair.reason], links=links)[1])
+        shown.append(_drawn(picture, folder, TITLES[pair.reason], links=links))
     return shown, missing
 
 
