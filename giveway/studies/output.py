@@ -1,4 +1,4 @@
-"""The tables of a study as files: CSV, each whole, and the data package that describes them."""
+"""The tables of a study as CSV files, and the data package that describes them."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 
 from giveway.records.columns import Column
 from giveway.results.folder import package_of
-from giveway.studies.atomic_files import write_whole
+from giveway.studies.atomic_files import write_atomically
 from giveway.studies.columns import COMPARISON_COLUMNS, LEVEL_COLUMNS, SITUATION_COLUMNS
 from giveway.studies.frames import (
     COMPUTING_COLUMNS,
     EXECUTION_COLUMNS,
     FAILURE_COLUMNS,
+    as_written,
     runs_columns,
-    written,
 )
 from giveway.studies.statistics.rounding import tabulated
 
@@ -38,7 +38,7 @@ TABLES = (
     "failures",
 )
 PACKAGE = "datapackage.json"
-_LONG = frozenset({"comparison", "levels", "situations"})  # these take their time
+_LONG = frozenset({"comparison", "levels", "situations"})  # these take some seconds
 _COUNTS = (
     Column("runs", "integer", None, "runs of the cell that are there"),
     Column("failed", "integer", None, "of these without a result"),
@@ -52,8 +52,8 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
     """Write the tables into the study's folder.
 
     Args:
-        study: whose.
-        whole: the comparison too, which takes some seconds.
+        study: its folder.
+        whole: also those tables that take some seconds to compute.
 
     Raises:
         ResultsError: the disk is full or not writable.
@@ -61,15 +61,15 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
     names = [name for name in TABLES if whole or name not in _LONG]
     columns = {name: _columns(study, name) for name in names}
     for name in names:
-        frame = written(getattr(study, name), columns[name])
+        frame = as_written(getattr(study, name), columns[name])
         floats = [column for column in frame.columns if frame[column].dtype == np.float64]
         text = tabulated(frame, floats).to_csv(index=False, lineterminator="\n")
-        write_whole(study.path / f"{name}.csv", text)
+        write_atomically(study.path / f"{name}.csv", text)
     name = f"giveway-study-{study.definition.name}"
     title = study.definition.description or f"giveway study {study.definition.name}"
     package = package_of(name, title, columns)
     text = json.dumps(package, indent=2, ensure_ascii=False) + "\n"
-    write_whole(study.path / PACKAGE, text)
+    write_atomically(study.path / PACKAGE, text)
 
 
 def _columns(study: StudyFolder, name: str) -> Sequence[Column]:

@@ -1,4 +1,4 @@
-"""What makes the runs of a study, wherever that is."""
+"""The interface of what makes the runs of a study, on this machine or on others."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Executor(Protocol):
         """How many runs are made at a time."""
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
-        """Make every run once, and hand over its record when it is finished.
+        """Make every run once, and yield its record when it is finished.
 
         A run that crashes, hangs, takes too long or raises is tried once more; then its record
         says why.

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from giveway.studies.execution.limits import Limits
     from giveway.studies.record import RunRecord, Task
 
-_AHEAD: Final = 2  # runs per worker that have been taken from the plan: none ever waits for us
-_LOOK: Final = 1.0  # [s] after which a wait is begun anew, for systems on which Ctrl-C waits for it
+_AHEAD: Final = 2  # runs per worker that are taken from the plan, so that none waits
+_LOOK: Final = 1.0  # [s] of one wait; some systems notice Ctrl-C only after it
 
 
 class LocalExecutor:
@@ -64,7 +64,7 @@ class LocalExecutor:
                     raise outcome
                 yield outcome
         finally:
-            if under_way:  # given up in the middle: nobody wants those runs any more
+            if under_way:  # the caller has stopped early
                 self._close()
 
     def __enter__(self) -> Self:

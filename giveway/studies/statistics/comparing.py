@@ -1,4 +1,4 @@
-"""The table of differences: every metric, in every situation, of every context."""
+"""The table of differences: every metric in every situation of every context."""
 
 from __future__ import annotations
 
@@ -146,8 +146,9 @@ def _numbers(found: Differences, between: Interval, test: SignedRank) -> dict[st
 def _verdict(row: Mapping[Hashable, Any], comparison: Comparison) -> str:
     """Both must agree: the interval about the size of the mean, the test after correction.
 
-    A verdict thus never contradicts the interval beside it, nor the many tests that were made;
-    where a few large differences pull the mean to the other side than most pairs, there is none.
+    A verdict thus contradicts neither the interval in its row nor the correction for many tests.
+    Where a few large differences pull the mean to the other side than most pairs, no difference
+    is shown.
     """
     if np.isnan(row["q_value"]):
         return NOT_AVAILABLE

@@ -1,4 +1,4 @@
-"""Two runs on the same crowd make a pair: what all differences are differences of."""
+"""Pairs of runs on the same crowd, from which all differences are computed."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Pairs:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What tells them from all others; the same with treatment and baseline swapped."""
+        """Names that no other pairs have; the same with treatment and baseline swapped."""
         context = (f"{name}={level.value}" for name, level in self.context.levels.items())
         return (*context, self.ego, *sorted((self.treatment, self.baseline)))
 
@@ -81,8 +81,8 @@ class _Side:
 def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterator[Pairs]:
     """All pairs, context by context in the design's order, then ego, then treatment.
 
-    A run that failed or crashed belongs to each ego of its context, for it would have had them
-    all. Where no seed was run under both levels there is nothing to yield.
+    A run that failed or crashed belongs to each ego of its context, as it would have had them
+    all. Levels that share no seed have no pairs.
 
     Args:
         runs: a row per run and ego, as ``runs.csv``.
@@ -113,7 +113,7 @@ def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterat
 
 
 def cleaned(runs: pd.DataFrame) -> pd.DataFrame:
-    """The columns that matter, whatever a CSV reader or an empty table made of their types."""
+    """The columns that are compared, with the types that a CSV reader may have lost."""
     frame = runs.reindex(columns=["cell", "seed", "ego", "ending", *_NAMES])
     frame["ego"] = frame["ego"].fillna("").astype(str)
     for name in _NAMES:
@@ -129,7 +129,7 @@ def without_result(frame: pd.DataFrame) -> pd.Series[bool]:
 
 
 def _egos(tables: dict[str, pd.DataFrame]) -> list[str]:
-    """The egos of a context; without any run that has a result there is the nameless one."""
+    """The egos of a context; one without a name if no run has a result."""
     names = {str(ego) for table in tables.values() for ego in table["ego"][~without_result(table)]}
     return sorted(names) or [""]
 

@@ -1,4 +1,4 @@
-"""Numbers as tables hold them, and arithmetic that no size of them upsets."""
+"""Numbers as tables hold them, and means and medians that no large number makes overflow."""
 
 from __future__ import annotations
 

@@ -77,7 +77,7 @@ def within(pairs: Pairs, situation: Situation) -> Mask:
 
 
 def share(pairs: Pairs, situation: Situation) -> float:
-    """Of the pairs that are not lost, how many are in the situation; nan if all are lost."""
+    """The share of the situation among the pairs that are not lost; nan if all are lost."""
     return _mean(within(pairs, situation), kept(pairs))
 
 
