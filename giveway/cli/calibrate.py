@@ -1,4 +1,4 @@
-"""``giveway calibrate``: parameters fitted to recorded trajectories, and what they are worth."""
+"""``giveway calibrate``: parameters fitted to recorded trajectories, judged on held-out clips."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def calibrate_command(
 
 
 def _provenance(found: Calibration, settings: dict[str, Any]) -> dict[str, Any]:
-    """What a reader of the file wants to know."""
+    """How the preset was made, for readers of the file."""
     return {
         "made_by": "giveway calibrate",
         **settings,
@@ -132,7 +132,7 @@ def _gap(fit: Fit) -> str:
 
 
 def _remarks(found: Calibration) -> list[str]:
-    """What has to be said plainly."""
+    """Remarks on what the fit shows and does not show."""
     said = []
     if not found.held_out:
         said.append("No clip was held out: nothing is known of other recordings.")

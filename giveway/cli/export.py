@@ -1,4 +1,4 @@
-"""``giveway export controller``: the regulator, as configured, as an FMU for other masters."""
+"""``giveway export controller``: the controller, as configured, as an FMU for other masters."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
 
 
 def _parameters(config: RunConfig, time_step: float) -> ControllerParameters:
-    """What giveway's own regulator of one ego is set to."""
+    """The parameters of one ego's controller."""
     regulator = make_regulator(config, time_step)
     if not config.controller.endswith("-paper") or not isinstance(regulator.pid, Pid):
         msg = f"controller = {config.controller}: only the paper's controllers can be exported"
@@ -132,11 +132,11 @@ def _check_file(out: Path, *, force: bool) -> None:
 
 
 def _show(out: Path, version: str, p: ControllerParameters) -> None:
-    who = f"MPC of {p.horizon} steps, PID as fallback" if p.mpc else "PID"
+    kind = f"MPC of {p.horizon} steps, PID as fallback" if p.mpc else "PID"
     places = "obstacle_position"
     if version == "2.0":
         places = f"{places}[1] ... {places}[{p.horizon}]"
-    head = f"{out}: FMI {version} Co-Simulation, {who}, every {p.time_step:g} s"
+    head = f"{out}: FMI {version} Co-Simulation, {kind}, every {p.time_step:g} s"
     console = Console(highlight=False, soft_wrap=True)
     console.print(head, markup=False, style="bold")
     console.print(f"  inputs   speed, position, gap, speed_limit, {places}", markup=False)

@@ -23,7 +23,7 @@ _REFRESH = 0.1  # [s] of wall clock between two redraws
 
 @contextmanager
 def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None]:
-    """A bar over the distance driven; it is gone when the run has ended.
+    """A bar over the distance driven, which vanishes when the run has ended.
 
     Drawn from the loop itself: a refreshing thread would write while file descriptor 2 belongs
     to SUMO.
@@ -68,7 +68,7 @@ def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None
 
 @contextmanager
 def counting(console: Console, what: str) -> Iterator[Callable[[int, int, str], None]]:
-    """A bar that is told how much is done, of how much, and a word about it; gone at the end."""
+    """A bar that shows how much is done, of how much, and a remark; it vanishes at the end."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(bar_width=None),

@@ -53,7 +53,7 @@ def replay_command(
 
 
 def _worth_it(run: Path) -> bool:
-    """Whether there may be predictions that are not on record; a crash is not asked for twice."""
+    """Whether a run may give predictions that are not on record; a crash is not repeated."""
     folder = RunFolder.read(run)
     if (run / PREDICTIONS).is_file() or folder.manifest.get("ending") == "crashed":
         return False

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 
 def report_command(study: Path, *, replays: bool, quiet: bool) -> int:
-    """Write them anew; nothing is computed but the few runs that are shown.
+    """Write figures, replays and report anew; only the runs that are shown are computed again.
 
     Args:
         study: the study's folder.
-        replays: make those runs again at all.
+        replays: whether to make the shown runs again.
         quiet: print nothing.
 
     Raises:
@@ -29,7 +29,7 @@ def report_command(study: Path, *, replays: bool, quiet: bool) -> int:
 
 
 def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> None:
-    """Write the tables, unless those of the whole study are there, figures, replays, the report."""
+    """Write figures, replays and report, and the tables unless those of all runs exist."""
     from giveway.precompile import compile_kernels_once
     from giveway.reports.with_replays import write_report_of
     from giveway.studies.output import write_tables

@@ -75,7 +75,7 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
 
 @contextmanager
 def study_progress(console: Console, name: str) -> Iterator[Callable[[StudyProgress], None] | None]:
-    """A bar with rate, remaining time and failures; lines now and then without a terminal."""
+    """A bar with rate, remaining time and failures; without a terminal, a line now and then."""
     if console.quiet:
         yield None
     elif console.is_terminal:

@@ -77,10 +77,10 @@ def print_summary(
 
     Args:
         console: to print on.
-        study: that has been run.
-        made: runs of this session; the others were there.
-        elapsed: [s] that these took.
-        workers: that made them; None: a cluster.
+        study: its folder.
+        made: how many of its runs this session has made.
+        elapsed: [s] that making them took.
+        workers: how many made them; None for a cluster.
     """
     if study.definition.reference:
         _print_reference(console, study)
@@ -164,7 +164,7 @@ def _metric_table(study: StudyFolder, chosen: pd.DataFrame) -> Table:
 
 
 def _short(names: Sequence[str]) -> Iterator[str]:
-    """The last part of each factor's name, where that tells them apart."""
+    """The last part of each factor's name, where no two are the same."""
     last = [*(name.rpartition(".")[2] for name in names), "seed"]  # the crowd's
     for name, short in zip(names, last, strict=False):
         yield short if short and last.count(short) == 1 else name
@@ -220,11 +220,11 @@ def _print_reference(console: Console, study: StudyFolder) -> None:
     for context, rows in frame.groupby([*others, "ego", "pedestrians"], sort=False):
         labels = [escape(str(value)) for value in (*context[: len(others)], context[-1])]
         by_situation = rows.set_index("situation").to_dict("index")
-        table.add_row(*labels, *(_beside(by_situation[name]) for name in situations))
+        table.add_row(*labels, *(_ours_and_published(by_situation[name]) for name in situations))
     console.print(table)
 
 
-def _beside(row: Mapping[Any, Any]) -> str:
+def _ours_and_published(row: Mapping[Any, Any]) -> str:
     """Ours above, the published number below."""
     published = "N.A." if math.isnan(row["published"]) else f"{row['published']:+.2f}"
     if math.isnan(row["mean_difference"]):

@@ -1,4 +1,4 @@
-"""The state figure: the ego's speed, gap and force over time, and who was at the wheel.
+"""The state figure: the ego's speed, gap and force over time, and which controller acted.
 
 After the state figure of Yang & Özgüner 2019 (section 5): one column per run, there the MPC on
 the left and the PID on the right.
@@ -40,7 +40,7 @@ SHADES = {"mpc": (SKY_BLUE, 0.14), "pid": (ORANGE, 0.28), "safety": (PURPLE, 0.4
 NAMES = {"mpc": "MPC acts", "pid": "PID acts", "safety": "safety layer acts"}
 DASHES = (0, (4, 2))
 DOTS = (0, (1, 2))
-OTHERS_SHOWN = 40.0  # [m] of the distance to a vehicle or a light is shown at least
+LEAST_DISTANCE_SHOWN = 40.0  # [m] to a vehicle or a light are shown at least
 SINGLE_INSTANT = 0.5  # [s] shown to either side of a run of one instant
 
 
@@ -92,10 +92,10 @@ def state_figure(
 
 
 def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
-    """Who acted from when to when [s], one entry per uninterrupted phase.
+    """Which controller acted from when to when [s], one entry per uninterrupted phase.
 
-    A command holds until the next instant; the last one is not carried out any more, except in a
-    run of one instant, which is shown ``SINGLE_INSTANT`` to either side.
+    A command holds until the next instant, so that the last one is not carried out. A run of one
+    instant is shown ``SINGLE_INSTANT`` to either side.
     """
     edges = np.flatnonzero(ego.acting[1:] != ego.acting[:-1]) + 1
     starts = np.concatenate(([0], edges))
@@ -111,7 +111,7 @@ def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
 
 
 def shade_phases(axes: Axes, ego: EgoTrack) -> None:
-    """Colour the background by who acted."""
+    """Colour the background by the controller that acted."""
     for acting, start, end in phases(ego):
         colour, opacity = SHADES[acting]
         axes.axvspan(start, end, color=colour, alpha=opacity, linewidth=0, label=acting, zorder=0)
@@ -133,21 +133,21 @@ def _draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: 
             safe_distance + buffer_distance, color=GREY, linewidth=0.9, linestyle=DOTS,
             label="d_safe + d_buffer",
         )  # fmt: skip
-    somebody = np.isfinite(ego.gap)
-    if not somebody.any():
+    pedestrian_in_front = np.isfinite(ego.gap)
+    if not pedestrian_in_front.any():
         axes.text(
             0.5, 0.25, "nobody in front", transform=axes.transAxes, ha="center", color=GREY
         )  # fmt: skip
-    gap = np.where(somebody, ego.gap, np.nan)
+    gap = np.where(pedestrian_in_front, ego.gap, np.nan)
     axes.plot(ego.time, gap, color=GREEN, label="gap", zorder=3)
-    # An instant between two without anybody in front is no line: a point shows it all the same.
-    around = np.concatenate(([False], somebody, [False]))
-    alone = somebody & ~around[:-2] & ~around[2:]
+    # A single instant with a pedestrian in front has no line: it is drawn as a point.
+    around = np.concatenate(([False], pedestrian_in_front, [False]))
+    alone = pedestrian_in_front & ~around[:-2] & ~around[2:]
     axes.plot(ego.time[alone], gap[alone], ".", color=GREEN, markersize=4, zorder=3)
-    for distance, manner in ((ego.vehicle_gap, VEHICLE), (ego.stop_gap, RED_LIGHT)):
+    for distance, look in ((ego.vehicle_gap, VEHICLE), (ego.stop_gap, RED_LIGHT)):
         if np.isfinite(distance).any():
             there = np.where(np.isfinite(distance), distance, np.nan)
-            axes.plot(ego.time, there, zorder=2.5, **manner)
+            axes.plot(ego.time, there, zorder=2.5, **look)
 
 
 def _draw_force(axes: Axes, ego: EgoTrack) -> None:
@@ -171,7 +171,7 @@ def _scale(grid: np.ndarray, egos: Sequence[EgoTrack], distance: float) -> None:
     gaps = np.concatenate([ego.gap[np.isfinite(ego.gap)] for ego in egos])
     others = any(np.isfinite((ego.vehicle_gap, ego.stop_gap)).any() for ego in egos)
     nearest = gaps.min(initial=0.0)
-    farthest = gaps.max(initial=max(distance, OTHERS_SHOWN) if others else distance)
+    farthest = gaps.max(initial=max(distance, LEAST_DISTANCE_SHOWN) if others else distance)
     weakest = min(min(0.0, ego.force.min()) for ego in egos) / 1000.0
     strongest = max(max(0.0, ego.force.max()) for ego in egos) / 1000.0
     room = 0.08 * max(strongest - weakest, 0.1)
@@ -201,9 +201,9 @@ def _legend(egos: Sequence[EgoTrack]) -> list[Artist]:
         Line2D([], [], color=GREEN, label="gap"),
         Line2D([], [], color=VERMILION, linewidth=1.2, label="force"),
     ]
-    for name, manner in (("vehicle_gap", VEHICLE), ("stop_gap", RED_LIGHT)):
+    for name, look in (("vehicle_gap", VEHICLE), ("stop_gap", RED_LIGHT)):
         if any(np.isfinite(getattr(ego, name)).any() for ego in egos):
-            handles.append(Line2D([], [], **manner))
+            handles.append(Line2D([], [], **look))
     return [*handles, *phase_handles(egos)]
 
 

@@ -1,4 +1,4 @@
-"""One crowd, met twice: speed and gap of treatment and baseline side by side.
+"""A pair of runs on the same crowd: speed and gap of treatment and baseline side by side.
 
 After figure 5 of Yang & Özgüner 2019 (MPC on the left, PID on the right).
 """
@@ -44,7 +44,7 @@ class PairSide:
 
 @styled
 def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
-    """Speed with its reference, gap with d_safe, and who acts, on the same scales.
+    """Speed with its reference, gap with d_safe, and the acting controller, on the same scales.
 
     Args:
         sides: normally two, the treatment first.

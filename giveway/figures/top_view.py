@@ -1,4 +1,4 @@
-"""The top view: everybody's trajectory, and snapshots of the encounter.
+"""The top view: the trajectories of ego and pedestrians, and snapshots of the encounter.
 
 After the screenshots figure of Yang & Özgüner 2019 (section 5).
 """
@@ -29,11 +29,11 @@ Road = Sequence[NDArray[np.float64]]
 
 TIME_COLOURS = "viridis"
 SNAPSHOTS = 6
-ENCOUNTER = 10.0  # [m] snapshots are of the time in which somebody is this close to the ego
+ENCOUNTER = 10.0  # [m] snapshots show the time in which a pedestrian is this close to the ego
 MARGIN = 2.0  # [m] around all trajectories
 SURROUNDINGS = 8.0  # [m] shown around the ego's places in the snapshots
-LARGEST_PART = 70.0  # [m] of a side that all snapshots share; on longer drives the view goes along
-VIEW = (50.0, 32.0)  # [m] width and height of a view that goes along
+LARGEST_PART = 70.0  # [m] of a side of a shared view; on longer drives it follows the ego
+VIEW = (50.0, 32.0)  # [m] width and height of a view that follows the ego
 SLENDEREST = 2.2  # the overview is at most so much taller than wide, and twice so much wider
 TICK = 1.0  # [s] of walking is the length of a pedestrian's velocity tick
 NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # of the ego: parts of length and width
@@ -60,7 +60,7 @@ class _Box(NamedTuple):
         return cls(*(middle - half).tolist(), *(middle + half).tolist())
 
     def less_slender(self) -> _Box:
-        """The same view, widened where it is too slender to be drawn beside or above others."""
+        """The same view, widened where it is too slender to be drawn next to or above others."""
         width, height = self.right - self.left, self.top - self.bottom
         more_x = max(0.0, height / SLENDEREST - width) / 2.0
         more_y = max(0.0, width / (2.0 * SLENDEREST) - height) / 2.0
@@ -81,8 +81,8 @@ class _Box(NamedTuple):
     def touches(self, points: NDArray[np.float64]) -> bool:
         """Whether the points' own box meets this one."""
         low, high = points.min(axis=0), points.max(axis=0)
-        beside = high[0] < self.left or low[0] > self.right
-        return bool(not (beside or high[1] < self.bottom or low[1] > self.top))
+        apart = high[0] < self.left or low[0] > self.right
+        return bool(not (apart or high[1] < self.bottom or low[1] > self.top))
 
     def apply(self, axes: Axes) -> None:
         axes.set(xlim=(self.left, self.right), ylim=(self.bottom, self.top), aspect="equal")
@@ -108,7 +108,7 @@ def top_view_figure(
         shape: the ego's rectangle.
         body_radius: radius of a pedestrian [m].
         times: of the snapshots [s], each taken at the nearest control instant; left out: six,
-            evenly over the time in which somebody is within 10 m of the ego.
+            evenly over the time in which a pedestrian is within 10 m of the ego.
         background: other vehicles, drawn in the snapshots; from their latest instant on they are
             taken to drive straight on.
         road: areas and lines to draw underneath.
@@ -121,8 +121,8 @@ def top_view_figure(
         raise ValueError("top view: the run has no instants; pass tracks of at least one")
     steps = _encounter(ego, crowd) if times is None else _nearest_steps(ego, times)
     corners = np.array([rectangle(ego, k, shape) for k in range(ego.time.size)])
-    walked = np.column_stack((crowd.x, crowd.y))
-    whole = _Box.around(np.concatenate((corners.reshape(-1, 2), walked)), MARGIN)
+    places = np.column_stack((crowd.x, crowd.y))
+    whole = _Box.around(np.concatenate((corners.reshape(-1, 2), places)), MARGIN)
     whole = whole.less_slender()
     part = _Box.around(corners[steps].reshape(-1, 2), SURROUNDINGS)
     parts = [part] * len(steps)
@@ -133,8 +133,8 @@ def top_view_figure(
     colours = _colours(ego.time)
     road = [line for line in road or () if whole.touches(line)]
     _draw_road(overview, road)
-    lines = _draw_walks(overview, ego.time, crowd, colours)
-    _draw_drive(overview, ego, colours)
+    lines = _draw_pedestrian_trajectories(overview, ego.time, crowd, colours)
+    _draw_ego_trajectory(overview, ego, colours)
     for k in steps:
         colour = lines.cmap(colours(ego.time[k]))
         overview.add_patch(Polygon(corners[k], fill=False, edgecolor=colour, linewidth=1.4))
@@ -169,7 +169,7 @@ def crowd_view_figure(
         title: of the figure.
 
     Raises:
-        ValueError: nobody was recorded.
+        ValueError: no pedestrian was recorded.
     """
     if not crowd.x.size:
         raise ValueError("crowd view: nobody was recorded; pass a track of at least one record")
@@ -178,7 +178,7 @@ def crowd_view_figure(
     figure = Figure(layout="constrained", figsize=(height / whole.aspect + 1.6, height + 0.8))
     axes = figure.subplots()
     _draw_road(axes, [line for line in road or () if whole.touches(line)])
-    lines = _draw_walks(axes, time, crowd, _colours(time))
+    lines = _draw_pedestrian_trajectories(axes, time, crowd, _colours(time))
     whole.apply(axes)
     axes.set(xlabel="x [m]", ylabel="y [m]", title="Trajectories, begun at the circles")
     figure.colorbar(lines, ax=axes, label="Time [s]", shrink=0.8, aspect=30)
@@ -207,7 +207,7 @@ def _corners(
 
 
 def _encounter(ego: EgoTrack, crowd: CrowdTrack) -> NDArray[np.int64]:
-    """Instants spread evenly over the encounter, or over the run if nobody came close."""
+    """Instants spread evenly over the encounter, or over the run if no pedestrian came close."""
     step = crowd.step
     apart = np.hypot(crowd.x - ego.front_x[step], crowd.y - ego.front_y[step])
     close = step[apart < ENCOUNTER]
@@ -223,16 +223,16 @@ def _nearest_steps(ego: EgoTrack, times: Sequence[float]) -> NDArray[np.int64]:
 
 
 def _arrange(whole: _Box, parts: Sequence[_Box]) -> tuple[Figure, Axes, list[Axes]]:
-    """A tall overview stands beside the snapshots, a flat one above them."""
+    """A tall overview stands next to the snapshots, a flat one above them."""
     part, count = parts[0], len(parts)
     together = all(each == part for each in parts)
-    beside = whole.aspect > 0.6
-    columns = min(count, 2 if beside or together else 3)
+    side_by_side = whole.aspect > 0.6
+    columns = min(count, 2 if side_by_side or together else 3)
     rows = -(-count // columns)
-    snapshots_width = 6.6 if beside else 9.5  # [in]
+    snapshots_width = 6.6 if side_by_side else 9.5  # [in]
     snapshots_height = rows * (snapshots_width / max(columns, 2) * part.aspect + 0.3) + 0.4
     figure = Figure(layout="constrained")
-    if beside:
+    if side_by_side:
         height = min(max(snapshots_height, 4.5), 9.0)
         overview_width = max(height / whole.aspect + 1.0, 3.8)
         figure.set_size_inches(overview_width + snapshots_width, height + 0.4)
@@ -275,10 +275,10 @@ def _draw_background(axes: Axes, time: float, background: BackgroundTrack) -> No
         )
 
 
-def _draw_walks(
+def _draw_pedestrian_trajectories(
     axes: Axes, time: NDArray[np.float64], crowd: CrowdTrack, colours: Normalize
 ) -> LineCollection:
-    """Paths as short lines, each in the colour of its time; circles mark where they begin."""
+    """Trajectories as short lines in the colours of time; circles mark where they begin."""
     groups = PedestrianGroups(crowd)
     places = np.column_stack((crowd.x, crowd.y))[groups.order]
     times = time[crowd.step[groups.order]]
@@ -297,8 +297,8 @@ def _draw_walks(
     return lines
 
 
-def _draw_drive(axes: Axes, ego: EgoTrack, colours: Normalize) -> None:
-    """The ego's way in the colours of time."""
+def _draw_ego_trajectory(axes: Axes, ego: EgoTrack, colours: Normalize) -> None:
+    """The ego's trajectory in the colours of time."""
     kept = _thinned(0, ego.time.size - 1)
     front = np.column_stack((ego.front_x, ego.front_y))[kept]
     driven = LineCollection(

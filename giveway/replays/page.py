@@ -41,9 +41,9 @@ _SHOWN = (
     "peak_deceleration", "rms_jerk",
 )  # fmt: skip
 _SPELT = ("mpc", "ttc", "pet", "rms")
-_BODY = (5.0, 2.0)  # [m] of an ego, where the folder does not tell
-_BEYOND = 150.0  # [m] of corridor beyond the end of the drive
-_CAR = (4.3, 1.8)  # [m] SUMO's passenger car, likewise
+_BODY = (5.0, 2.0)  # [m] length and width of an ego, where the folder does not tell
+_BEYOND_DRIVE = 150.0  # [m] of corridor after the end of the drive
+_PASSENGER_CAR = (4.3, 1.8)  # [m] SUMO's passenger car, likewise
 _MADE_WITHOUT = (
     "No predictions: the run did not record them; 'giveway run --record-predictions 0.25' does."
 )
@@ -101,7 +101,7 @@ def _page(content: dict[str, Any]) -> str:
 
 
 def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> dict[str, Any]:
-    """Everything that the page knows."""
+    """The data of the page."""
     frame = Frame.of(run)
     rows = run.trajectories
     walking = (rows["type"] == "pedestrian").to_numpy()
@@ -112,8 +112,8 @@ def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> d
         "people": pack_tracks(people, frame, hold=run.step, gap=max(gap, 2 * thin), thin=thin),
         "vehicles": pack_tracks(vehicles, frame, hold=run.sumo_step, gap=gap, thin=0.0),
     }
-    cars = tracks["vehicles"]["names"]
-    tracks["vehicles"]["bodies"] = [run.scene.body(name, _CAR) for name in cars]
+    vehicle_names = tracks["vehicles"]["names"]
+    tracks["vehicles"]["bodies"] = [run.scene.body(name, _PASSENGER_CAR) for name in vehicle_names]
     names = {name: index for index, name in enumerate(tracks["people"]["names"])}
     contours, egos = _egos(run, frame, predictions, names)
     return {
@@ -140,7 +140,7 @@ def _title(run: RunFolder) -> str:
 
 
 def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: float) -> list[str]:
-    """What the spectator has to know of what is shown, and of the run."""
+    """What a spectator has to know about the page and the run."""
     notes = []
     error = run.manifest.get("error")
     if error:
@@ -153,7 +153,7 @@ def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: 
     if predictions is None and with_mpc:
         notes.append(remark or _MADE_WITHOUT)
     zone = run.config.crowd.zone
-    if _come_and_go(run) and zone != "everywhere":
+    if _walk_unrecorded(run) and zone != "everywhere":
         notes.append(
             f"The scenario's own walkers are on record in the zone alone (--zone {zone}); outside, "
             "SUMO walks them unseen. '--zone everywhere' shows all."
@@ -163,8 +163,8 @@ def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: 
     return notes + [str(text) for text in run.manifest.get("remarks") or ()]
 
 
-def _come_and_go(run: RunFolder) -> bool:
-    """Whether SUMO walks people whom nobody sees: those handed back; all, without an ego."""
+def _walk_unrecorded(run: RunFolder) -> bool:
+    """Whether SUMO moves persons without a record: those handed back; all, without an ego."""
     people = run.manifest.get("pedestrians")
     handed_back = isinstance(people, dict) and bool(people.get("handed_back"))
     return handed_back or not (run.egos or run.config.crowd.pedestrians)
@@ -242,11 +242,11 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
 def _path(rows: pd.DataFrame, frame: Frame) -> dict[str, str]:
     """Where the front bumper went, to a centimetre, and straight on from there.
 
-    The way that it would have taken is not on record.
+    The rest of its path is not recorded.
     """
     points = rows[["x", "y"]].to_numpy(np.float64)
     heading = angle_to_heading(float(rows["angle"].iloc[-1]))
-    beyond = points[-1] + _BEYOND * np.array((np.cos(heading), np.sin(heading)))
+    beyond = points[-1] + _BEYOND_DRIVE * np.array((np.cos(heading), np.sin(heading)))
     line = np.array(LineString([*points, beyond]).simplify(0.01).coords)
     return {"x": frame.across(line[:, 0]), "y": frame.up(line[:, 1])}
 

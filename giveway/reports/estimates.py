@@ -1,4 +1,4 @@
-"""The comparison table by key, so that pictures and words find their numbers."""
+"""The comparison table by key, so that pictures find their numbers."""
 
 from __future__ import annotations
 

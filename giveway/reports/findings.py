@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
     from giveway.studies.folder import StudyFolder
 
-TOLD = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
-IN_FULL = 4  # groups up to which each has a sentence of its own
+METRICS_IN_WORDS = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
+MOST_SENTENCES = 4  # of one metric; more groups than that are counted in one
 
 
 def lead(study: StudyFolder) -> str:
@@ -45,10 +45,10 @@ def lead(study: StudyFolder) -> str:
     seeds = sorted(set(runs["seed"]))
     made = int(runs["run"].nunique())
     where = len(contexts(study))
-    levels = _listed([_named(label) for label in treatment_labels(study)])
-    compares = f"The study compares {levels} with the baseline {_named(baseline_label(study))}"
+    levels = _listed([_quoted(label) for label in treatment_labels(study)])
+    compares = f"The study compares {levels} with the baseline {_quoted(baseline_label(study))}"
     if not levels:
-        compares = f"The study has one level only, {_named(baseline_label(study))}"
+        compares = f"The study has one level only, {_quoted(baseline_label(study))}"
     if not made:
         return f"{compares} ({compared}); there is no run yet."
     among = f" in {counted(where, 'context')}" if where > 1 else ""
@@ -74,19 +74,19 @@ def facts(study: StudyFolder) -> list[tuple[str, str]]:
 
 def findings(study: StudyFolder) -> list[str]:
     """The main results, most important first."""
-    said = [sentence for name in TOLD for sentence in _of_metric(study, name)]
-    said += _overlaps(study)
-    said += _in_all(study)
-    return said
+    sentences = [sentence for name in METRICS_IN_WORDS for sentence in _of_metric(study, name)]
+    sentences += _overlaps(study)
+    sentences += _overall(study)
+    return sentences
 
 
 def cautions(study: StudyFolder) -> list[str]:
     """What a reader has to know before believing the findings."""
-    said = []
+    sentences = []
     failed = len(study.failures)
     if failed:
         were = "run has" if failed == 1 else "runs have"
-        said.append(f"{failed:,} {were} no result; their pairs are left out (see Failures).")
+        sentences.append(f"{failed:,} {were} no result; their pairs are left out (see Failures).")
     frame = study.situations
     incomplete = int(frame["incomplete"].sum()) if len(frame) else 0
     if incomplete:
@@ -96,18 +96,18 @@ def cautions(study: StudyFolder) -> list[str]:
             if incomplete == pairs - int(frame["lost"].sum())
             else "they have no completion time, which favours a level that gets stuck."
         )
-        said.append(
+        sentences.append(
             f"In {incomplete:,} of {counted(pairs, 'pair')} a side did not reach its goal: {result}"
         )
-    said.append(_too_few(study))
+    sentences.append(_too_few(study))
     published = published_frame(study)
     if published is not None:
-        said.append(agreement(published))
-    return [sentence for sentence in said if sentence]
+        sentences.append(agreement(published))
+    return [sentence for sentence in sentences if sentence]
 
 
 def _too_few(study: StudyFolder) -> str:
-    """Where so few pairs were compared that no difference could have been shown; or nothing."""
+    """A sentence if so few pairs were compared that no difference could have been shown."""
     frame = study.comparison[study.comparison["verdict"] != "N.A."]
     level = 1.0 - study.definition.comparison.confidence
     most = int(frame["n"].max()) if len(frame) else 0
@@ -121,41 +121,41 @@ def _too_few(study: StudyFolder) -> str:
 
 
 def _of_metric(study: StudyFolder, name: str) -> list[str]:
-    """Sentences on one metric in general: each group's, or how many are better."""
+    """Sentences on one metric in the general situation: one per group, or the counts."""
     frame = study.comparison
     frame = frame[(frame["situation"] == "general") & (frame["metric"] == name)]
     verdicts = frame["verdict"].astype(str).to_list()
     if not verdicts or all(verdict == "N.A." for verdict in verdicts):
         return []
-    if len(verdicts) > IN_FULL:
+    if len(verdicts) > MOST_SENTENCES:
         return [_counted(name, verdicts)]
     groups = frame.groupby(["treatment", "ego"], sort=False, dropna=False)
     return [_sentence(study, name, group.to_dict("records")) for _, group in groups]
 
 
 def _sentence(study: StudyFolder, name: str, rows: Sequence[Mapping[Any, Any]]) -> str:
-    """One treatment, all contexts: better and worse with numbers, the others by name."""
-    known, baseline = metric(name), _named(baseline_label(study))
-    treatment = _named(level_label(rows[0]["treatment"])) + shown_ego(level_label(rows[0]["ego"]))
+    """One treatment in all contexts: better and worse with numbers, the others by name."""
+    known, baseline = metric(name), _quoted(baseline_label(study))
+    treatment = _quoted(level_label(rows[0]["treatment"])) + shown_ego(level_label(rows[0]["ego"]))
     label = known.label[0].upper() + known.label[1:]
-    told = []
+    clauses = []
     for verdict in ("better", "worse"):
         here = [row for row in rows if row["verdict"] == verdict]
         if here:
             side = "lower" if here[0]["mean_difference"] < 0 else "higher"
             sizes = "; ".join(_size(study, row, known.unit) for row in here)
-            told.append(
+            clauses.append(
                 f"is {side} with {treatment} than with {baseline}, which is {verdict}: {sizes}"
             )
     rest = [row for row in rows if row["verdict"] not in {"better", "worse", "N.A."}]
     if rest:
         where = _where(study, rest)
-        told.append(f"no difference between {treatment} and {baseline} is shown{where}")
+        clauses.append(f"no difference between {treatment} and {baseline} is shown{where}")
     few = [row for row in rows if row["verdict"] == "N.A."]
     if few:
-        told.append(f"there are too few pairs (N.A.){_where(study, few)}")
-    joint = " " if told[0].startswith("is ") else ": "
-    return f"{label}{joint}{'; '.join(told)}."
+        clauses.append(f"there are too few pairs (N.A.){_where(study, few)}")
+    separator = " " if clauses[0].startswith("is ") else ": "
+    return f"{label}{separator}{'; '.join(clauses)}."
 
 
 def _size(study: StudyFolder, row: Mapping[Any, Any], unit: str) -> str:
@@ -202,14 +202,14 @@ def _overlaps(study: StudyFolder) -> list[str]:
         here = numbers[level == label].dropna()
         if len(here):
             count = f"{int((here > 0).sum()):,} of {counted(len(here), 'run')}"
-            parts.append(f"{share(float((here > 0).mean()))} ({count}) with {_named(label)}")
+            parts.append(f"{share(float((here > 0).mean()))} ({count}) with {_quoted(label)}")
     return [f"A pedestrian's circle overlapped the vehicle's rectangle in {_listed(parts)}."]
 
 
-def _in_all(study: StudyFolder) -> list[str]:
+def _overall(study: StudyFolder) -> list[str]:
     verdicts = study.comparison["verdict"].astype(str)
     enough = int((verdicts != "N.A.").sum())
-    if not enough and not drives(study):
+    if not enough and not _have_ego(study):
         return ["The runs have no ego: every metric is an ego's, so there is nothing to compare."]
     if not enough:
         return ["No situation has enough pairs for a comparison: every difference is N.A."]
@@ -223,12 +223,12 @@ def _in_all(study: StudyFolder) -> list[str]:
     ]
 
 
-def drives(study: StudyFolder) -> bool:
+def _have_ego(study: StudyFolder) -> bool:
     """Whether the runs drive an ego, as far as can be told from those with a result."""
     return bool(study.runs["mean_speed"].notna().any()) or bool(len(study.failures))
 
 
-def _named(level: str) -> str:
+def _quoted(level: str) -> str:
     """A level's label in a sentence: in quotation marks if it is not a single word."""
     return level if level and not set(level) & set(" ,;:") else f"“{level}”"
 

@@ -40,7 +40,7 @@ def treatment_labels(study: StudyFolder) -> list[str]:
 
 
 def level_label(value: object) -> str:
-    """A factor's value in a frame, however it was read, as its level is labelled."""
+    """The label of the level whose value stands in a frame, whatever type it was read as."""
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):

@@ -121,7 +121,7 @@ def _rows(study: StudyFolder, context: Context) -> Iterator[Row]:
 
 
 def _title(context: Context) -> str:
-    """What the block is called: a name that a level has of its own says enough."""
+    """The heading of a block: the label alone of a level that has a name, else the context."""
     levels = list(context.levels.values())
     return (
         levels[0].label if len(levels) == 1 and isinstance(levels[0].value, str) else context.short

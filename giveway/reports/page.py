@@ -75,14 +75,14 @@ def write_report(
     replay: Callable[[str], Path | None] | None = None,
     target: Path | None = None,
 ) -> Path:
-    """Draw the figures of a study and write its report; both replace what is there.
+    """Draw the figures of a study and write its report; both replace existing ones.
 
     Args:
         study: its folder, read.
         examples: pairs of which speed and gap are drawn, at most; 0: none.
         worst: runs that are listed, for each reason.
-        rerun: makes a run again, by its id, for the examples; None: there are none.
-        replay: the page that plays a run, by its id, or None; None: no links.
+        rerun: makes a run again, by its id, for the examples; None: the report has no examples.
+        replay: gives the page that plays a run, by its id, or None; None: no links.
         target: the file to write; None: ``report.html`` in the study's folder. Figures go to
             the folder ``figures`` of the study.
 
@@ -133,7 +133,7 @@ def _replays(
 
 
 def _clear(folder: Path) -> None:
-    """Make room for the figures; those of a former report are taken away."""
+    """Make the folder of the figures, and remove those of a former report."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in _NAMES:
         for suffix in _FORMATS:

@@ -1,4 +1,4 @@
-"""The pictures of a study: what of its tables each one shows, drawn by ``giveway.figures``."""
+"""The pictures of a study: what each one shows of the tables; ``giveway.figures`` draws it."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ class Picture:
         name: of its files, without suffix; unique within the study.
         section: of the report that it belongs to.
         caption: one or two sentences beneath it.
-        alt: what is to be seen, for those who do not see it.
-        figure: itself.
+        alt: description for readers who do not see the picture.
+        figure: the picture.
     """
 
     name: str
@@ -58,11 +58,7 @@ class Picture:
 
 
 def study_pictures(study: StudyFolder) -> Iterator[Picture]:
-    """Everything that can be drawn of a study's tables; what has no numbers is left out.
-
-    Args:
-        study: whose.
-    """
+    """Every picture of a study for which its tables have numbers."""
     if study.runs.empty:
         return
     yield from _histograms(study)

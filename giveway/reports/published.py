@@ -1,4 +1,4 @@
-"""Numbers from the literature that a study may be shown beside."""
+"""Numbers from the literature with which a report compares those of the study."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Key = tuple[tuple[str, ...], str, str, str]
 
 
 def published_numbers(study: StudyFolder) -> dict[Key, float]:
-    """Table 2 of Yang & Özgüner 2019 where the study asks for it and compares what they did."""
+    """Table 2 of Yang & Özgüner 2019, if the study asks for it and compares the same levels."""
     compares = TREATMENT in treatment_labels(study) and baseline_label(study) == BASELINE
     if study.definition.reference != "yang2019" or not compares:
         return {}
@@ -59,7 +59,7 @@ def published_frame(study: StudyFolder) -> pd.DataFrame | None:
 
 
 def published_table(frame: pd.DataFrame) -> Table:
-    """Ours beside theirs: a row per number of pedestrians and situation."""
+    """Published and own numbers: a row per number of pedestrians and situation."""
     known = {column.name for column in TABLE_2_COLUMNS}
     others = [name for name in frame.columns if name not in known]
     headings = [*map(short_name, others), "pedestrians", "situation", "quantity", SOURCE, "giveway"]

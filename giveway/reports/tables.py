@@ -1,4 +1,4 @@
-"""A study's frames as tables for people: words for names, units, digits that mean something."""
+"""A study's frames as tables to read: names in words, units, as many digits as mean something."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Table:
     Attributes:
         name: its id in the page.
         caption: what it shows.
-        headings: of the columns; those of numbers are told by their cells.
+        headings: of the columns.
         rows: of cells, as many as headings.
         filters: columns by whose values rows can be chosen.
         note: beneath it.

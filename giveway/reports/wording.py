@@ -21,7 +21,7 @@ _USUAL_EGO = frozenset({"", "ego"})
 
 
 def shown_ego(ego: object) -> str:
-    """The ego's id, where it says something."""
+    """The ego's id in brackets; nothing for the usual one."""
     return "" if str(ego) in _USUAL_EGO else f" (ego {ego})"
 
 

@@ -68,9 +68,8 @@ def _require_free(out: Path, study: str, options: StudyOptions) -> None:
         raise ResultsError(msg)
     present = {path.name for path in out.iterdir()} - {LOCK}
     foreign = sorted(name for name in present if finished_name(name) not in _STUDY_FILES)
-    if foreign and not (
-        options.resume and present & _STUDY_FILES
-    ):  # other files do not harm a study that goes on
+    beginning = not (options.resume and present & _STUDY_FILES)
+    if foreign and beginning:  # foreign files do not harm a study that goes on
         msg = (
             f"{out}: holds '{foreign[0]}', which no study of giveway wrote; name another folder "
             "with --out"

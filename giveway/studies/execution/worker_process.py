@@ -179,9 +179,7 @@ class WorkerProcess:
                 self._kill(stood_still(quiet))
             elif taken >= self._limits.run:
                 self._kill(f"not finished within {taken:g} s, the limit of a run,")
-            if (
-                self._process.poll() is not None
-            ):  # its child may hold the connection
+            if self._process.poll() is not None:  # its child may hold the connection
                 raise EOFError
             with suppress(OSError):
                 if self._printed.stat().st_size > _MOST_PRINTED:
