@@ -89,8 +89,8 @@ def _cell(rows: pd.DataFrame) -> str:
 
 
 def _contacts(contacts: pd.DataFrame) -> Table:
-    people = int(contacts.loc[contacts["predictor"] == ORDER[0], "pedestrians"].sum())
-    table = Table(title=f"Touching the vehicle in whole clips, of {people}")
+    pedestrians = int(contacts.loc[contacts["predictor"] == ORDER[0], "pedestrians"].sum())
+    table = Table(title=f"Touching the vehicle in whole clips, of {pedestrians}")
     for heading in ("", "touching", "closest [m]"):
         table.add_column(escape(heading), justify="right" if heading else "left")
     for row in _totals(contacts):

@@ -127,12 +127,7 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
 
 
 def _draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: float) -> None:
-    axes.axhline(safe_distance, color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe")
-    if buffer_distance > 0.0:
-        axes.axhline(
-            safe_distance + buffer_distance, color=GREY, linewidth=0.9, linestyle=DOTS,
-            label="d_safe + d_buffer",
-        )  # fmt: skip
+    draw_safe_distances(axes, safe_distance, buffer_distance)
     pedestrian_in_front = np.isfinite(ego.gap)
     if not pedestrian_in_front.any():
         axes.text(
@@ -150,6 +145,16 @@ def _draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: 
             axes.plot(ego.time, there, zorder=2.5, **look)
 
 
+def draw_safe_distances(axes: Axes, safe_distance: float, buffer_distance: float) -> None:
+    """Lines at d_safe, and at d_safe + d_buffer where there is a buffer."""
+    axes.axhline(safe_distance, color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe")
+    if buffer_distance > 0.0:
+        axes.axhline(
+            safe_distance + buffer_distance, color=GREY, linewidth=0.9, linestyle=DOTS,
+            label="d_safe + d_buffer",
+        )  # fmt: skip
+
+
 def _draw_force(axes: Axes, ego: EgoTrack) -> None:
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     axes.step(
@@ -164,10 +169,7 @@ def _marker(ego: EgoTrack) -> str:
 
 def _scale(grid: np.ndarray, egos: Sequence[EgoTrack], distance: float) -> None:
     """One scale for all runs, zero always on it, so that heights can be compared."""
-    starts = min(float(ego.time[0]) for ego in egos)
-    end = max(float(ego.time[-1]) for ego in egos)
-    margin = SINGLE_INSTANT if end == starts else 0.0
-    fastest = max(max(ego.speed.max(), ego.reference_speed.max()) for ego in egos)
+    scale_time_and_speed(grid[0, 0], egos)
     gaps = np.concatenate([ego.gap[np.isfinite(ego.gap)] for ego in egos])
     others = any(np.isfinite((ego.vehicle_gap, ego.stop_gap)).any() for ego in egos)
     nearest = gaps.min(initial=0.0)
@@ -175,10 +177,18 @@ def _scale(grid: np.ndarray, egos: Sequence[EgoTrack], distance: float) -> None:
     weakest = min(min(0.0, ego.force.min()) for ego in egos) / 1000.0
     strongest = max(max(0.0, ego.force.max()) for ego in egos) / 1000.0
     room = 0.08 * max(strongest - weakest, 0.1)
-    grid[0, 0].set_xlim(starts - margin, end + margin)
-    grid[0, 0].set_ylim(0.0, 1.1 * max(fastest, 1.0))
     grid[1, 0].set_ylim(1.1 * nearest, 1.1 * farthest)
     grid[2, 0].set_ylim(weakest - room, strongest + room)
+
+
+def scale_time_and_speed(axes: Axes, egos: Sequence[EgoTrack]) -> None:
+    """Limits of a panel of speeds over time in which all runs have room."""
+    start = min(float(ego.time[0]) for ego in egos)
+    end = max(float(ego.time[-1]) for ego in egos)
+    margin = SINGLE_INSTANT if end == start else 0.0
+    fastest = max(max(ego.speed.max(), ego.reference_speed.max()) for ego in egos)
+    axes.set_xlim(start - margin, end + margin)
+    axes.set_ylim(0.0, 1.1 * max(fastest, 1.0))
 
 
 def _name_distances(axes: Axes, safe_distance: float, buffer_distance: float) -> None:

@@ -12,7 +12,14 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from giveway.figures.state import DASHES, DOTS, phase_handles, shade_phases
+from giveway.figures.state import (
+    DASHES,
+    DOTS,
+    draw_safe_distances,
+    phase_handles,
+    scale_time_and_speed,
+    shade_phases,
+)
 from giveway.figures.study_rows import wrapped
 from giveway.figures.style import BLACK, BLUE, GREEN, GREY, quiet_grid, styled
 
@@ -83,12 +90,7 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
 
 
 def _draw_gap(axes: Axes, side: PairSide) -> None:
-    safe, whole = side.safe_distance, side.safe_distance + side.buffer_distance
-    axes.axhline(safe, color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe")
-    if whole > safe:
-        axes.axhline(
-            whole, color=GREY, linewidth=0.9, linestyle=DOTS, label="d_safe + d_buffer"
-        )  # fmt: skip
+    draw_safe_distances(axes, side.safe_distance, side.buffer_distance)
     gap = np.where(np.isfinite(side.ego.gap), side.ego.gap, np.nan)
     axes.plot(side.ego.time, gap, color=GREEN, label="gap", zorder=3)
     if not np.isfinite(gap).any():
@@ -100,13 +102,9 @@ def _draw_gap(axes: Axes, side: PairSide) -> None:
 def _scale(grid: np.ndarray, sides: Sequence[PairSide]) -> None:
     """One scale for both runs, zero on it."""
     egos = [side.ego for side in sides]
-    start, end = min(e.time[0] for e in egos), max(e.time[-1] for e in egos)
-    margin = 0.5 if start == end else 0.0
-    fastest = max(max(e.speed.max(), e.reference_speed.max(), 1.0) for e in egos)
+    scale_time_and_speed(grid[0, 0], egos)
     gaps = np.concatenate([e.gap[np.isfinite(e.gap)] for e in egos])
     farthest = max(side.safe_distance + side.buffer_distance for side in sides)
-    grid[0, 0].set_xlim(start - margin, end + margin)
-    grid[0, 0].set_ylim(0.0, 1.1 * fastest)
     grid[1, 0].set_ylim(1.1 * gaps.min(initial=0.0), 1.1 * gaps.max(initial=farthest))
 
 

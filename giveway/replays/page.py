@@ -14,6 +14,7 @@ from shapely import LineString
 
 from giveway.config.presets import parameters_of
 from giveway.errors import ResultsError
+from giveway.figures.study_rows import pretty_unit
 from giveway.geometry.angles import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.replays.contours import influence_contours
@@ -106,10 +107,10 @@ def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> d
     rows = run.trajectories
     walking = (rows["type"] == "pedestrian").to_numpy()
     driven = rows["id"].isin(list(run.egos)).to_numpy() & ~walking
-    people, vehicles = rows[walking], rows[~walking & ~driven]
-    thin, gap = thinning(people, run.step), longest_gap(run)
+    pedestrians, vehicles = rows[walking], rows[~walking & ~driven]
+    thin, gap = thinning(pedestrians, run.step), longest_gap(run)
     tracks = {
-        "people": pack_tracks(people, frame, hold=run.step, gap=max(gap, 2 * thin), thin=thin),
+        "people": pack_tracks(pedestrians, frame, hold=run.step, gap=max(gap, 2 * thin), thin=thin),
         "vehicles": pack_tracks(vehicles, frame, hold=run.sumo_step, gap=gap, thin=0.0),
     }
     vehicle_names = tracks["vehicles"]["names"]
@@ -133,9 +134,9 @@ def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> d
 
 def _title(run: RunFolder) -> str:
     scenario = run.summary.get("scenario", run.config.scenario)
-    who = {one.controller.upper() for one in run.egos.values()}
-    people = run.trajectories.loc[run.trajectories["type"] == "pedestrian", "id"].nunique()
-    parts = [str(scenario), " + ".join(sorted(who)), f"{people} pedestrians"]
+    controllers = {one.controller.upper() for one in run.egos.values()}
+    pedestrians = run.trajectories.loc[run.trajectories["type"] == "pedestrian", "id"].nunique()
+    parts = [str(scenario), " + ".join(sorted(controllers)), f"{pedestrians} pedestrians"]
     return " · ".join([part for part in parts if part] + [f"seed {run.config.seed}"])
 
 
@@ -165,8 +166,8 @@ def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: 
 
 def _walk_unrecorded(run: RunFolder) -> bool:
     """Whether SUMO moves persons without a record: those handed back; all, without an ego."""
-    people = run.manifest.get("pedestrians")
-    handed_back = isinstance(people, dict) and bool(people.get("handed_back"))
+    counts = run.manifest.get("pedestrians")
+    handed_back = isinstance(counts, dict) and bool(counts.get("handed_back"))
     return handed_back or not (run.egos or run.config.crowd.pedestrians)
 
 
@@ -258,7 +259,7 @@ def _summary(row: dict[str, Any]) -> list[dict[str, Any]]:
         {
             "label": _label(name),
             "value": row[name] if _is_number(row[name]) else None,
-            "unit": (columns[name].unit or "").replace("^2", "²").replace("^3", "³"),
+            "unit": pretty_unit(columns[name].unit or ""),
             "meaning": columns[name].description,
         }
         for name in _SHOWN
@@ -276,11 +277,11 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and math.isfinite(value)
 
 
-def _met(people: pd.DataFrame, names: dict[str, int]) -> dict[str, Any]:
+def _met(met: pd.DataFrame, names: dict[str, int]) -> dict[str, Any]:
     """Each pedestrian's closest approach to this ego, by the index of its name."""
-    if not {"id", "minimum_clearance"} <= set(people):
+    if not {"id", "minimum_clearance"} <= set(met):
         return {}
-    known = people[people["id"].isin(list(names))].dropna(subset=["minimum_clearance"])
+    known = met[met["id"].isin(list(names))].dropna(subset=["minimum_clearance"])
     return {
         str(names[who]): round(float(clearance), 3)
         for who, clearance in zip(known["id"], known["minimum_clearance"], strict=True)

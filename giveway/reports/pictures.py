@@ -15,6 +15,7 @@ from giveway.figures.study_distributions import DistributionColumn, distribution
 from giveway.figures.study_forest import Estimate, ForestColumn, forest_figure
 from giveway.figures.study_rows import Row, level_colours
 from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
+from giveway.reports.choice import deciding_metric
 from giveway.reports.estimates import estimates
 from giveway.reports.labels import baseline_label, compared_labels, contexts, treatment_labels
 from giveway.reports.pairing import BASELINE, DIFFERENCE, paired, situation_of
@@ -69,9 +70,7 @@ def study_pictures(study: StudyFolder) -> Iterator[Picture]:
 
 def _histograms(study: StudyFolder) -> Iterator[Picture]:
     pairs = paired(study)
-    time = (
-        "completion_time" if pairs["completion_time" + DIFFERENCE].notna().any() else "total_wait"
-    )
+    time = deciding_metric(pairs)
     names = {"general": time, "stop-and-wait": "longest_wait", "non-stop": time}
     columns = [_difference_column(situation, name) for situation, name in names.items()]
     reported = estimates(study)

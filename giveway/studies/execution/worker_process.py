@@ -114,8 +114,8 @@ class WorkerProcess:
         """Make a run.
 
         Raises:
-            IdleDeathError: the worker is dead, and the run had not begun.
-            RunDiedError: the worker is dead, and the run is why.
+            IdleDeathError: the worker has ended before the run began.
+            RunDiedError: the run has ended the worker.
             RunRaisedError: the worker runs, but should not be used any more.
             WorkerError: the worker would not make the run that was planned.
         """
