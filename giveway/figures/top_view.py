@@ -6,7 +6,7 @@ After the screenshots figure of Yang & Özgüner 2019 (section 5).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.collections import EllipseCollection, LineCollection
@@ -16,6 +16,7 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from giveway.figures.style import BLACK, GREY, LIGHT_GREY, VERMILION, keep_panels, styled
+from giveway.figures.view import Box
 from giveway.metrics.groups import PedestrianGroups
 
 if TYPE_CHECKING:
@@ -34,58 +35,9 @@ MARGIN = 2.0  # [m] around all trajectories
 SURROUNDINGS = 8.0  # [m] shown around the ego's places in the snapshots
 LARGEST_PART = 70.0  # [m] of a side of a shared view; on longer drives it follows the ego
 VIEW = (50.0, 32.0)  # [m] width and height of a view that follows the ego
-SLENDEREST = 2.2  # the overview is at most so much taller than wide, and twice so much wider
 TICK = 1.0  # [s] of walking is the length of a pedestrian's velocity tick
 NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # of the ego: parts of length and width
 SEGMENTS = 150  # at most, per trajectory
-
-
-class _Box(NamedTuple):
-    """Limits of a view [m]."""
-
-    left: float
-    bottom: float
-    right: float
-    top: float
-
-    @classmethod
-    def around(cls, points: NDArray[np.float64], margin: float) -> _Box:
-        left, bottom = points.min(axis=0) - margin
-        right, top = points.max(axis=0) + margin
-        return cls(float(left), float(bottom), float(right), float(top))
-
-    @classmethod
-    def centred(cls, middle: NDArray[np.float64], size: tuple[float, float]) -> _Box:
-        half = np.array(size) / 2.0
-        return cls(*(middle - half).tolist(), *(middle + half).tolist())
-
-    def less_slender(self) -> _Box:
-        """The same view, widened where it is too slender to be drawn next to or above others."""
-        width, height = self.right - self.left, self.top - self.bottom
-        more_x = max(0.0, height / SLENDEREST - width) / 2.0
-        more_y = max(0.0, width / (2.0 * SLENDEREST) - height) / 2.0
-        return _Box(
-            self.left - more_x, self.bottom - more_y, self.right + more_x, self.top + more_y
-        )
-
-    @property
-    def size(self) -> tuple[float, float]:
-        """Width and height [m]."""
-        return self.right - self.left, self.top - self.bottom
-
-    @property
-    def aspect(self) -> float:
-        """Height over width."""
-        return (self.top - self.bottom) / (self.right - self.left)
-
-    def touches(self, points: NDArray[np.float64]) -> bool:
-        """Whether the points' own box meets this one."""
-        low, high = points.min(axis=0), points.max(axis=0)
-        apart = high[0] < self.left or low[0] > self.right
-        return bool(not (apart or high[1] < self.bottom or low[1] > self.top))
-
-    def apply(self, axes: Axes) -> None:
-        axes.set(xlim=(self.left, self.right), ylim=(self.bottom, self.top), aspect="equal")
 
 
 @styled
@@ -122,12 +74,12 @@ def top_view_figure(
     steps = _encounter(ego, crowd) if times is None else _nearest_steps(ego, times)
     corners = np.array([rectangle(ego, k, shape) for k in range(ego.time.size)])
     places = np.column_stack((crowd.x, crowd.y))
-    whole = _Box.around(np.concatenate((corners.reshape(-1, 2), places)), MARGIN)
+    whole = Box.around(np.concatenate((corners.reshape(-1, 2), places)), MARGIN)
     whole = whole.less_slender()
-    part = _Box.around(corners[steps].reshape(-1, 2), SURROUNDINGS)
+    part = Box.around(corners[steps].reshape(-1, 2), SURROUNDINGS)
     parts = [part] * len(steps)
     if max(part.size) > LARGEST_PART:
-        parts = [_Box.centred(corners[k].mean(axis=0), VIEW) for k in steps]
+        parts = [Box.centred(corners[k].mean(axis=0), VIEW) for k in steps]
 
     figure, overview, panels = _arrange(whole, parts)
     colours = _colours(ego.time)
@@ -173,7 +125,7 @@ def crowd_view_figure(
     """
     if not crowd.x.size:
         raise ValueError("crowd view: nobody was recorded; pass a track of at least one record")
-    whole = _Box.around(np.column_stack((crowd.x, crowd.y)), SURROUNDINGS).less_slender()
+    whole = Box.around(np.column_stack((crowd.x, crowd.y)), SURROUNDINGS).less_slender()
     height = min(max(7.5 * whole.aspect, 4.0), 9.0)
     figure = Figure(layout="constrained", figsize=(height / whole.aspect + 1.6, height + 0.8))
     axes = figure.subplots()
@@ -222,7 +174,7 @@ def _nearest_steps(ego: EgoTrack, times: Sequence[float]) -> NDArray[np.int64]:
     return np.array([np.abs(ego.time - time).argmin() for time in times], dtype=np.int64)
 
 
-def _arrange(whole: _Box, parts: Sequence[_Box]) -> tuple[Figure, Axes, list[Axes]]:
+def _arrange(whole: Box, parts: Sequence[Box]) -> tuple[Figure, Axes, list[Axes]]:
     """A tall overview stands next to the snapshots, a flat one above them."""
     part, count = parts[0], len(parts)
     together = all(each == part for each in parts)

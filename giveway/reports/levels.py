@@ -13,7 +13,7 @@ from giveway.reports.labels import (
     contexts,
     level_label,
 )
-from giveway.reports.tables import Cell, Table
+from giveway.reports.table import Cell, Table
 from giveway.reports.wording import number, pretty_unit
 from giveway.studies.statistics import metric
 

@@ -11,7 +11,7 @@ from giveway.reports.labels import (
     level_label,
     treatment_labels,
 )
-from giveway.reports.tables import Cell, Table
+from giveway.reports.table import Cell, Table
 from giveway.reports.wording import digits_for, interval, number
 from giveway.studies.contexts import short_name
 from giveway.studies.statistics import PUBLISHED, TABLE_2_COLUMNS, table2

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
 from giveway.reports.labels import level_label
+from giveway.reports.table import Cell, Table, number_cell, verdict_cell, whole_cell
 from giveway.reports.wording import digits_for, interval, number, pretty_unit, quantity, share
 from giveway.studies.contexts import other_factors, short_name
 from giveway.studies.statistics import METRICS, metric
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
 
     from giveway.reports.choice import WorstRun
     from giveway.studies.folder import StudyFolder
@@ -29,64 +29,6 @@ SHOWN_IN_CELLS = (
     "mpc_feasibility_rate",
 )
 MOST_FAILURES = 200
-
-
-@dataclass(frozen=True)
-class Cell:
-    """One cell of a table.
-
-    Attributes:
-        text: what it says.
-        kind: class of its look: number, better, worse, none, na, code.
-        link: of the text; relative to the report.
-    """
-
-    text: str
-    kind: str = ""
-    link: str = ""
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table of the report.
-
-    Attributes:
-        name: its id in the page.
-        caption: what it shows.
-        headings: of the columns.
-        rows: of cells, as many as headings.
-        filters: columns by whose values rows can be chosen.
-        note: beneath it.
-    """
-
-    name: str
-    caption: str
-    headings: Sequence[str]
-    rows: Sequence[Sequence[Cell]]
-    filters: tuple[int, ...] = ()
-    note: str = ""
-
-    @property
-    def numeric(self) -> list[bool]:
-        """Which columns hold numbers."""
-        return [
-            bool(self.rows) and all(row[k].kind in {"number", "na"} for row in self.rows)
-            for k in range(len(self.headings))
-        ]
-
-
-def _number(value: float, digits: int = 2) -> Cell:
-    return Cell(number(value, digits), "number" if math.isfinite(value) else "na")
-
-
-def _whole(value: object) -> Cell:
-    return Cell(f"{int(str(value).partition('.')[0]):,}", "number")
-
-
-def verdict_cell(verdict: str) -> Cell:
-    """Better, worse, no difference shown, N.A., in its colour."""
-    kinds = {"better": "better", "worse": "worse"}
-    return Cell(verdict, kinds.get(verdict, "none"))
 
 
 def comparison_table(study: StudyFolder) -> Table:
@@ -120,14 +62,14 @@ def comparison_table(study: StudyFolder) -> Table:
 def _numbers(row: Mapping[Any, Any]) -> list[Cell]:
     digits = digits_for(row["ci_high"] - row["ci_low"])
     return [
-        _number(row["mean_difference"], digits),
+        number_cell(row["mean_difference"], digits),
         Cell(interval(row["ci_low"], row["ci_high"])),
         verdict_cell(str(row["verdict"])),
-        _whole(row["n"]),
+        whole_cell(row["n"]),
         Cell(share(row["share"]), "number"),
-        _number(row["treatment_mean"], max(digits, 2)),
-        _number(row["baseline_mean"], max(digits, 2)),
-        _number(row["median_difference"], digits),
+        number_cell(row["treatment_mean"], max(digits, 2)),
+        number_cell(row["baseline_mean"], max(digits, 2)),
+        number_cell(row["median_difference"], digits),
         _probability(row["q_value"]),
     ]
 
@@ -135,7 +77,7 @@ def _numbers(row: Mapping[Any, Any]) -> list[Cell]:
 def _probability(value: float) -> Cell:
     if math.isfinite(value) and value < 0.001:
         return Cell("< 0.001", "number")
-    return _number(value, 3)
+    return number_cell(value, 3)
 
 
 def glance_table(study: StudyFolder) -> Table:
@@ -186,10 +128,10 @@ def situations_table(study: StudyFolder) -> Table:
     rows = [
         [
             *(_level(row[name]) for name in names),
-            _whole(row["pairs"]),
+            whole_cell(row["pairs"]),
             *(Cell(share(row[name]), "number") for name in shares),
-            _whole(row["lost"]),
-            _whole(row["incomplete"]),
+            whole_cell(row["lost"]),
+            whole_cell(row["incomplete"]),
         ]
         for row in frame.to_dict("records")
     ]
@@ -216,10 +158,10 @@ def cells_table(study: StudyFolder) -> Table:
         lost = here["ending"].isin(["failed", "crashed"])
         rows.append(
             [
-                _whole(cell.number),
+                whole_cell(cell.number),
                 *(_level(cell.levels[name].label) for name in names),
-                _whole(here["run"].nunique()),
-                _whole(int(lost.sum())),
+                whole_cell(here["run"].nunique()),
+                whole_cell(int(lost.sum())),
                 Cell(share(_completed(here[~lost])), "number"),
                 *(_mean(here[name]) for name in shown),
             ]
@@ -240,7 +182,7 @@ def _completed(rows: pd.DataFrame) -> float:
 def _mean(column: pd.Series) -> Cell:
     values = pd.to_numeric(column, errors="coerce").to_numpy(float)
     values = values[np.isfinite(values)]
-    return _number(float(values.mean()) if values.size else math.nan)
+    return number_cell(float(values.mean()) if values.size else math.nan)
 
 
 def worst_tables(worst: Iterable[WorstRun], replays: Mapping[str, str]) -> list[Table]:
