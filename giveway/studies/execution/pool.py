@@ -15,15 +15,14 @@ import socket
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS, Limits
 from giveway.studies.execution.scratch import Scratch
 from giveway.studies.execution.worker_process import (
-    IdleDeathError,
-    NotStartedError,
+    NotBegunError,
     RunDiedError,
     RunRaisedError,
     WorkerProcess,
@@ -46,12 +45,6 @@ class ClosedError(Exception):
     """The pool has been closed."""
 
 
-@dataclass(frozen=True)
-class _Job:
-    task: Task
-    deliver: Delivery
-
-
 class Pool:
     """Makes runs in processes of this machine; may be used by several threads.
 
@@ -62,10 +55,9 @@ class Pool:
     """
 
     def __init__(self, slots: int, limits: Limits, place: Path | None = None) -> None:
-        self.slots = slots
         self._limits = limits
         self._scratch = Scratch(place)
-        self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
+        self._jobs: queue.SimpleQueue[tuple[Task, Delivery] | None] = queue.SimpleQueue()
         self._lock = threading.Lock()
         self._closed = threading.Event()
         self._alive: set[WorkerProcess] = set()
@@ -85,7 +77,7 @@ class Pool:
             deliver: called once, from another thread, with the record, or with the error for
                 which no run can be made; not called any more once the pool is closed.
         """
-        self._jobs.put(_Job(task, deliver))
+        self._jobs.put((task, deliver))
 
     def perform(self, task: Task) -> RunRecord:
         """Have a run made, and wait for it.
@@ -131,15 +123,16 @@ class Pool:
                 continue
             if job is None:
                 break
+            task, deliver = job
             try:
-                worker, record = self._finish(job.task, worker)
+                worker, record = self._finish(task, worker)
             except ClosedError:
                 break
             except Exception as error:
                 worker = None
-                job.deliver(error)
+                deliver(error)
             else:
-                job.deliver(record)
+                deliver(record)
         self._remove(worker)
 
     def _finish(
@@ -153,7 +146,7 @@ class Pool:
             began = time.monotonic()
             try:
                 record = worker.perform(task)
-            except IdleDeathError as error:
+            except NotBegunError as error:
                 self._remove(worker)
                 worker = None
                 self._note_failed_start(str(error))
@@ -200,7 +193,7 @@ class Pool:
                     worker = WorkerProcess(self._scratch.folder(), self._limits)
                     self._alive.add(worker)
                 worker.await_ready()
-            except (NotStartedError, OSError) as error:
+            except (NotBegunError, OSError) as error:
                 self._remove(worker)
                 self._note_failed_start(str(error))
             else:

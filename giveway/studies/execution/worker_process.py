@@ -45,12 +45,8 @@ _GROWTH: Final = 256.0  # [MB] that a worker may hold more than after its first 
 _FRAME: Final = re.compile(r'File "([^"]+)", line (\d+) in (\w+)')
 
 
-class NotStartedError(Exception):
-    """A worker has ended before it could do anything; the message tells what it printed."""
-
-
-class IdleDeathError(Exception):
-    """A worker has ended while it had nothing to do, or before it had begun with the run."""
+class NotBegunError(Exception):
+    """A worker has ended before it had begun with a run; the message tells why."""
 
 
 class RunDiedError(Exception):
@@ -68,6 +64,9 @@ class WorkerProcess:
         folder: for this worker; made here, and removed with it.
         limits: of its runs.
 
+    Attributes:
+        overgrown: whether it holds so much more memory than at first that it should be replaced.
+
     Raises:
         OSError: it cannot be started.
     """
@@ -77,7 +76,7 @@ class WorkerProcess:
         self._folder = folder
         self._poll = min(_POLL, limits.hang / 4, limits.run / 4)
         self._first_memory: float | None = None
-        self._grown = False
+        self.overgrown = False
         self._removed = False
         temporary = folder / "tmp"
         temporary.mkdir(parents=True)
@@ -93,7 +92,7 @@ class WorkerProcess:
         """Wait until it has imported everything.
 
         Raises:
-            NotStartedError: it has ended, or takes too long.
+            NotBegunError: it has ended, or takes too long.
         """
         waited = 0.0
         try:
@@ -103,18 +102,18 @@ class WorkerProcess:
                     raise EOFError
                 if waited > START_LIMIT:
                     msg = f"it was not ready after {waited:g} s"
-                    raise NotStartedError(msg)
+                    raise NotBegunError(msg)
             if message[0] != READY:
                 raise GarbledError
         except (EOFError, GarbledError):
             cause = self._cause_of_end()
-            raise NotStartedError(self._last_printed() or cause) from None
+            raise NotBegunError(self._last_printed() or cause) from None
 
     def perform(self, task: Task) -> RunRecord:
         """Make a run.
 
         Raises:
-            IdleDeathError: the worker has ended before the run began.
+            NotBegunError: the worker has ended before the run began.
             RunDiedError: the run has ended the worker.
             RunRaisedError: the worker runs, but should not be used any more.
             WorkerError: the worker would not make the run that was planned.
@@ -142,13 +141,8 @@ class WorkerProcess:
             self._note_memory(record.computing.memory)
             return record
         if self._heartbeat.read().phase is Phase.STARTING:
-            raise IdleDeathError(cause)
+            raise NotBegunError(cause)
         raise RunDiedError(self._failure(cause))
-
-    @property
-    def overgrown(self) -> bool:
-        """Whether it holds so much more memory than at first that it should be replaced."""
-        return self._grown
 
     def end(self) -> None:
         """Kill it, with its process group where there are groups; may be called repeatedly."""
@@ -244,4 +238,4 @@ class WorkerProcess:
     def _note_memory(self, memory: float) -> None:
         if self._first_memory is None:
             self._first_memory = memory
-        self._grown = memory > self._first_memory + _GROWTH
+        self.overgrown = memory > self._first_memory + _GROWTH
