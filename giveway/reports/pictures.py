@@ -16,8 +16,14 @@ from giveway.figures.study_forest import Estimate, ForestColumn, forest_figure
 from giveway.figures.study_rows import Row, level_colours
 from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
 from giveway.reports.choice import deciding_metric
-from giveway.reports.estimates import estimates
-from giveway.reports.labels import baseline_label, compared_labels, contexts, treatment_labels
+from giveway.reports.labels import (
+    baseline_label,
+    compared_labels,
+    context_key,
+    contexts,
+    level_label,
+    treatment_labels,
+)
 from giveway.reports.pairing import BASELINE, DIFFERENCE, paired, situation_of
 from giveway.reports.published import SOURCE, published_numbers
 from giveway.reports.wording import shown_ego
@@ -37,6 +43,9 @@ SPREADS = {
     "time and comfort": ("completion_time", "longest_wait", "rms_jerk"),
     "safety": ("minimum_clearance", "minimum_ttc", "maximum_drac"),
 }
+
+_Key = tuple[tuple[str, ...], str, str, str, str]
+"""Context, ego, treatment, situation, metric."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +82,7 @@ def _histograms(study: StudyFolder) -> Iterator[Picture]:
     time = deciding_metric(pairs)
     names = {"general": time, "stop-and-wait": "longest_wait", "non-stop": time}
     columns = [_difference_column(situation, name) for situation, name in names.items()]
-    reported = estimates(study)
+    reported = _estimates(study)
     printed = published_numbers(study)
     number = 0
     for names_, group in pairs.groupby(["ego", "treatment"], sort=False):
@@ -141,7 +150,7 @@ def _in_words(rows: Sequence[tuple[str, Sequence[Differences]]], names: dict[str
 
 
 def _forest(study: StudyFolder) -> Iterator[Picture]:
-    reported, printed = estimates(study), published_numbers(study)
+    reported, printed = _estimates(study), published_numbers(study)
     groups = [
         (context, ego, treatment)
         for context in contexts(study)
@@ -181,6 +190,25 @@ def _forest(study: StudyFolder) -> Iterator[Picture]:
         alt=f"Mean differences with intervals against {baseline}; the comparison table has them.",
         figure=forest_figure(rows, columns, title=f"{what} minus {baseline}", source=SOURCE),
     )
+
+
+def _estimates(study: StudyFolder) -> dict[_Key, Estimate]:
+    """Mean difference and interval of every row of the comparison; nan is N.A."""
+    return {
+        (
+            context_key(study, row),
+            level_label(row["ego"]),
+            level_label(row["treatment"]),
+            str(row["situation"]),
+            str(row["metric"]),
+        ): Estimate(
+            float(row["mean_difference"]) if row["verdict"] != "N.A." else float("nan"),
+            float(row["ci_low"]),
+            float(row["ci_high"]),
+            shown=row["verdict"] in {"better", "worse"},
+        )
+        for row in study.comparison.to_dict("records")
+    }
 
 
 def _spreads(study: StudyFolder) -> Iterator[Picture]:
