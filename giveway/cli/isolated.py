@@ -50,4 +50,4 @@ def supervised(journal: Path | None, command: Callable[[], int]) -> None:
             code = fail("interrupted before the run began", INTERRUPTED)
         except GivewayError as error:
             code = fail(str(error), error.exit_code)
-        raise SystemExit(code)  # within the context, which notes a process that dies after this
+        raise SystemExit(code)  # inside: a failed run that crashes while it ends is no success

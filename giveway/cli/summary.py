@@ -27,7 +27,7 @@ _SHOWN = (
 )
 _COUNTED = (
     ("Pedestrians added", "added"),
-    ("Walkers taken over from SUMO", "taken_over"),
+    ("Persons taken over from SUMO", "taken_over"),
     ("handed back", "handed_back"),
     ("arrived", "arrived"),
     ("gone on by vehicle, or to a stop", "continued"),
@@ -81,7 +81,7 @@ def _counts(result: RunResult) -> list[tuple[str, str]]:
         lines += [(label, str(ledger[name])) for label, name in _COUNTED if ledger[name]]
     yielded = result.manifest["traffic"].get("vehicles_that_yielded", 0)
     if yielded:
-        lines.append(("SUMO's vehicles that yielded", str(yielded)))
+        lines.append(("Background vehicles that yielded", str(yielded)))
     return lines
 
 

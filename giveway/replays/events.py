@@ -111,7 +111,7 @@ def _event(kind: str, start: float, end: float, text: str, who: str = "") -> dic
 
 
 def _phases(active: NDArray[np.bool_], time: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
-    """From when to when [s] something was so; a command holds until the next instant."""
+    """Start and end [s] of each active phase; a command holds until the next instant."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], active, [False])).astype(np.int8)))
     for start, end in zip(edges[::2], edges[1::2], strict=True):
         yield float(time[start]), float(time[min(end, len(time) - 1)])

@@ -47,7 +47,7 @@ class Frame:
 
     @classmethod
     def of(cls, run: RunFolder) -> Frame:
-        """Whole metres near the middle of everything."""
+        """The frame of a run, with its origin at whole metres near the middle of all positions."""
         places = run.trajectories if len(run.trajectories) else run.ego
         middle = [round((places[axis].min() + places[axis].max()) / 2.0) for axis in ("x", "y")]
         return cls(float(middle[0]), float(middle[1]), run.time)

@@ -184,7 +184,7 @@ def _road(run: RunFolder, frame: Frame) -> dict[str, Any]:
 def _egos(
     run: RunFolder, frame: Frame, predictions: pd.DataFrame | None, names: dict[str, int]
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """The influence of each shape of vehicle, and the egos."""
+    """The contours of influence for each shape of vehicle, and the egos."""
     kinds: dict[tuple[Any, ...], float] = {}
     for name, config in run.egos.items():
         kind = (_body(run, name), config.crowd.preset)
@@ -241,7 +241,7 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
 
 
 def _path(rows: pd.DataFrame, frame: Frame) -> dict[str, str]:
-    """Where the front bumper went, to a centimetre, and straight on from there.
+    """The front bumper's trajectory, to a centimetre, extended straight on at its end.
 
     The rest of its path is not recorded.
     """

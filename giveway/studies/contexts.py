@@ -37,7 +37,7 @@ class Context:
 
     @property
     def key(self) -> tuple[str, ...]:
-        """The levels' labels alone."""
+        """The labels of the levels, which identify the context."""
         return tuple(level.label for level in self.levels.values())
 
 
