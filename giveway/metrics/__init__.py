@@ -1,6 +1,6 @@
 """What happened between ego and pedestrians, in the numbers that traffic engineers use."""
 
-from giveway.metrics.conflicts import clearance, deceleration_to_avoid_crash, time_to_collision
+from giveway.metrics.conflicts import clearance, time_to_collision
 from giveway.metrics.contacts import FRONTAL, NO_CONTACT, SIDE, contacts
 from giveway.metrics.critical import CRITICAL_TTC, Critical, conflicts
 from giveway.metrics.encroachment import post_encroachment_time
@@ -26,7 +26,6 @@ __all__ = [
     "clearance",
     "conflicts",
     "contacts",
-    "deceleration_to_avoid_crash",
     "pedestrian_metrics",
     "post_encroachment_time",
     "summarise",

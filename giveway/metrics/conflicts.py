@@ -60,29 +60,21 @@ def time_to_collision(
     return proximity(ego, crowd, shape, body_radius)[1]
 
 
-def deceleration_to_avoid_crash(
+def proximity(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
-) -> NDArray[np.float64]:
-    """The constant braking that would just spare a pedestrian ahead, for every crowd record.
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Clearance, time to collision and DRAC of every record, in one pass; shapes (R,).
 
-    DRAC (Cooper & Ferguson 1976) is c^2 / (2 d) with the closing speed c and the distance d to be
-    closed. Here c is along the ego's heading and d = c * (time to collision): braking by it, the
+    DRAC (Cooper & Ferguson 1976), the deceleration to avoid a crash, is the constant braking that
+    would just spare a pedestrian ahead: c^2 / (2 d) with the closing speed c and the distance d to
+    be closed. Here c is along the ego's heading and d = c * (time to collision): braking by it, the
     ego has matched the pedestrian's speed along its heading when it reaches the place of contact.
-
-    Returns:
-        (R,) [m/s^2]: 0 for whoever is not on a collision course, is not ahead of the front
-        bumper (braking is no remedy there), or is touched already (no braking helps any more).
+    It is 0 [m/s^2] for a pedestrian who is not on a collision course, is not ahead of the front
+    bumper (braking is no remedy there), or is touched already (no braking helps any more).
 
     Raises:
         ValueError: a record points outside the ego's track.
     """
-    return proximity(ego, crowd, shape, body_radius)[2]
-
-
-def proximity(
-    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Clearance, time to collision and DRAC of every record, in one pass; shapes (R,)."""
     check_records(ego, crowd)
     records = crowd.x.size
     clearances, ttcs, dracs = np.empty(records), np.empty(records), np.empty(records)

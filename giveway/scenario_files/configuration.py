@@ -82,11 +82,6 @@ class ScenarioFiles:
         """The scenario's own options about teleporting."""
         return {name: value for name, value in self.options.items() if "teleport" in name}
 
-    @property
-    def gui_settings(self) -> tuple[Path, ...]:
-        """The window's settings, which a run ignores."""
-        return _paths(self.config_file, self.options.get("gui-settings-file", ""))
-
     def is_set(self, option: str) -> bool:
         """Whether the scenario switches a yes-or-no option on."""
         return self.options.get(option, "").strip().lower() in _TRUE

@@ -75,15 +75,6 @@ INPUTS: Final = (
 )
 """Every option whose value is one or several files that SUMO reads without a window."""
 
-WINDOW_FILES: Final = (
-    "gui-settings-file",
-    "edgedata-files",
-    "alternative-net-file",
-    "selection-file",
-    "gui-testing.setting-output",
-)
-"""Files of the window alone: never touched by a run."""
-
 _NAMES: Final = {
     "net-file": "n net",
     "route-files": "r routes",

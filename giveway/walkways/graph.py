@@ -141,10 +141,6 @@ class WalkGraph:
         found = self.lines.get(edge)
         return self._crossing_lines[edge] if found is None else found
 
-    def has_line(self, edge: str) -> bool:
-        """Whether this is an edge or crossing that people walk on."""
-        return edge in self.lines or edge in self._crossing_lines
-
     # --- portals ------------------------------------------------------------------------------
 
     def portal(self, index: int) -> Portal:

@@ -10,7 +10,7 @@ import shapely
 
 from giveway.walkways.area import walkable_area, walls
 from giveway.walkways.graph import WalkGraph
-from giveway.walkways.reading import PedLane, Signal, Survey, survey
+from giveway.walkways.reading import Signal, Survey, survey
 from giveway.walkways.route import Router, WalkRoute
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class WalkNetwork:
 
     Attributes:
         signals: the traffic-light links that govern crossings.
-        has_walkingareas, has_crossings: whether the network has any.
+        has_walkingareas: whether the network has any.
         has_sidewalks: whether there is a lane that pedestrians may use and cars may not.
         boundary: x_min, y_min, x_max, y_max [m] of the network.
     """
@@ -44,7 +44,6 @@ class WalkNetwork:
     signals: tuple[Signal, ...]
     has_walkingareas: bool
     has_sidewalks: bool
-    has_crossings: bool
     boundary: tuple[float, float, float, float]
 
     def __init__(self, found: Survey) -> None:
@@ -54,7 +53,6 @@ class WalkNetwork:
         self.signals = tuple(self._graph.signals)
         self.has_walkingareas = bool(found.walkingareas)
         self.has_sidewalks = found.has_sidewalks
-        self.has_crossings = bool(found.crossings)
         self.boundary = found.boundary or _extent(found)
 
     @classmethod
@@ -65,11 +63,6 @@ class WalkNetwork:
             ScenarioError: the file is unreadable or no SUMO network.
         """
         return cls(survey(net_file))
-
-    def lane_of(self, edge: str) -> PedLane | None:
-        """The lane on which pedestrians walk on an edge; None if they may not or it is unknown."""
-        known = self._survey.edges.get(edge)
-        return None if known is None else known.lane
 
     def route(
         self,
