@@ -10,8 +10,8 @@ import pandas as pd
 from giveway.metrics.conflicts import proximity
 from giveway.metrics.contacts import contacts
 from giveway.metrics.encroachment import post_encroachment_time
-from giveway.metrics.fields import Quantity, columns_of
 from giveway.metrics.groups import PedestrianGroups
+from giveway.records.columns import Quantity, columns_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

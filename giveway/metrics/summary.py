@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from giveway.metrics.contacts import FRONTAL, SIDE
-from giveway.metrics.fields import Quantity, columns_of
+from giveway.records.columns import Quantity, columns_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from giveway.metrics.critical import Critical
+    from giveway.metrics.conflicts import Critical
     from giveway.records.tracks import EgoTrack
 
 STOP_SPEED = 0.2

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.metrics import clearance, conflicts, contacts, pedestrian_metrics
+from giveway.metrics import conflicts, contacts, pedestrian_metrics, proximity
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27
@@ -21,7 +21,7 @@ TIME = DT * np.arange(81)
 
 
 def kinds(ego, crowd):
-    return contacts(ego, crowd, CAR, R, clearance(ego, crowd, CAR, R)).tolist()
+    return contacts(ego, crowd, CAR, R, proximity(ego, crowd, CAR, R).clearance).tolist()
 
 
 def test_nobody_near_is_no_contact(driving, crowd, walking):
@@ -85,7 +85,7 @@ def test_who_overtakes_along_the_side_is_not_moved_into(driving, crowd, walking)
     track = crowd(walking(TIME, (-2.0, 1.15), (1.5, 0.0)))
     ego = driving(TIME, 0.5)
     p = track.x - ego.front_x
-    assert (p[clearance(ego, track, CAR, R) < 0.0] > 0.0).any()
+    assert (p[proximity(ego, track, CAR, R).clearance < 0.0] > 0.0).any()
     assert kinds(ego, track) == ["side"]
 
 
