@@ -7,13 +7,11 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from giveway.scenario_files.reading import opened
+from giveway.scenario_files.reading import pieces
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-_CHUNK: Final = 1 << 22  # [bytes]
-_LONGEST: Final = 4096  # [bytes] a tag that begins in one chunk ends within this in the next
 _DEMAND = re.compile(rb"<(vehicle|trip|flow|person|personFlow|tlLogic)[\s>]")
 _REMOTE = re.compile(rb"\b(?:file|href|dest|output|imgFile)\s*=\s*[\"'](https?://[^\"']{1,200})")
 _NET = re.compile(rb"<net\s([^>]*)>")
@@ -55,15 +53,8 @@ def read_contents(file: Path, into: Contents) -> None:
     Raises:
         OSError, EOFError: it cannot be read.
     """
-    with opened(file) as stream:
-        tail = b""
-        while chunk := stream.read(_CHUNK):
-            text = tail + chunk
-            last = text.rfind(b"<", max(0, len(text) - _LONGEST))
-            end = last if last >= 0 else len(text)
-            _count(text[:end], into)
-            tail = text[end:]
-        _count(tail, into)
+    for text in pieces(file):
+        _count(text, into)
 
 
 def _count(text: bytes, into: Contents) -> None:

@@ -15,7 +15,7 @@ from typing import IO, TYPE_CHECKING, Self
 from giveway.processes.heartbeat import Heartbeat, Phase
 
 if TYPE_CHECKING:
-    from types import FrameType, TracebackType
+    from types import FrameType
 
 JOURNAL_VARIABLE = "GIVEWAY_JOURNAL"  # names the journal's folder to the child
 TRACEBACK_FILE = "traceback.txt"  # where Python stood when native code died
@@ -61,12 +61,7 @@ class Supervised:
             signal.signal(signal.SIGINT, self._interrupt_once)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> None:
         if self._folder is not None:
             self._heartbeat.finish(_exit_code(error))
 

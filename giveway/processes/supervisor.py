@@ -20,22 +20,22 @@ import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
-from giveway.processes.causes import WINDOWS_CAUSES, cause_of_end, stood_still, text_in
+from giveway.processes.causes import WINDOWS_CAUSES, cause_of_end, let_speak, stood_still, text_in
 from giveway.processes.child import JOURNAL_VARIABLE, STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
+from giveway.processes.interrupts import SignalHandler
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from types import FrameType, TracebackType
+    from types import FrameType
 
 HANG_LIMIT = 120.0  # [s] of wall clock without a sign of life from the loop
 _PREFIX = "giveway-journal-"
 _KEPT = 86400.0  # [s] that the journal of a killed supervisor stays for whoever wants its rows
 _PATIENCE = 10.0  # [s] a child gets to write its rows before a second signal kills it
 _TEARDOWN_LIMIT = 10.0  # [s] from "done" to the process's end; native destructors hang, too
-_DYING_WORDS = 2.0  # [s] for a hanging child to write its traceback
 _POLL = 1.0  # [s] between two looks at the heartbeat
 _SIGNALLED = 128  # a shell's exit code of a process that died of signal n is 128 + n
 _SHOW_CURSOR = "\r\x1b[2K\x1b[?25h"  # a progress bar that died has hidden it
@@ -159,7 +159,7 @@ def _held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
-class _Relay:
+class _Relay(SignalHandler):
     """Passes on the signals by which a user ends a run, so that the child decides when.
 
     Attributes:
@@ -168,29 +168,14 @@ class _Relay:
     """
 
     def __init__(self) -> None:
+        names = ("SIGINT", "SIGTERM", "SIGHUP")
+        numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+        # Whoever ignores a signal, as nohup does, wants the child to ignore it, too.
+        super().__init__([n for n in numbers if signal.getsignal(n) is not signal.SIG_IGN])
         self.first: int | None = None
         self.killed = False
         self._at = 0.0
         self._child: subprocess.Popen[bytes] | None = None
-        self._previous: dict[int, Any] = {}
-
-    def __enter__(self) -> Self:
-        if threading.current_thread() is threading.main_thread():
-            for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-                number = getattr(signal, name, None)
-                # Whoever ignores a signal, like nohup, wants the child to ignore it, too.
-                if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
-                    self._previous[number] = signal.signal(number, self._pass_on)
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        for number, handler in self._previous.items():
-            signal.signal(number, handler)
 
     def connect(self, child: subprocess.Popen[bytes]) -> None:
         """Name the child; what came before there was one is passed on now."""
@@ -198,7 +183,8 @@ class _Relay:
         if self.first is not None:
             self._send(self.first)
 
-    def _pass_on(self, number: int, _frame: FrameType | None) -> None:
+    def handle(self, number: int, _frame: FrameType | None) -> None:
+        """Pass on the first signal; the second one kills a child that has had its time."""
         if self.first is None:
             self.first, self._at = number, time.monotonic()
             self._send(number)
@@ -233,12 +219,7 @@ class _Watchdog:
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._over.set()
         self._thread.join()
 
@@ -253,16 +234,9 @@ class _Watchdog:
             pulse, quiet = stillness.look(self._poll)
             if quiet >= self._limit(pulse.phase):
                 self.waited = quiet
-                self._end()
+                let_speak(self._child)
+                self._child.kill()
                 return
-
-    def _end(self) -> None:
-        """Let the child say where it hangs, which takes a signal, then kill it."""
-        if os.name != "nt":
-            self._child.send_signal(signal.SIGABRT)
-            if self._over.wait(_DYING_WORDS):
-                return
-        self._child.kill()
 
 
 def _judge(

@@ -16,7 +16,7 @@ from giveway.results.names import FILES, SUMO_FOLDER
 from giveway.results.scene import scene_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from pathlib import Path
 
     import pandas as pd
@@ -28,12 +28,20 @@ _RUNNING = '{"ending": "running"}\n'
 _DECIMALS = 6  # micrometres, microseconds: finer than anything that is compared
 
 
-def check_folder(folder: Path, *, force: bool) -> None:
+def check_folder(
+    folder: Path, *, force: bool, ours: Collection[str] = FILES, writer: str = "giveway"
+) -> None:
     """Make sure that the results may go to ``folder``; nothing is changed.
+
+    Args:
+        folder: where they would go.
+        force: whether former results may be replaced.
+        ours: the names of the files that may be there.
+        writer: the program that writes them, for messages.
 
     Raises:
         ResultsError: it exists and ``force`` is not given, it is a file, or it holds files that
-            giveway did not write.
+            the writer did not write.
     """
     if not folder.exists():
         return
@@ -41,10 +49,10 @@ def check_folder(folder: Path, *, force: bool) -> None:
         msg = f"{folder}: is a file; expected a folder for the results, name another with --out"
         raise ResultsError(msg)
     present = sorted(path.name for path in folder.iterdir())
-    foreign = [name for name in present if name not in FILES]
+    foreign = [name for name in present if name not in ours]
     if foreign:
         msg = (
-            f"{folder}: holds '{foreign[0]}', which giveway did not write; "
+            f"{folder}: holds '{foreign[0]}', which {writer} did not write; "
             "name another folder with --out"
         )
         raise ResultsError(msg)

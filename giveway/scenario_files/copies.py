@@ -8,7 +8,7 @@ from giveway.errors import ScenarioError
 from giveway.scenario_files.configuration import located
 from giveway.scenario_files.markup import rewrite
 from giveway.scenario_files.outputs import OutputFolder, is_file
-from giveway.scenario_files.reading import opened
+from giveway.scenario_files.reading import opened, pieces
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -48,7 +48,6 @@ _SIGNS: Final = tuple(
         *('"file"', "'file'"),
     )
 )
-_CHUNK: Final = 1 << 22  # [bytes]
 
 
 class Copies:
@@ -164,12 +163,4 @@ class _Editor:
 
 def _has_signs(file: Path) -> bool:
     """Whether the file can name an output at all; reads it once, in pieces."""
-    longest = max(map(len, _SIGNS))
-    with opened(file) as stream:
-        tail = b""
-        while chunk := stream.read(_CHUNK):
-            text = tail + chunk
-            if any(sign in text for sign in _SIGNS):
-                return True
-            tail = text[-longest:]
-    return False
+    return any(sign in text for text in pieces(file) for sign in _SIGNS)

@@ -10,8 +10,7 @@ from urllib.parse import unquote
 
 from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, located
 from giveway.scenario_files.copies import Copies
-from giveway.scenario_files.extra_options import parse_options
-from giveway.scenario_files.options import OUTPUTS
+from giveway.scenario_files.options import OUTPUTS, parse_options
 from giveway.scenario_files.outputs import OutputFolder, is_file
 
 if TYPE_CHECKING:

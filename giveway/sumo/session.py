@@ -35,7 +35,6 @@ from giveway.sumo.vehicles import SumoVehicles
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Sequence
-    from types import TracebackType
 
     from giveway.geometry.path import Pose
     from giveway.scenario_files import ScenarioFiles, StartOptions
@@ -117,12 +116,7 @@ class SumoSession:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     # --- reading ------------------------------------------------------------------------------

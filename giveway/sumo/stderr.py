@@ -9,7 +9,6 @@ from typing import IO, TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pathlib import Path
-    from types import TracebackType
 
 
 class NativeStderr:
@@ -39,12 +38,7 @@ class NativeStderr:
             sys.stderr.flush()
         os.dup2(self._file_descriptor, 2)
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         os.dup2(self._saved, 2)
 
     def text(self) -> str:

@@ -25,33 +25,9 @@ if TYPE_CHECKING:
 TABLES = ("errors.csv", "contacts.csv")
 PICTURES = ("growth", "tracks", "places")
 _SUFFIXES = (".png", ".svg")
-_FILES = {*TABLES, *(name + suffix for name in PICTURES for suffix in _SUFFIXES)}
+FILES = frozenset({*TABLES, *(name + suffix for name in PICTURES for suffix in _SUFFIXES)})
+"""Everything that ``giveway validate`` writes into its folder."""
 _DECIMALS = 6
-
-
-def check_folder(folder: Path, *, force: bool) -> None:
-    """Make sure that a validation may be written into ``folder``.
-
-    Raises:
-        ResultsError: it is a file, or holds what giveway did not write, or results without
-            ``force``.
-    """
-    if not folder.exists():
-        return
-    if not folder.is_dir():
-        msg = f"{folder}: is a file; name a folder with --out"
-        raise ResultsError(msg)
-    present = sorted(path.name for path in folder.iterdir())
-    foreign = [name for name in present if name not in _FILES]
-    if foreign:
-        msg = (
-            f"{folder}: holds '{foreign[0]}', which giveway validate did not write; "
-            "name another folder with --out"
-        )
-        raise ResultsError(msg)
-    if present and not force:
-        msg = f"{folder}: results exist; replace them with --force or name another with --out"
-        raise ResultsError(msg)
 
 
 def write_validation(found: Validation, parameters: VciParameters, folder: Path) -> None:

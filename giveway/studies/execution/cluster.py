@@ -22,7 +22,6 @@ from giveway.studies.execution.errors import WorkerError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
-    from types import TracebackType
 
     from giveway.studies.execution.limits import Limits
     from giveway.studies.record import RunRecord, Task
@@ -90,12 +89,7 @@ class ClusterExecutor:
         self._connect()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         from giveway.studies.execution.cluster_task import leave
 
         client, self._client = self._client, None

@@ -10,7 +10,6 @@ from giveway.studies.execution.pool import Pool
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-    from types import TracebackType
 
     from giveway.studies.execution.limits import Limits
     from giveway.studies.record import RunRecord, Task
@@ -71,12 +70,7 @@ class LocalExecutor:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._close()
 
     def _open(self) -> Pool:
