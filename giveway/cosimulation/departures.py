@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from giveway.ego.ego import Driver
-    from giveway.sumo.lanes import Way
+    from giveway.sumo.lanes import LanePath
     from giveway.sumo.session import SumoSession
     from giveway.sumo.vehicles import VehicleState
 
@@ -165,7 +165,7 @@ class Departures:
 
     # --- inserted -----------------------------------------------------------------------------
 
-    def _way_of_inserted(self, driver: Driver) -> tuple[EgoPath, Way]:
+    def _way_of_inserted(self, driver: Driver) -> tuple[EgoPath, LanePath]:
         ego = driver.config.ego
         if ego.depart_time >= self._session.end:
             msg = (
@@ -238,7 +238,7 @@ class Departures:
         self,
         driver: Driver,
         path: EgoPath,
-        way: Way,
+        way: LanePath,
         departure: float,
         shape: VehicleShape,
         speed: float,
@@ -262,7 +262,7 @@ class Departures:
         )
 
 
-def _joined(way: Way, state: VehicleState) -> tuple[EgoPath, float, Way]:
+def _joined(way: LanePath, state: VehicleState) -> tuple[EgoPath, float, LanePath]:
     """The path of a vehicle that is taken over, its front bumper's station, and its lights.
 
     SUMO's front bumper lies on the lane's centre line as a rule; a vehicle beside it (changing

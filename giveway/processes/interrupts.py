@@ -1,7 +1,7 @@
 """Ctrl-C as a request that the loop honours between two steps.
 
 A KeyboardInterrupt raised between a person's moveToXY and SUMO's step would crash the next
-simulation, and one raised inside the recorder would tear a row.
+simulation, and one raised inside the recorder would leave half a row.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ class SignalHandler:
 class DeferredInterrupt(SignalHandler):
     """While active, SIGINT and SIGTERM only set :attr:`requested`.
 
-    So an impatient second Ctrl-C does not cost the rows that are being written; one that comes
-    ``PATIENCE`` after the first acts at once, for a native call that hangs.
+    So an impatient second Ctrl-C does not cost the rows that are being written. One that comes
+    ``PATIENCE`` after the first acts at once: a native call may hang.
     """
 
     def __init__(self) -> None:

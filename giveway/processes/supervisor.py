@@ -1,9 +1,9 @@
-"""A run in a process of its own, so that a crash of native code ends the run and not the report.
+"""A run in a process of its own, so that a crash of native code does not end the report with it.
 
 SUMO, the FMU and the solvers are native code: they can end their process by a signal, by an
 ``exit()`` in the middle of a step, or never return. The supervisor starts the run as a child that
 shares its terminal, waits, and tells what became of it; the rows are in the journal. It imports
-nothing heavy: it only waits.
+nothing heavy, since it only waits.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ class Verdict:
     Attributes:
         code: the exit code to pass on: the child's own, or a shell's 128 + n for a signal;
             never 0 after a crash.
-        crashed: it ended without having said so; what it had recorded is in the journal.
-        interrupted: it ended by, or after, a signal that the user sent us.
+        crashed: it ended without having told so; what it had recorded is in the journal.
+        interrupted: it ended by a signal that the user sent us, or after one.
         cause: "SIGSEGV", "no progress for 120 s", ...; empty unless crashed.
         pulse: where it stood.
         traceback: where Python stood, if it could tell, as faulthandler prints it.
@@ -137,7 +137,7 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
 
 
 def _temporary(journal: Path) -> dict[str, str]:
-    """Where the child puts its temporary files: what a crash leaves goes with the journal."""
+    """Variables that name the child's temporary folder, which is removed with the journal."""
     folder = journal / "tmp"
     folder.mkdir(exist_ok=True)
     return dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder))
@@ -145,9 +145,9 @@ def _temporary(journal: Path) -> dict[str, str]:
 
 @contextlib.contextmanager
 def _held_back() -> Iterator[None]:
-    """A child started here inherits a Ctrl-C that waits until :meth:`Supervised.listen`.
+    """Let a child that is started here inherit a blocked Ctrl-C, until :meth:`Supervised.listen`.
 
-    While Python itself starts it would end in a traceback.
+    While Python itself starts, a Ctrl-C would end in a traceback.
     """
     if sys.platform == "win32":
         yield
@@ -164,7 +164,7 @@ class _Relay(SignalHandler):
 
     Attributes:
         first: the first such signal.
-        killed: a second one had to kill the child.
+        killed: whether a second one had to kill the child.
     """
 
     def __init__(self) -> None:
@@ -178,7 +178,7 @@ class _Relay(SignalHandler):
         self._child: subprocess.Popen[bytes] | None = None
 
     def connect(self, child: subprocess.Popen[bytes]) -> None:
-        """Name the child; what came before there was one is passed on now."""
+        """Name the child; a signal that came before is passed on now."""
         self._child = child
         if self.first is not None:
             self._send(self.first)
@@ -198,7 +198,7 @@ class _Relay(SignalHandler):
 
 
 class _Watchdog:
-    """Looks at the heartbeat now and then, and kills a child whose loop stands still.
+    """Looks at the heartbeat once a second, and kills a child whose loop stands still.
 
     Attributes:
         waited: how long [s] the child had stood still when it was killed; 0 if it was not.
@@ -246,7 +246,7 @@ def _judge(
     if pulse.phase is Phase.DONE:
         return Verdict(pulse.code or max(returncode, 0), False, interrupted, "", pulse, "", "")
     if pulse.phase is Phase.STARTING and 0 < returncode < min(WINDOWS_CAUSES):
-        # Python did not come as far as us, and has said why.
+        # Python ended before it came to giveway's code, and has printed why.
         return Verdict(returncode, False, interrupted, "", pulse, "", "")
     return Verdict(
         code=_passed_on(returncode, relay),

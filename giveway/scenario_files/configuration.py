@@ -40,7 +40,7 @@ class ScenarioFiles:
         config_file: the .sumocfg.
         options: each option that it sets, under the name that SUMO's help lists, to its value.
         net_file: the road network.
-        route_files, additional_files: in SUMO's order of reading.
+        route_files, additional_files: in the order in which SUMO reads them.
         begin: first instant [s].
         end: last instant [s]; None if the scenario ends when nobody is left.
         step_length: SUMO's step [s].
@@ -117,15 +117,15 @@ class ScenarioFiles:
 
 
 def read_scenario(config_file: Path) -> ScenarioFiles:
-    """What ``config_file`` says; whether the files it names exist is asked separately.
+    """What ``config_file`` says; :attr:`ScenarioFiles.missing` tells which files do not exist.
 
     Options may stand in sections or flat, under any of SUMO's names, with the value in ``value``,
     ``v`` or as text; lists are separated by commas; ``${NAME}`` stands for an environment
     variable.
 
     Raises:
-        ScenarioError: the file is missing, empty, not XML, or names no network, a double option
-            or a value of the wrong kind.
+        ScenarioError: the file is missing, empty or not XML, or it names no network, an option
+            twice, or a value of the wrong kind.
     """
     config_file = Path(os.path.abspath(config_file))  # noqa: PTH100 - resolve() follows links
     options = _options(config_file)
@@ -213,10 +213,10 @@ def _paths(config_file: Path, value: str) -> tuple[Path, ...]:
     return tuple(located(unquote(name), config_file) for name in _names(value, ""))
 
 
-def located(name: str, beside: Path) -> Path:
-    """The file that ``name`` means where it stands in the file ``beside``."""
+def located(name: str, named_in: Path) -> Path:
+    """The file that ``name`` means where it stands in the file ``named_in``."""
     path = Path(name).expanduser() if name.startswith("~/") else Path(name)
-    return Path(os.path.abspath(beside.parent / path))  # noqa: PTH100 - resolve() follows links
+    return Path(os.path.abspath(named_in.parent / path))  # noqa: PTH100 - resolve() follows links
 
 
 def seconds(text: str) -> float:

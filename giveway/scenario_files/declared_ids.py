@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 _VEHICLE = re.compile(rb"<(vehicle|trip|flow)\s[^>]*?\bid\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 _PERSON = re.compile(rb"<(?:person|personFlow)\s[^>]*?\bid\s*=\s*[\"']([^\"']*)")
 _CALIBRATOR = b"<calibrator"  # inserts vehicles of names of its own
-_COMPARED = 5_000  # declared names, for a guess at what was meant
+_COMPARED = 5_000  # declared names among which a similar one is looked for
 
 
 def undeclared(name: str, files: Iterable[Path]) -> str | None:
-    """What to say if no vehicle ``name`` is declared in ``files``; None if one is, or may be.
+    """What to say if no vehicle ``name`` is declared in ``files``; None if one is or may be.
 
     Args:
         name: SUMO's id of a vehicle; one of a flow is the flow's id, a point and a number.
@@ -49,7 +49,7 @@ def undeclared(name: str, files: Iterable[Path]) -> str | None:
 
 
 def declares(name: str, files: Iterable[Path]) -> bool:
-    """Whether a vehicle ``name`` is declared in ``files`` for sure."""
+    """Whether a vehicle ``name`` is certainly declared in ``files``."""
     flow, _, number = name.rpartition(".")
     wanted = {(b"vehicle", name), (b"trip", name)}
     if number.isdecimal():
@@ -61,7 +61,7 @@ def declares(name: str, files: Iterable[Path]) -> bool:
 
 
 def _declarations(files: Iterable[Path]) -> Iterator[tuple[bytes, str]]:
-    """Kind and id of every vehicle, trip and flow; a calibrator is told by its kind alone."""
+    """Kind and id of every vehicle, trip and flow; of a calibrator the kind alone."""
     for file in files:
         for text in pieces(file):
             yield from _in(text)

@@ -1,4 +1,4 @@
-"""What native code prints on file descriptor 2: kept, because SUMO tells its reasons only there."""
+"""What native code prints on file descriptor 2, where alone SUMO tells its reasons."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class NativeStderr:
         return self._log.read().decode("utf-8", "replace")
 
     def errors(self) -> str:
-        """The reasons among it, on one line."""
+        """The reasons in what was printed, on one line."""
         lines = [line.strip() for line in self.text().splitlines()]
         reasons = [
             line.removeprefix("Error:").strip()

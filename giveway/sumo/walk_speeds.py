@@ -25,11 +25,11 @@ _PLAN = frozenset({"walk", "personTrip", "ride", "stop", "tranship", "access"})
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """One element of a person's plan; neither speed nor duration: as fast as the person likes."""
+    """One element of a person's plan; without speed and duration the person's own speed counts."""
 
     speed: float | None = None  # [m/s]
     duration: float | None = None  # [s] for the whole walk
-    end: str = ""  # where it leads, an edge or a stopping place; empty if not known
+    end: str = ""  # the edge or stopping place to which it leads; empty if not known
 
 
 class WalkSpeeds:
@@ -50,7 +50,7 @@ class WalkSpeeds:
 
     @classmethod
     def of_running(cls, sumo: Any) -> Self:
-        """Those of the simulation that runs in the libsumo module ``sumo``."""
+        """The speeds in the simulation that runs in the libsumo module ``sumo``."""
         names: list[str] = []
         for option in _OPTIONS:
             names += str(sumo.simulation.getOption(option)).split(",")

@@ -1,4 +1,4 @@
-"""The walkable part of a SUMO network: lanes, ways and walls."""
+"""The walkable part of a SUMO network: lanes, routes and walls."""
 
 from __future__ import annotations
 
@@ -73,17 +73,18 @@ class WalkNetwork:
         arrival_position: float,
         offset_side: float | None = None,
     ) -> WalkRoute:
-        """Way-points from where a person is to the end of its walk; never fails.
+        """The route from where a person is to the end of its walk; never fails.
 
         Args:
-            edges: the walk's remaining edges, the present one first; somebody in a walkingarea or
-                on a crossing has the edge that was left as the first, as SUMO lists them.
+            edges: the remaining edges, the present one first; for somebody in a walkingarea or on
+                a crossing the first is the edge that was left, as SUMO lists them.
             position: where the person is [m].
             lane: SUMO's id of the present lane, maybe a walkingarea's or crossing's.
             arrival_position: the end of the walk on the last edge, in SUMO's metres; a negative
                 one counts from the edge's end.
-            offset_side: the side of the way, from -1 (right end of its usable width) to 1 (left),
-                that decides round which corners one goes; None for where the person is now.
+            offset_side: the side of the walkway, from -1 (right end of its usable width) to 1
+                (left), that decides round which corners the person goes; None takes the side on
+                which the person is now.
         """
         return self._router.route(edges, position, lane, arrival_position, offset_side)
 
