@@ -1,4 +1,4 @@
-"""What scenario files contain, counted as their bytes stream by: cheap on files of any size."""
+"""What scenario files contain, counted while their bytes are read: cheap on files of any size."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Contents:
     """What one or several files contain.
 
     Attributes:
-        elements: how many of each of vehicle, trip, flow, person, personFlow, tlLogic, and in a
-            network walkingarea, crossing, sidewalk; commented-out ones are counted too.
+        elements: the number of each of vehicle, trip, flow, person, personFlow, tlLogic, and in a
+            network of walkingarea, crossing, sidewalk; those in comments are counted, too.
         network: the attributes of the ``<net>`` element.
         remote: addresses that are referred to.
     """
@@ -38,12 +38,12 @@ class Contents:
 
     @property
     def vehicles(self) -> int:
-        """Vehicles and trips; those that flows bring are not among them."""
+        """The number of vehicles and trips, without those of flows."""
         return self.elements["vehicle"] + self.elements["trip"]
 
     @property
     def persons(self) -> int:
-        """Persons and flows of persons."""
+        """The number of persons and flows of persons."""
         return self.elements["person"] + self.elements["personFlow"]
 
 

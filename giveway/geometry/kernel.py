@@ -1,4 +1,4 @@
-"""numba's ``njit`` for the house's own kernels: cached on disk, strict IEEE arithmetic."""
+"""numba's ``njit`` for giveway's own kernels: cached on disk, with strict IEEE arithmetic."""
 
 from __future__ import annotations
 
@@ -11,5 +11,5 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def kernel(function: Function) -> Function:
-    """Compile ``function`` at its first call; no fastmath: bytes do not depend on the CPU."""
+    """Compile ``function`` at its first call; without fastmath bytes do not depend on the CPU."""
     return cast("Function", njit(cache=True, error_model="numpy")(function))

@@ -142,12 +142,12 @@ def centre_poses(ego: EgoTrack, shape: VehicleShape) -> NDArray[np.float64]:
 
 
 def as_floats(column: NDArray[np.floating]) -> NDArray[np.float64]:
-    """The column as the kernels are compiled for; a copy only if it is laid out otherwise."""
+    """The column in the layout that the kernels are compiled for; a copy only if it has another."""
     return np.ascontiguousarray(column, dtype=np.float64)
 
 
 def as_integers(column: NDArray[np.integer]) -> NDArray[np.int64]:
-    """The column as the kernels are compiled for; a copy only if it is laid out otherwise."""
+    """The column in the layout that the kernels are compiled for; a copy only if it has another."""
     return np.ascontiguousarray(column, dtype=np.int64)
 
 

@@ -1,4 +1,4 @@
-"""Who moved into whom: every overlap of a pedestrian with the ego is frontal or lateral.
+"""Whether the ego moved into a pedestrian: every overlap of the two is frontal or lateral.
 
 The ego is answerable for the pedestrians that it drives into, not for those who walk into its side
 or into it while it stands. The rule, and its odd cases, stand in docs/results.md.
@@ -32,7 +32,7 @@ NO_CONTACT = ""
 SIDE = "side"
 FRONTAL = "frontal"
 MOVING = 0.01
-"""[m/s] Above it the ego moves: a centimetre a second is less than any controller creeps at."""
+"""[m/s] The ego moves above it; no controller creeps as slowly as a centimetre a second."""
 
 _NAMES = np.array([NO_CONTACT, SIDE, FRONTAL])
 _SIDE, _FRONTAL = 1, 2

@@ -65,7 +65,8 @@ def pedestrian_metrics(
         body_radius: radius of a pedestrian [m].
 
     Returns:
-        n rows in the order of ``crowd.ids``; who was never seen has nan throughout, and no contact.
+        n rows in the order of ``crowd.ids``; a pedestrian who was never seen has nan throughout,
+        and no contact.
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -99,5 +100,5 @@ def pedestrian_metrics(
 
 
 def durations(ego: EgoTrack) -> NDArray[np.float64]:
-    """What each instant stands for: the time until the next one; nothing for the last. (T,) [s]."""
+    """(T,) [s] the time from each instant to the next one; 0 for the last."""
     return np.append(np.diff(ego.time), 0.0)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 STOP_SPEED = 0.2
 """[m/s] Below it the ego stands: Yang & Özgüner 2019, section 2.1, treat it as an obstacle then."""
-SAFETY = "safety"  # who acts where the safety layer does
+SAFETY = "safety"  # the name under which the safety layer acts
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def summarise(
     stop_speed: float = STOP_SPEED,
     controller: str,
 ) -> Summary:
-    """Boil a run down to one row.
+    """Summarise a run in one row.
 
     A step is one control instant. An instant stands for the time until the next one, so a stop
     lasts from the first instant below ``stop_speed`` to the first one that is not, or to the end

@@ -37,7 +37,7 @@ class Scene:
     bodies: dict[str, Body] | None = None
 
     def body(self, vehicle: str, otherwise: Body) -> Body:
-        """Length and width [m] of a vehicle, as far as they are known."""
+        """Length and width [m] of a vehicle; ``otherwise`` if they are not known."""
         return (self.bodies or {}).get(vehicle, otherwise)
 
     def to_json(self) -> str:

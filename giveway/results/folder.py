@@ -94,7 +94,7 @@ def take_folder(folder: Path, *, force: bool) -> bool:
 
 
 def release_folder(folder: Path) -> None:
-    """Take the folder of a run that could not begin away again."""
+    """Remove the folder that was taken for a run which could not begin."""
     shutil.rmtree(folder / SUMO_FOLDER, ignore_errors=True)
     with contextlib.suppress(OSError):
         (folder / "manifest.json").unlink()
@@ -138,7 +138,7 @@ def _summary(result: RunResult) -> dict[str, Any]:
 
 
 def _plain(row: dict[Any, Any]) -> dict[str, Any]:
-    """Python's own types, which JSON knows."""
+    """The row in Python's own types, which JSON knows."""
     return {str(k): v.item() if isinstance(v, np.generic) else v for k, v in row.items()}
 
 
@@ -151,10 +151,10 @@ def rounded_row(row: dict[Any, Any]) -> dict[str, Any]:
 
 
 def sumo_folder(folder: Path) -> Path:
-    """Where SUMO's own outputs go; those of a former run are taken away.
+    """The folder for SUMO's own outputs; those of a former run are removed.
 
     Raises:
-        ResultsError: they cannot be.
+        ResultsError: they cannot be removed.
     """
     try:
         shutil.rmtree(folder / SUMO_FOLDER, ignore_errors=False)
@@ -193,7 +193,7 @@ def package_of(name: str, title: str, schemas: Mapping[str, Sequence[Column]]) -
 
     Args:
         name: of the package.
-        title: for people.
+        title: of the package, for readers.
         schemas: the columns of each file, by its name without the suffix.
     """
     return {
@@ -227,7 +227,7 @@ def _fields(columns: Sequence[Column]) -> list[dict[str, str]]:
 
 
 def _rounded(frame: pd.DataFrame) -> pd.DataFrame:
-    """Floats to six decimals, without negative zeros: short, and the same bytes everywhere."""
+    """Floats to six decimals, without negative zeros: short, and the same bytes on every system."""
     frame = frame.copy()
     for name in frame.columns:
         if frame[name].dtype == np.float64:
@@ -248,7 +248,7 @@ def _write_json(path: Path, content: dict[str, Any]) -> None:
 
 
 def _json_ready(value: Any) -> Any:
-    """JSON has neither NaN nor infinity: they become null."""
+    """The value for JSON, which has neither NaN nor infinity: they become null."""
     if isinstance(value, dict):
         return {key: _json_ready(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
