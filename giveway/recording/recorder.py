@@ -47,11 +47,6 @@ class Recorder:
         self._vehicles = names("vehicles")
         self._steps = 0
 
-    @property
-    def steps(self) -> int:
-        """Control instants recorded so far."""
-        return self._steps
-
     def instant(self, time: float) -> None:
         """Begin the next control instant, at ``time`` [s]."""
         self._clock.block(1)[0, 0] = time

@@ -7,9 +7,9 @@ import os
 import re
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeVar
 from urllib.parse import unquote
 
 from giveway.errors import ScenarioError
@@ -22,11 +22,14 @@ from giveway.scenario_files.options import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
+
+_Value = TypeVar("_Value")
 
 SUMO_SEED: Final = 23423  # what SUMO takes where neither scenario nor command line names a seed
 STRIPING: Final = "striping"  # SUMO's default pedestrian model, and the only one that can be moved
 
+_A_TIME: Final = "seconds, h:m:s or d:h:m:s"
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _TRUE = frozenset({"true", "1", "yes", "on", "x", "t"})
 _FALSE = frozenset({"false", "0", "no", "off", "-", "f"})
@@ -144,22 +147,23 @@ def read_scenario(config_file: Path) -> ScenarioFiles:
             'add <net-file value="NETWORK.net.xml"/>'
         )
         raise ScenarioError(msg)
-    step_length = _time(config_file, options, "step-length", 1.0)
+    time = partial(_parsed, config_file, options, parse=seconds, expected=_A_TIME)
+    step_length, end = time("step-length"), time("end")
+    step_length = 1.0 if step_length is None else step_length
     if step_length <= 0.0:
         msg = f"{config_file}: step-length = {step_length:g}; expected more than 0 s, like 0.1"
         raise ScenarioError(msg)
-    end = _time(config_file, options, "end", -1.0)
     return ScenarioFiles(
         config_file=config_file,
         options=options,
         net_file=networks[0],
         route_files=_paths(config_file, options.get("route-files", "")),
         additional_files=_paths(config_file, options.get("additional-files", "")),
-        begin=_time(config_file, options, "begin", 0.0),
-        end=end if end >= 0.0 else None,
+        begin=time("begin") or 0.0,
+        end=None if end is None or end < 0.0 else end,
         step_length=step_length,
-        seed=_seed(config_file, options),
-        random=_flag(config_file, options, "random"),
+        seed=_parsed(config_file, options, "seed", int, "a whole number"),
+        random=bool(_parsed(config_file, options, "random", _truth, "true or false")),
         pedestrian_model=options.get("pedestrian.model", STRIPING).strip(),
         outputs={name: _names(options[name], name) for name in OUTPUTS if name in options},
     )
@@ -236,29 +240,25 @@ def seconds(text: str) -> float:
     return ((days * 24.0 + hours) * 60.0 + minutes) * 60.0 + rest
 
 
-def _time(config_file: Path, options: Mapping[str, str], name: str, default: float) -> float:
+def _truth(text: str) -> bool:
+    """Whether ``text`` is one of SUMO's words for true; a ValueError if it is none for false."""
+    if text.lower() not in _TRUE | _FALSE:
+        raise ValueError(text)
+    return text.lower() in _TRUE
+
+
+def _parsed(
+    config_file: Path,
+    options: Mapping[str, str],
+    name: str,
+    parse: Callable[[str], _Value],
+    expected: str,
+) -> _Value | None:
+    """The value of an option; None if it is not set."""
     if name not in options:
-        return default
-    try:
-        return seconds(options[name].strip())
-    except ValueError:
-        msg = f"{config_file}: {name} = '{options[name]}'; expected seconds, h:m:s or d:h:m:s"
-        raise ScenarioError(msg) from None
-
-
-def _seed(config_file: Path, options: Mapping[str, str]) -> int | None:
-    if "seed" not in options:
         return None
     try:
-        return int(options["seed"])
+        return parse(options[name].strip())
     except ValueError:
-        msg = f"{config_file}: seed = '{options['seed']}'; expected a whole number"
+        msg = f"{config_file}: {name} = '{options[name]}'; expected {expected}"
         raise ScenarioError(msg) from None
-
-
-def _flag(config_file: Path, options: Mapping[str, str], name: str) -> bool:
-    value = options.get(name, "false").strip().lower()
-    if value not in _TRUE | _FALSE:
-        msg = f"{config_file}: {name} = '{options[name]}'; expected true or false"
-        raise ScenarioError(msg)
-    return value in _TRUE

@@ -8,6 +8,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from giveway.sumo.lanes import admits
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -129,12 +131,11 @@ class FootPaths:
             names = [f"{edge}_{i}" for i in range(sumo.edge.getLaneNumber(edge))]
         except sumo.TraCIException:
             return None
-        admitting = [name for name in names if "pedestrian" not in sumo.lane.getDisallowed(name)]
-        allowed = {name: sumo.lane.getAllowed(name) for name in admitting}
-        admitting = [n for n in admitting if not allowed[n] or "pedestrian" in allowed[n]]
-        if not admitting:
+        names = [name for name in names if admits(sumo, name, "pedestrian")]
+        if not names:
             return None
-        name = next((n for n in admitting if tuple(allowed[n]) == ("pedestrian",)), admitting[0])
+        alone = (n for n in names if tuple(sumo.lane.getAllowed(n)) == ("pedestrian",))
+        name = next(alone, names[0])
         shape = tuple(sumo.lane.getShape(name))
         metres = math.fsum(math.dist(a, b) for a, b in itertools.pairwise(shape))
         half_width = max(sumo.lane.getWidth(name) / 2 - _HALF_BODY, 0.0)

@@ -159,12 +159,7 @@ class Lanes:
 
     def _drivable(self, edge: str, kind: str) -> list[int]:
         count = int(self._sumo.edge.getLaneNumber(edge))
-        return [i for i in range(count) if self.admits(f"{edge}_{i}", kind)]
-
-    def admits(self, lane: str, kind: str) -> bool:
-        """Whether vehicles (or persons) of SUMO's class ``kind`` may use ``lane``."""
-        allowed = self._sumo.lane.getAllowed(lane)
-        return (not allowed or kind in allowed) and kind not in self._sumo.lane.getDisallowed(lane)
+        return [i for i in range(count) if admits(self._sumo, f"{edge}_{i}", kind)]
 
     def _cheapest(
         self, edges: Sequence[str], first: list[int], kind: str
@@ -245,6 +240,12 @@ class Lanes:
             elif len(shape) > 1:
                 outlines.append(lane_area(shape, float(self._sumo.lane.getWidth(name))))
         return tuple(outlines)
+
+
+def admits(sumo: Any, lane: str, kind: str) -> bool:
+    """Whether vehicles (or persons) of SUMO's class ``kind`` may use ``lane``."""
+    allowed = sumo.lane.getAllowed(lane)
+    return (not allowed or kind in allowed) and kind not in sumo.lane.getDisallowed(lane)
 
 
 def _length(points: Array) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from giveway.validation.predictors import CV
+from giveway.validation.protocol import to_vehicle_frame
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -157,7 +158,6 @@ def _place(window: Window) -> Array:
     """(n, 2) [m] the places at the start, before and to the left of the first vehicle."""
     if not window.vehicles.shape[1]:
         return np.full((len(window.who), 2), np.nan)
-    x, y, heading = window.vehicles[0, 0, :3]
-    dx, dy = (window.position - (x, y)).T
-    cos, sin = np.cos(heading), np.sin(heading)
-    return np.stack([cos * dx + sin * dy, cos * dy - sin * dx], axis=1)
+    start = to_vehicle_frame(window.position[None], *window.vehicles[:1, 0, :3].T)
+    place: Array = np.stack(start, axis=2)[0]
+    return place
