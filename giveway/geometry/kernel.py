@@ -1,12 +1,18 @@
-"""numba's ``njit`` for giveway's own kernels: cached on disk, with strict IEEE arithmetic."""
+"""numba's ``njit`` for giveway's own kernels, cached on disk, with strict IEEE arithmetic.
+
+The type of the arrays that they take stands here, too.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
+Array = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 

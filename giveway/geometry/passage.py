@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from giveway.geometry.kernel import kernel
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from giveway.geometry.kernel import Array, kernel
 
 SIGHT = 100.0
 """[m] along the path; persons and things farther ahead count as out of sight."""

@@ -13,12 +13,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from giveway.errors import ScenarioError
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import Array, kernel
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    Array = NDArray[np.float64]
+    from numpy.typing import ArrayLike
 
 
 class Pose(NamedTuple):

@@ -89,11 +89,11 @@ class Critical:
     """The conflicts of a drive.
 
     Attributes:
-        persons: how many pedestrians had one.
+        pedestrians: how many pedestrians had one.
         share: of the control instants at which somebody had one.
     """
 
-    persons: int
+    pedestrians: int
     share: float
 
 
@@ -118,7 +118,7 @@ def conflicts(
     critical = (ttc < CRITICAL_TTC) & (ego.speed[crowd.step] > stop_speed)
     instants = np.unique(crowd.step[critical]).size
     return Critical(
-        persons=int(np.unique(crowd.pedestrian[critical]).size),
+        pedestrians=int(np.unique(crowd.pedestrian[critical]).size),
         share=instants / ego.time.size if ego.time.size else 0.0,
     )
 

@@ -150,7 +150,7 @@ def summarise(
         side_contacts=int(np.count_nonzero(per_pedestrian["contact"] == SIDE)),
         overlap_time=float(np.nansum(per_pedestrian["overlap_time"].to_numpy())),
         minimum_ttc=_extreme(per_pedestrian["minimum_ttc"].to_numpy(), np.min),
-        conflicts=critical.persons,
+        conflicts=critical.pedestrians,
         share_below_ttc=critical.share,
         minimum_pet=_extreme(per_pedestrian["post_encroachment_time"].to_numpy(), np.min),
         maximum_drac=_extreme(per_pedestrian["maximum_drac"].to_numpy(), np.max),

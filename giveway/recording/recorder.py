@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import Array, kernel
 from giveway.recording.journal import Journal
 from giveway.recording.recorded import RecordedRows
 from giveway.records.rows import EGO_NUMBERS, LEDGER, EgoRow
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from giveway.geometry.bodies import VehicleShape
     from giveway.sumo.background import BackgroundVehicles
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 

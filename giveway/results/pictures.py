@@ -22,13 +22,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
     from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.kernel import Array
     from giveway.results.run_result import EgoResult, RunResult
     from pedestrian_model import VciParameters
 
-    Array = NDArray[np.float64]
 
 _CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
 

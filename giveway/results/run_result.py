@@ -33,14 +33,10 @@ from giveway.results.tables import ego_table, prediction_table, timing_table, tr
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from giveway.config import RunConfig
+    from giveway.geometry.kernel import Array
     from giveway.recording.recorded import RecordedRows
     from sumo_scenarios import Scenario
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

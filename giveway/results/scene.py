@@ -9,11 +9,9 @@ import numpy as np
 from giveway.records.scene import Scene
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.geometry.kernel import Array
     from giveway.results.run_result import RunResult
 
-    Array = NDArray[np.float64]
 
 _AROUND = 60.0  # [m] of road kept beyond the places where somebody was
 _DECIMALS = 2  # centimetres

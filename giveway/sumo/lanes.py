@@ -15,9 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from giveway.geometry.kernel import Array
 
-    Array = NDArray[np.float64]
 
 CHANGE_LENGTH = 30.0  # [m] over which a vehicle changes to the next lane
 _WALKINGAREA = re.compile(r"^:.*_w\d+_0$")  # SUMO's names; their shape is the outline itself

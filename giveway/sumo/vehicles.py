@@ -16,12 +16,9 @@ from giveway.sumo.types import ego_type, inserted_type
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
     from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.kernel import Array
     from giveway.sumo.lanes import Lanes
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

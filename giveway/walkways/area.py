@@ -11,11 +11,9 @@ import shapely
 from giveway.walkways.inside import polygon_of, rings
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.walkways.gates import Array
     from giveway.walkways.reading import PedLane, Survey
 
-    Array = NDArray[np.float64]
 
 _GAP = 0.15  # [m] half the width of a gap between neighbours that is closed
 _SLIVER = 0.1  # [m] half the width of a spit that is cut off

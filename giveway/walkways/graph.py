@@ -21,11 +21,9 @@ from giveway.walkways.polyline import Polyline, usable_half_width
 from giveway.walkways.reading import Signal
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.walkways.gates import Array
     from giveway.walkways.reading import Link, PedLane, Survey
 
-    Array = NDArray[np.float64]
 
 _KERB = 0.4  # [m] from the roadway, where people wait for green
 

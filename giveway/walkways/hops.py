@@ -13,12 +13,10 @@ from giveway.walkways.graph import End
 from giveway.walkways.polyline import usable_half_width
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.walkways.gates import Array
     from giveway.walkways.graph import WalkGraph
     from giveway.walkways.reading import Survey
 
-    Array = NDArray[np.float64]
 
 _AT_END = 1.0  # [m] lanes whose ends are this near to each other meet
 

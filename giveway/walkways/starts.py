@@ -18,12 +18,10 @@ from giveway.walkways.polyline import usable_half_width
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from giveway.walkways.gates import Array
     from giveway.walkways.graph import Tree, WalkGraph
     from giveway.walkways.reading import Survey
 
-    Array = NDArray[np.float64]
     Place = tuple[float, float]
 
 
