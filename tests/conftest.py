@@ -14,6 +14,7 @@ import pytest
 if TYPE_CHECKING:
     from types import ModuleType
 
+SUPPORT = Path(__file__).parent / "support"
 ZOO = Path(__file__).parent / "fmu_zoo"
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -33,6 +34,28 @@ def _load_zoo() -> ModuleType:
         sys.modules["fmu_zoo"] = module
         spec.loader.exec_module(module)
     return sys.modules["fmu_zoo"]
+
+
+def _load_support() -> None:
+    """Make the package tests/support, which is on no path, known as ``support``."""
+    spec = importlib.util.spec_from_file_location(
+        "support", SUPPORT / "__init__.py", submodule_search_locations=[str(SUPPORT)]
+    )
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["support"] = module
+    spec.loader.exec_module(module)
+
+
+_load_support()
+pytest_plugins = [
+    "support.clips",
+    "support.commands",
+    "support.runs",
+    "support.scenarios",
+    "support.studies",
+]
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-FILE = Path(__file__).parents[1] / "benchmarks" / "clairvoyant_search.py"
+FILE = Path(__file__).parents[2] / "benchmarks" / "clairvoyant_search.py"
 SPEC = importlib.util.spec_from_file_location("clairvoyant_search", FILE)
 search = importlib.util.module_from_spec(SPEC)
 sys.modules["clairvoyant_search"] = search

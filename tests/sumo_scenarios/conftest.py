@@ -14,12 +14,12 @@ from sumo_scenarios import Scenario, find
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-PROBES = Path(__file__).with_name("probes.py")
+PROBES = Path(__file__).parents[1] / "support" / "scenario_probes.py"
 
 
 @pytest.fixture
 def probe(tmp_path: Path) -> Callable[..., dict[str, Any]]:
-    """Run one look of probes.py at a scenario, in a process and a working folder of its own."""
+    """Run one look of scenario_probes.py, in a process and a working folder of its own."""
 
     def run(
         name: str, config: Path, step_length: float | None = None, **arguments: Any

@@ -1,4 +1,4 @@
-"""Look at one scenario through real libsumo: ``python probes.py PROBE JSON``, prints JSON.
+"""Look at a scenario through real libsumo: ``python scenario_probes.py PROBE JSON`` prints JSON.
 
 A process of its own per look: libsumo holds one simulation per process, and a test must not
 inherit another's.

@@ -1,4 +1,4 @@
-"""Look at SUMO's people through real libsumo: ``python looks.py LOOK JSON``, prints JSON."""
+"""Look at SUMO's people through real libsumo: ``python sumo_persons.py LOOK JSON``, prints JSON."""
 
 from __future__ import annotations
 

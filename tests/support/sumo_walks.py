@@ -1,4 +1,4 @@
-"""Let SUMO's own people walk: ``python walks.py REQUEST.json OUT.json``, in a process of its own.
+"""Let SUMO's own people walk: ``python sumo_walks.py REQUEST.json OUT.json``.
 
 The request names the sumo command and a number of steps. Out come, per walk, the edges, the
 arrival and every place that SUMO's walker went through; and what each traffic light controls.

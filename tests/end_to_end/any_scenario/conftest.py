@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import gzip
 import math
-import os
 import subprocess
 import sys
 from collections import Counter
@@ -42,26 +41,6 @@ BEGIN, END = 90, 400  # [s] of the city
 def demonstration() -> Path:
     """The pedestrian scenario that ships with SUMO: a junction in Braunschweig, from 15:00:00."""
     return HOME / "tools" / "game" / "fokr_bs_demo.sumocfg"
-
-
-@pytest.fixture(scope="session")
-def call_sumo() -> Callable[..., str]:
-    """Run one of SUMO's programs or tools; what it printed."""
-
-    def call(*command: object, cwd: Path) -> str:
-        words = list(map(str, command))
-        if words[0].endswith(".py"):
-            words = [sys.executable, str(HOME / "tools" / words[0]), *words[1:]]
-        else:
-            words[0] = str(HOME / "bin" / words[0])
-        environment = os.environ | {"SUMO_HOME": str(HOME)}
-        done = subprocess.run(
-            words, check=False, capture_output=True, text=True, cwd=cwd, env=environment, timeout=60
-        )
-        assert done.returncode == 0, done.stderr
-        return done.stdout + done.stderr
-
-    return call
 
 
 @pytest.fixture(scope="session")

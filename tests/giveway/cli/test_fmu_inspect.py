@@ -42,8 +42,8 @@ def edited(zoo, tmp_path):
     return make
 
 
-def test_as_a_user_types_it(giveway):
-    done = giveway("fmu", "inspect", bundled_fmu("2.0"))
+def test_as_a_user_types_it(type_here):
+    done = type_here("fmu", "inspect", bundled_fmu("2.0"))
     assert done.returncode == 0
     assert "LongitudinalVehicle" in done.stdout
     assert "[inputs.force]" in done.stdout

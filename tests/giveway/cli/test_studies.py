@@ -39,8 +39,8 @@ def one_line(done, code):
     return lines[0]
 
 
-def test_a_study_from_start_to_replay(giveway, small_text, tmp_path):
-    (tmp_path / "small.toml").write_text(small_text, encoding="utf-8")
+def test_a_study_from_start_to_replay(giveway, small_study_text, tmp_path):
+    (tmp_path / "small.toml").write_text(small_study_text, encoding="utf-8")
     done = giveway("study", "small.toml", "--jobs", "2")
     assert done.returncode == 0, done.stderr
     assert "20 runs in" in done.stdout
@@ -68,8 +68,8 @@ def test_a_study_from_start_to_replay(giveway, small_text, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
-def test_a_dry_run_tells_the_plan_and_leaves_nothing(giveway, small_text, tmp_path):
-    (tmp_path / "small.toml").write_text(small_text, encoding="utf-8")
+def test_a_dry_run_tells_the_plan_and_leaves_nothing(giveway, small_study_text, tmp_path):
+    (tmp_path / "small.toml").write_text(small_study_text, encoding="utf-8")
     done = giveway("study", "small.toml", "--dry-run", "--runs", "700")
     assert done.returncode == 0, done.stderr
     assert "2,800 runs: 4 cells with seeds 1 to 700" in " ".join(done.stdout.split())
@@ -136,11 +136,11 @@ def test_runs_that_fail_make_the_exit_code_1(giveway, tmp_path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGINT to send")
-def test_ctrl_c_keeps_what_is_finished_and_leaves_no_process(small_text, tmp_path):
+def test_ctrl_c_keeps_what_is_finished_and_leaves_no_process(small_study_text, tmp_path):
     import psutil
 
     (tmp_path / "small.toml").write_text(
-        small_text.replace("replications = 5", "replications = 500"), encoding="utf-8"
+        small_study_text.replace("replications = 5", "replications = 500"), encoding="utf-8"
     )
     command = [sys.executable, "-m", "giveway", "study", "small.toml", "--out", "s"]
     child = subprocess.Popen(

@@ -28,9 +28,9 @@ def printed():
 
 
 @pytest.mark.parametrize("width", [60, 80, 200])
-def test_every_number_is_whole_at_any_width(small, printed, width):
-    text = printed(small, width=width)
-    frame = small.comparison
+def test_every_number_is_whole_at_any_width(small_study, printed, width):
+    text = printed(small_study, width=width)
+    frame = small_study.comparison
     rows = frame[(frame["metric"] == "rms_jerk") & (frame["situation"] == "general")]
     assert len(rows) == 2
     for row in rows.to_dict("records"):
@@ -43,27 +43,29 @@ def test_every_number_is_whole_at_any_width(small, printed, width):
 
 
 def test_the_interval_is_headed_by_the_confidence_asked_for(
-    study_of, small_text, printed, tmp_path
+    study_of, small_study_text, printed, tmp_path
 ):
-    study = study_of(small_text + "confidence = 0.8\n", tmp_path / "study")
+    study = study_of(small_study_text + "confidence = 0.8\n", tmp_path / "study")
     text = printed(study)
     assert "80 % interval" in text
     assert "95 %" not in text
 
 
-def test_what_has_too_few_pairs_is_one_line(small, printed):
-    text = " ".join(printed(small).split())
+def test_what_has_too_few_pairs_is_one_line(small_study, printed):
+    text = " ".join(printed(small_study).split())
     assert "N.A., fewer than 4 pairs with a number on both sides: completion time (general)" in text
 
 
-def test_a_resumed_study_says_how_many_runs_are_new(small, printed):
-    assert "20 runs in 3 s on 2 workers" in printed(small, width=200)
-    assert "20 runs, 3 of them made now, in 3 s on 2 workers" in printed(small, width=200, made=3)
+def test_a_resumed_study_says_how_many_runs_are_new(small_study, printed):
+    assert "20 runs in 3 s on 2 workers" in printed(small_study, width=200)
+    assert "20 runs, 3 of them made now, in 3 s on 2 workers" in printed(
+        small_study, width=200, made=3
+    )
 
 
-def test_seeds_that_are_not_precise_enough_are_told(study_of, small_text, printed, tmp_path):
+def test_seeds_that_are_not_precise_enough_are_told(study_of, small_study_text, printed, tmp_path):
     rule = '[precision]\nmetric = "minimum_clearance"\nwidth = {}\nminimum = 10\n'
-    text = small_text.replace("replications = 5", "replications = 11")
+    text = small_study_text.replace("replications = 5", "replications = 11")
     vague = study_of(text + rule.format(1e-9), tmp_path / "vague")
     assert "Not precise enough, minimum clearance (general) to 1e-09 m, with all 11" in printed(
         vague, width=200
@@ -74,17 +76,17 @@ def test_seeds_that_are_not_precise_enough_are_told(study_of, small_text, printe
     )
 
 
-def test_without_an_ego_there_is_nothing_to_compare(study_of, small_text, printed, tmp_path):
-    text = small_text.replace("time_limit = 2.0", "time_limit = 2.0\nego.none = true")
+def test_without_an_ego_there_is_nothing_to_compare(study_of, small_study_text, printed, tmp_path):
+    text = small_study_text.replace("time_limit = 2.0", "time_limit = 2.0\nego.none = true")
     study = study_of(text.replace("replications = 5", "replications = 4"), tmp_path / "study")
     assert "The runs have no ego" in printed(study)
     assert "every metric is an ego's" in findings(study)[0]
 
 
 @pytest.fixture(scope="module")
-def of_levels(study_of, small_text, tmp_path_factory):
+def of_levels(study_of, small_study_text, tmp_path_factory):
     """The small study, which shows its levels."""
-    text = small_text.replace("replications = 5", 'replications = 5\ntable = "levels"')
+    text = small_study_text.replace("replications = 5", 'replications = 5\ntable = "levels"')
     text = text.replace('["mpc", "pid"]', '["mpc-paper", "pid-paper"]')
     near = "time_limit = 2.0\ncrowd.spawn_area = [8.0, -4.0, 14.0, 0.0]"  # so that much varies
     text = text.replace("time_limit = 2.0", near)
@@ -148,8 +150,8 @@ def test_levels_and_computing_are_files_that_the_data_package_describes(of_level
     assert (units["control_max"], units["seconds"]) == ("ms", "s")
 
 
-def test_the_report_has_the_table_only_if_it_is_asked_for(small, of_levels):
-    assert levels_section(small) is None
+def test_the_report_has_the_table_only_if_it_is_asked_for(small_study, of_levels):
+    assert levels_section(small_study) is None
     table = levels_section(of_levels)
     assert len(table.rows) == 4
     assert all(len(row) == len(table.headings) for row in table.rows)

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture
-def dataset(tmp_path, write_clip, straight) -> Path:
-    x, v = straight(200, [[-4, 1.6], [3, -2], [0, 4]], [[1, 0], [-1, 0.3], [1.2, 0.1]])
+def dataset(tmp_path, write_clip, straight_walks) -> Path:
+    x, v = straight_walks(200, [[-4, 1.6], [3, -2], [0, 4]], [[1, 0], [-1, 0.3], [1.2, 0.1]])
     cart = np.tile([0.0, 0.0, 0.1, 0.5], (200, 1))
     folder = tmp_path / "citr" / "trajectories_filtered"
     write_clip(folder / "vci_front", "front_interaction_01", x, v, cart)

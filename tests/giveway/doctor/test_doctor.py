@@ -44,10 +44,10 @@ def test_a_results_folder_below_a_file_is_an_error(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def of_city(city: Path) -> list[Finding]:
-    before = sorted(city.parent.iterdir())
-    findings = examine_scenario(city)
-    assert sorted(city.parent.iterdir()) == before
+def of_city(small_city: Path) -> list[Finding]:
+    before = sorted(small_city.parent.iterdir())
+    findings = examine_scenario(small_city)
+    assert sorted(small_city.parent.iterdir()) == before
     return findings
 
 
@@ -67,8 +67,8 @@ def test_it_names_vehicles_to_take_and_edges_to_drive(of_city: list[Finding]) ->
     assert "--ego-route=" in ego.remedy
 
 
-def test_what_a_run_would_change_is_noted(small: Callable[..., Path]) -> None:
-    config = small(
+def test_what_a_run_would_change_is_noted(small_scenario: Callable[..., Path]) -> None:
+    config = small_scenario(
         '<pedestrian.model value="nonInteracting"/><random value="true"/>',
         '<collision.action value="teleport"/><time-to-teleport value="77"/>',
         '<lateral-resolution value="0.8"/><step-length value="0.12"/>',
@@ -86,8 +86,10 @@ def test_what_a_run_would_change_is_noted(small: Callable[..., Path]) -> None:
     assert "t.xml: written into RESULTS/sumo" in about(findings, "outputs").text
 
 
-def test_what_sumo_cannot_read_but_does_without_is_a_warning(small: Callable[..., Path]) -> None:
-    config = small()
+def test_what_sumo_cannot_read_but_does_without_is_a_warning(
+    small_scenario: Callable[..., Path],
+) -> None:
+    config = small_scenario()
     config.with_name("car.rou.xml").write_text('<routes><include href="none.xml"/></routes>')
     finding = about(examine_scenario(config), "SUMO's errors")
     assert finding.level == "warning"
@@ -95,9 +97,9 @@ def test_what_sumo_cannot_read_but_does_without_is_a_warning(small: Callable[...
 
 
 def test_without_walkways_only_persons_of_the_scenario_suffer(
-    small: Callable[..., Path], call_sumo: Callable[..., str]
+    small_scenario: Callable[..., Path], call_sumo: Callable[..., str]
 ) -> None:
-    config = small()
+    config = small_scenario()
     call_sumo(
         "netgenerate", "--grid", "--grid.number", 3, "-o", "net.net.xml.gz", cwd=config.parent
     )
@@ -108,8 +110,10 @@ def test_without_walkways_only_persons_of_the_scenario_suffer(
     assert about(examine_scenario(config), "walkways").level == "warning"
 
 
-def test_an_old_network_and_one_with_traffic_on_the_left(small: Callable[..., Path]) -> None:
-    config = small()
+def test_an_old_network_and_one_with_traffic_on_the_left(
+    small_scenario: Callable[..., Path],
+) -> None:
+    config = small_scenario()
     net = config.with_name("net.net.xml.gz")
     text = gzip.decompress(net.read_bytes()).decode()
     net.write_text(text.replace('<net version="1.20"', '<net lefthand="true" version="0.13"'))
@@ -131,9 +135,9 @@ def test_an_old_network_and_one_with_traffic_on_the_left(small: Callable[..., Pa
     ],
 )
 def test_what_is_broken_is_an_error_with_a_remedy(
-    file: str, content: str | None, message: str, small: Callable[..., Path]
+    file: str, content: str | None, message: str, small_scenario: Callable[..., Path]
 ) -> None:
-    config = small()
+    config = small_scenario()
     if content is None:
         config.with_name(file).unlink()
     else:
@@ -143,8 +147,8 @@ def test_what_is_broken_is_an_error_with_a_remedy(
     assert all(finding.remedy and "\n" not in finding.text for finding in found)
 
 
-def test_a_truncated_file_is_an_error(small: Callable[..., Path]) -> None:
-    config = small()
+def test_a_truncated_file_is_an_error(small_scenario: Callable[..., Path]) -> None:
+    config = small_scenario()
     net = config.with_name("net.net.xml.gz")
     net.write_bytes(net.read_bytes()[:-100])
     assert any("cannot be read" in finding.text for finding in errors(examine_scenario(config)))
@@ -156,8 +160,8 @@ def test_an_unknown_scenario_is_an_error() -> None:
     assert "did you mean 'street'?" in finding.text
 
 
-def test_references_to_the_web_are_named(small: Callable[..., Path]) -> None:
-    config = small('<additional-files value="web.add.xml"/>')
+def test_references_to_the_web_are_named(small_scenario: Callable[..., Path]) -> None:
+    config = small_scenario('<additional-files value="web.add.xml"/>')
     picture = '<poly id="p" shape="0,0 1,1 1,0" imgFile="https://example.org/map.png"/>'
     config.with_name("web.add.xml").write_text(f"<additional>{picture}</additional>")
     finding = about(examine_scenario(config), "remote files")
@@ -165,26 +169,26 @@ def test_references_to_the_web_are_named(small: Callable[..., Path]) -> None:
     assert finding.text.startswith("https://example.org/map.png; nothing is fetched")
 
 
-def test_a_sumo_that_does_not_answer_is_given_up(city: Path) -> None:
-    (finding,) = try_in_sumo(city, patience=0.01)
+def test_a_sumo_that_does_not_answer_is_given_up(small_city: Path) -> None:
+    (finding,) = try_in_sumo(small_city, patience=0.01)
     assert finding.level == "error"
     assert "still busy after 0.01 s" in finding.text
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="other systems have no signals")
-def test_a_sumo_that_crashes_is_a_finding(city: Path) -> None:
+def test_a_sumo_that_crashes_is_a_finding(small_city: Path) -> None:
     crash = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
     result = subprocess.run(
         [sys.executable, "-c", crash], check=False, capture_output=True, text=True
     )
-    (finding,) = judged(city, result)
+    (finding,) = judged(small_city, result)
     assert finding.text == "SUMO crashed (SIGSEGV)"
 
 
 def test_the_command_prints_tables_and_its_exit_code_tells(
-    small: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+    small_scenario: Callable[..., Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    config = small()
+    config = small_scenario()
     assert doctor_command(str(config)) == 0
     shown = capsys.readouterr().out
     assert "Environment" in shown

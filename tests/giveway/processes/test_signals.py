@@ -18,13 +18,15 @@ from giveway.journal_reader import read_journal
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the deaths here are Unix's")
 
 # A supervisor in a process of its own, for what is done to supervisors.
+# Whether it obeys SIGHUP is said to it: what we inherited is nohup's, or a CI runner's.
 PARENT = """
-import dataclasses, json, sys
+import dataclasses, json, signal, sys
 from pathlib import Path
 from giveway import supervisor
 
 supervisor._PATIENCE = 0.3
-script, journal, hang_limit = sys.argv[1:]
+script, journal, hang_limit, hangup = sys.argv[1:]
+signal.signal(signal.SIGHUP, getattr(signal, hangup))
 verdict = supervisor.supervise(
     [sys.executable, script], Path(journal), hang_limit=float(hang_limit)
 )
@@ -46,9 +48,15 @@ HEEDS = """
 
 
 def start(
-    script: Path, journal: Path, hang_limit: float = 30.0, **options: Any
+    script: Path,
+    journal: Path,
+    hang_limit: float = 30.0,
+    *,
+    hangup: str = "SIG_DFL",
+    **options: Any,
 ) -> subprocess.Popen[str]:
-    command = [sys.executable, "-c", PARENT, str(script), str(journal), str(hang_limit)]
+    words = [str(script), str(journal), str(hang_limit), hangup]
+    command = [sys.executable, "-c", PARENT, *words]
     streams: dict[str, Any] = {"stdout": subprocess.PIPE, **options}
     return subprocess.Popen(command, text=True, **streams)
 
@@ -149,6 +157,22 @@ def test_a_terminal_that_is_closed_costs_no_row(
         verdict = verdict_in(parent.communicate(timeout=20)[0])
     assert (verdict["cause"], verdict["code"], verdict["interrupted"]) == ("SIGHUP", 129, True)
     assert len(read_journal(journal).tables["ego"]) == 3
+
+
+def test_under_nohup_a_terminal_that_is_closed_ends_nothing(
+    child: Callable[[str], Path], journal: Path
+) -> None:
+    hangs_up = """
+        for process in (os.getppid(), os.getpid()):
+            os.kill(process, signal.SIGHUP)
+        time.sleep(0.2)
+        print("WENT ON", flush=True)
+    """
+    with start(child(hangs_up), journal, hangup="SIG_IGN") as parent:
+        output = parent.communicate(timeout=20)[0]
+    assert output.startswith("WENT ON\n")
+    verdict = verdict_in(output)
+    assert (verdict["code"], verdict["crashed"], verdict["interrupted"]) == (0, False, False)
 
 
 def test_a_suspended_run_is_not_a_hanging_one(child: Callable[[str], Path], journal: Path) -> None:

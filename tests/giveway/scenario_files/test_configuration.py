@@ -76,12 +76,12 @@ def test_names_may_hold_spaces_escapes_variables_and_a_home(
 
 
 def test_sumo_finds_the_files_that_we_find(
-    small: Callable[..., Path],
+    small_scenario: Callable[..., Path],
     run_started: Callable[..., dict[str, Any]],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setenv("NAME_OF_FILE", "my own")
-    file = small('<additional-files value="${NAME_OF_FILE}.add.xml, s%20t.add.xml"/>')
+    file = small_scenario('<additional-files value="${NAME_OF_FILE}.add.xml, s%20t.add.xml"/>')
     for name in ("my own", "s t"):
         file.with_name(f"{name}.add.xml").write_text("<additional/>")
     assert read_scenario(file).missing == ()
@@ -164,25 +164,27 @@ def test_a_compressed_configuration_is_refused_as_by_sumo(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("option", ["route-files", "additional-files", "weight-files"])
-def test_a_missing_file_is_named_with_its_option(option: str, small: Callable[..., Path]) -> None:
+def test_a_missing_file_is_named_with_its_option(
+    option: str, small_scenario: Callable[..., Path]
+) -> None:
     if option == "route-files":
-        file = small()
+        file = small_scenario()
         file.with_name("car.rou.xml").unlink()
     else:
-        file = small(f'<{option} value="none.xml"/>')
+        file = small_scenario(f'<{option} value="none.xml"/>')
     with pytest.raises(ScenarioError, match=rf"small\.sumocfg: {option} names .*does not exist"):
         read_scenario(file).require_inputs()
 
 
 def test_a_comma_in_a_folders_name_is_the_end_of_a_name_to_sumo(
-    small: Callable[..., Path],
+    small_scenario: Callable[..., Path],
 ) -> None:
     with pytest.raises(ScenarioError, match=r"one, two/net\.net\.xml\.gz; SUMO takes the ','"):
-        read_scenario(small(folder="one, two")).require_inputs()
+        read_scenario(small_scenario(folder="one, two")).require_inputs()
 
 
-def test_a_missing_network_and_a_folder_for_a_file(small: Callable[..., Path]) -> None:
-    file = small('<additional-files value="."/>')
+def test_a_missing_network_and_a_folder_for_a_file(small_scenario: Callable[..., Path]) -> None:
+    file = small_scenario('<additional-files value="."/>')
     with pytest.raises(ScenarioError, match="additional-files names the folder"):
         read_scenario(file).require_inputs()
     file.with_name("net.net.xml.gz").unlink()

@@ -54,16 +54,16 @@ def test_the_demonstration_that_comes_with_sumo(
     assert fcd.count(b"<person ") > 100
 
 
-def test_a_city_of_cars_and_persons(city: Path, same_fcd: Callable[..., bytes]) -> None:
-    fcd = same_fcd(city, 80)
+def test_a_city_of_cars_and_persons(small_city: Path, same_fcd: Callable[..., bytes]) -> None:
+    fcd = same_fcd(small_city, 80)
     assert fcd.count(b"<vehicle ") > 1000
     assert fcd.count(b"<person ") > 1000
 
 
 def test_the_seed_asked_for_is_the_seed_that_plain_sumo_would_take(
-    city: Path, same_fcd: Callable[..., bytes]
+    small_city: Path, same_fcd: Callable[..., bytes]
 ) -> None:
-    assert same_fcd(city, 40, "--seed", "7", seed=7) != same_fcd(city, 40)
+    assert same_fcd(small_city, 40, "--seed", "7", seed=7) != same_fcd(small_city, 40)
 
 
 WRITING = """<additional>
@@ -78,9 +78,9 @@ SLOW = """<additional>
 
 
 def test_a_scenario_run_from_copies_because_it_writes(
-    small: Callable[..., Path], same_fcd: Callable[..., bytes], tmp_path: Path
+    small_scenario: Callable[..., Path], same_fcd: Callable[..., bytes], tmp_path: Path
 ) -> None:
-    config = small('<additional-files value="w.add.xml"/><tripinfo-output value="t.xml"/>')
+    config = small_scenario('<additional-files value="w.add.xml"/><tripinfo-output value="t.xml"/>')
     more = config.parent / "more"
     more.mkdir()
     config.with_name("w.add.xml").write_text(WRITING)
@@ -98,9 +98,11 @@ def test_the_bundled_scenarios(name: str, same_fcd: Callable[..., bytes]) -> Non
 
 
 def test_with_nothing_moved_the_scenarios_pedestrian_model_stays(
-    small: Callable[..., Path], run_started: Callable[..., dict[str, Any]]
+    small_scenario: Callable[..., Path], run_started: Callable[..., dict[str, Any]]
 ) -> None:
-    config = small('<pedestrian.model value="nonInteracting"/><collision.action value="remove"/>')
+    config = small_scenario(
+        '<pedestrian.model value="nonInteracting"/><collision.action value="remove"/>'
+    )
     seen = run_started(config, until=5, interact=False)
     assert "--pedestrian.model" not in seen["command"]
     assert "--collision.action" not in seen["command"]

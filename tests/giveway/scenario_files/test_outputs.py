@@ -66,9 +66,9 @@ CAR = """<routes>
 
 
 @pytest.fixture
-def everything(small: Callable[..., Path]) -> Path:
+def everything(small_scenario: Callable[..., Path]) -> Path:
     """A scenario that writes wherever SUMO lets it."""
-    config = small(
+    config = small_scenario(
         '<additional-files value="all.add.xml.gz, more/deep.add.xml"/>',
         '<tripinfo v="tripinfo.xml"/><fcd-output value="out/fcd.csv"/>',
         '<summary-output value="sum%20mary.xml.gz"/><statistic-output value="STDOUT"/>',
@@ -147,9 +147,9 @@ def test_without_a_results_folder_everything_is_dropped_and_said(
 
 
 def test_files_that_write_nothing_are_used_where_they_are(
-    small: Callable[..., Path], tmp_path: Path
+    small_scenario: Callable[..., Path], tmp_path: Path
 ) -> None:
-    config = small('<additional-files value="stops.add.xml"/>')
+    config = small_scenario('<additional-files value="stops.add.xml"/>')
     stops = config.with_name("stops.add.xml")
     stops.write_text(
         '<additional><include href="none.xml"/><edgeData id="e" file="NUL"/></additional>'
@@ -164,18 +164,20 @@ def test_files_that_write_nothing_are_used_where_they_are(
 
 
 def test_a_prefix_with_a_folder_does_not_lead_out(
-    small: Callable[..., Path], tmp_path: Path, run_started: Callable[..., dict[str, Any]]
+    small_scenario: Callable[..., Path], tmp_path: Path, run_started: Callable[..., dict[str, Any]]
 ) -> None:
-    config = small('<tripinfo-output value="t.xml"/><output-prefix value="../elsewhere/a_"/>')
+    config = small_scenario(
+        '<tripinfo-output value="t.xml"/><output-prefix value="../elsewhere/a_"/>'
+    )
     seen = run_started(config, until=2, outputs=tmp_path / "out")
     assert set(tree(tmp_path / "out")) == {"a_t.xml"}
     assert any("'../elsewhere/a_'" in remark for remark in seen["remarks"])
 
 
 def test_what_the_user_wants_is_added_and_what_the_scenario_has_is_kept(
-    small: Callable[..., Path], tmp_path: Path, run_started: Callable[..., dict[str, Any]]
+    small_scenario: Callable[..., Path], tmp_path: Path, run_started: Callable[..., dict[str, Any]]
 ) -> None:
-    config = small('<fcd-output value="own.xml"/>')
+    config = small_scenario('<fcd-output value="own.xml"/>')
     wanted = {"fcd": True, "tripinfo": True, "summary": True, "ssm": True}
     extra = ["--tripinfo-output.write-unfinished", "--statistic-output=s.xml", "--scale", "1"]
     run_started(config, until=10, outputs=tmp_path / "out", extra=extra, **wanted)
@@ -184,9 +186,9 @@ def test_what_the_user_wants_is_added_and_what_the_scenario_has_is_kept(
 
 
 def test_sumo_takes_a_colon_for_a_network_address(
-    small: Callable[..., Path], tmp_path: Path
+    small_scenario: Callable[..., Path], tmp_path: Path
 ) -> None:
-    scenario = read_scenario(small('<fcd-output value="own.xml"/>'))
+    scenario = read_scenario(small_scenario('<fcd-output value="own.xml"/>'))
     with pytest.raises(ResultsError, match="12:30: SUMO takes the ':' for a network address"):
         prepare_start(scenario, StartOptions(outputs=tmp_path / "12:30"), tmp_path)
 

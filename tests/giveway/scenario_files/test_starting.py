@@ -18,11 +18,13 @@ if TYPE_CHECKING:
 
 
 @pytest.fixture
-def started(small: Callable[..., Path], tmp_path: Path) -> Callable[..., Start]:
+def started(small_scenario: Callable[..., Path], tmp_path: Path) -> Callable[..., Start]:
     """The start of a scenario with the given lines, under the given options."""
 
     def start(*lines: str, **options: Any) -> Start:
-        return prepare_start(read_scenario(small(*lines)), StartOptions(**options), tmp_path)
+        return prepare_start(
+            read_scenario(small_scenario(*lines)), StartOptions(**options), tmp_path
+        )
 
     return start
 
@@ -54,9 +56,9 @@ def test_the_seed_asked_for_wins(started: Callable[..., Start]) -> None:
 
 
 def test_a_random_seed_becomes_a_known_one(
-    small: Callable[..., Path], run_started: Callable[..., dict[str, Any]]
+    small_scenario: Callable[..., Path], run_started: Callable[..., dict[str, Any]]
 ) -> None:
-    seen = run_started(small('<random value="true"/>'), until=2, fallback_seed=77)
+    seen = run_started(small_scenario('<random value="true"/>'), until=2, fallback_seed=77)
     assert seen["seed"] == 77
     assert any("random: " in remark and "seed 77" in remark for remark in seen["remarks"])
 
@@ -83,9 +85,9 @@ def test_another_step_is_said(started: Callable[..., Start]) -> None:
 
 
 def test_nobody_is_waited_for_and_nothing_is_fetched(
-    small: Callable[..., Path], run_started: Callable[..., dict[str, Any]]
+    small_scenario: Callable[..., Path], run_started: Callable[..., dict[str, Any]]
 ) -> None:
-    config = small('<remote-port value="8813"/><xml-validation value="always"/>')
+    config = small_scenario('<remote-port value="8813"/><xml-validation value="always"/>')
     seen = run_started(config, until=2)  # with its port open it would never return
     assert seen["command"][seen["command"].index("--xml-validation") + 1] == "local"
     assert any("remote-port: not opened" in remark for remark in seen["remarks"])
@@ -98,9 +100,11 @@ def test_an_output_into_the_network_is_said(started: Callable[..., Start]) -> No
 
 
 def test_a_missing_file_of_the_window_is_no_reason_to_stop(
-    small: Callable[..., Path], run_started: Callable[..., dict[str, Any]]
+    small_scenario: Callable[..., Path], run_started: Callable[..., dict[str, Any]]
 ) -> None:
-    run_started(small('<gui-settings-file value="none.xml"/><demo value="true"/>'), until=2)
+    run_started(
+        small_scenario('<gui-settings-file value="none.xml"/><demo value="true"/>'), until=2
+    )
 
 
 def test_the_users_own_options_win(started: Callable[..., Start]) -> None:
@@ -130,9 +134,9 @@ def test_what_cannot_be_passed_on_is_refused(
 
 
 def test_a_message_about_a_copy_names_the_original(
-    small: Callable[..., Path], tmp_path: Path
+    small_scenario: Callable[..., Path], tmp_path: Path
 ) -> None:
-    config = small('<additional-files value="e.add.xml"/>')
+    config = small_scenario('<additional-files value="e.add.xml"/>')
     config.with_name("e.add.xml").write_text('<additional><edgeData id="e" file="o"/></additional>')
     start = prepare_start(read_scenario(config), StartOptions(), tmp_path / "cwd")
     (copy,) = start.copies
@@ -145,7 +149,7 @@ def test_a_missing_file_is_said_before_sumo_is_asked(started: Callable[..., Star
 
 
 @pytest.fixture
-def held(city: Path, tmp_path: Path) -> Iterator[None]:
+def held(small_city: Path, tmp_path: Path) -> Iterator[None]:
     """SUMO with a bus that has just departed, and our types."""
     (tmp_path / "bus.rou.xml").write_text(
         '<routes><vType id="line" vClass="bus" length="11.5" width="2.4"/>'
@@ -153,7 +157,7 @@ def held(city: Path, tmp_path: Path) -> Iterator[None]:
     )
     (tmp_path / "types.xml").write_text(all_types({"giveway_ego": VehicleShape(4.0, 1.8)}))
     options = ["--time-to-teleport", "20", "--no-step-log", "true", "--no-warnings", "true"]
-    net = str(city.parent / "net.net.xml.gz")
+    net = str(small_city.parent / "net.net.xml.gz")
     files = ["-n", net, "-r", str(tmp_path / "bus.rou.xml"), "-a", str(tmp_path / "types.xml")]
     libsumo.start(["sumo", *files, *options])
     libsumo.simulationStep(3)
@@ -205,9 +209,9 @@ def test_there_is_a_type_for_every_class_on_the_road(held: None) -> None:
 
 
 def test_an_option_of_the_window_alone_does_not_stop_a_headless_run(
-    small: Callable[..., Path], tmp_path: Path
+    small_scenario: Callable[..., Path], tmp_path: Path
 ) -> None:
-    scenario = read_scenario(small('<gui_only><osg-view value="true"/></gui_only>'))
+    scenario = read_scenario(small_scenario('<gui_only><osg-view value="true"/></gui_only>'))
     start = prepare_start(scenario, StartOptions(interact=False), tmp_path)
     assert any("osg-view" in remark for remark in start.remarks)
     libsumo.start(list(start.command))

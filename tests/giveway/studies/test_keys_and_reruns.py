@@ -17,29 +17,31 @@ from giveway.studies.rerun import OtherNumbersError, rerun
 from giveway.studies.store import RecordStore
 
 
-def test_other_settings_make_other_keys(small, small_text):
+def test_other_settings_make_other_keys(small_study, small_study_text):
     from giveway.studies.definition import parse_definition
 
     changed = parse_definition(
-        small_text.replace("time_limit = 2.0", "time_limit = 2.0\n[run.pid]\nintegral_gain = 11.0"),
+        small_study_text.replace(
+            "time_limit = 2.0", "time_limit = 2.0\n[run.pid]\nintegral_gain = 11.0"
+        ),
         "s",
         Path(),
     )
     ours = plan(changed, "s")
-    theirs = plan(small.definition, "s")
+    theirs = plan(small_study.definition, "s")
     assert {r.key for r in ours.runs(ours.seeds)}.isdisjoint(
         r.key for r in theirs.runs(theirs.seeds)
     )
 
 
-def test_where_the_scenario_lies_does_not_matter_but_what_it_holds_does(small_text, tmp_path):
+def test_where_the_scenario_lies_does_not_matter_but_what_it_holds_does(small_study_text, tmp_path):
     import shutil
 
     from giveway.studies.definition import parse_definition
     from sumo_scenarios import find
 
     def keys(folder):
-        text = small_text.replace("[run]", f"[run]\nscenario = '{folder.as_posix()}'")
+        text = small_study_text.replace("[run]", f"[run]\nscenario = '{folder.as_posix()}'")
         planned = plan(parse_definition(text, "s", Path()), "s")
         return [run.key for run in planned.runs(planned.seeds)]
 
@@ -53,19 +55,19 @@ def test_where_the_scenario_lies_does_not_matter_but_what_it_holds_does(small_te
     assert set(keys(here)).isdisjoint(keys(there))
 
 
-def test_a_rerun_gives_the_studys_row_and_all_trajectories(small, tmp_path):
-    result = rerun(small, "c3-s2", tmp_path / "again", pictures=False)
+def test_a_rerun_gives_the_studys_row_and_all_trajectories(small_study, tmp_path):
+    result = rerun(small_study, "c3-s2", tmp_path / "again", pictures=False)
     assert len(result.egos) == 1
     summary = pd.read_csv(tmp_path / "again" / "summary.csv").iloc[0]
-    row = pd.read_csv(small.path / "runs.csv").set_index("run").loc["c3-s2"]
+    row = pd.read_csv(small_study.path / "runs.csv").set_index("run").loc["c3-s2"]
     shared = [name for name in summary.index if name in row.index]
     assert len(shared) > 15
     pd.testing.assert_series_equal(summary[shared], row[shared], check_names=False)
     assert (tmp_path / "again" / "trajectories.csv").stat().st_size > 1000
 
 
-def test_a_rerun_with_other_numbers_says_which(small, study_of, small_text, tmp_path):
-    study = study_of(small_text.replace("= 5", "= 1"), tmp_path / "forged")
+def test_a_rerun_with_other_numbers_says_which(small_study, study_of, small_study_text, tmp_path):
+    study = study_of(small_study_text.replace("= 5", "= 1"), tmp_path / "forged")
     store = RecordStore(study.path)
     record = study.record("c1-s1")
     import dataclasses
@@ -125,8 +127,8 @@ def test_cells_with_the_same_settings_share_their_records(study_of, tmp_path):
     assert (states[-1].kept, states[-1].made) == (6, 0)
 
 
-def test_a_level_that_is_added_in_front_renumbers_the_runs(study_of, small_text, tmp_path):
-    text = small_text.replace("= 5", "= 1").replace("[3, 2]", "[2]")
+def test_a_level_that_is_added_in_front_renumbers_the_runs(study_of, small_study_text, tmp_path):
+    text = small_study_text.replace("= 5", "= 1").replace("[3, 2]", "[2]")
     folder = study_of(text, tmp_path / "more").path
     kept = {path: path.read_bytes() for path in folder.glob("records/*/*.json")}
     study_of(text.replace("[2]", "[1, 2]"), folder, resume=True)
@@ -139,14 +141,14 @@ def test_a_level_that_is_added_in_front_renumbers_the_runs(study_of, small_text,
 
 
 @pytest.mark.parametrize("run", ["c9-s1", "c01-s1", "1-s1", "c1-s99", "c1", "17", "", "c1-s-1"])
-def test_a_run_that_is_not_in_the_study(small, run):
+def test_a_run_that_is_not_in_the_study(small_study, run):
     with pytest.raises(ResultsError, match="expected c<cell>-s<seed>, c1-s1 to c4-s5"):
-        rerun(small, run, None)
+        rerun(small_study, run, None)
 
 
-def test_a_task_survives_json(small):
+def test_a_task_survives_json(small_study):
     """What a worker reads is what was planned, down to the last bit."""
-    planned = plan(small.definition, "s")
+    planned = plan(small_study.definition, "s")
     run = next(planned.runs(planned.seeds))
     from giveway.config import RunConfig
 
@@ -154,6 +156,6 @@ def test_a_task_survives_json(small):
     journal = Journal(None)
     record = perform(run.task(), journal)
     assert journal.heartbeat.read().phase is Phase.MEASURING  # the last thing that may crash
-    kept = small.record("c1-s1")
+    kept = small_study.record("c1-s1")
     assert kept is not None
     assert repr(record.rows) == repr(kept.rows)

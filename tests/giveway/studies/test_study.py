@@ -14,8 +14,8 @@ from giveway.studies.rerun import rerun
 from giveway.studies.study import StudyOptions, run_study
 
 
-def test_runs_csv_has_a_row_per_run_and_the_summarys_numbers(small):
-    runs = pd.read_csv(small.path / "runs.csv", dtype={"ego": str})
+def test_runs_csv_has_a_row_per_run_and_the_summarys_numbers(small_study):
+    runs = pd.read_csv(small_study.path / "runs.csv", dtype={"ego": str})
     assert list(runs["run"]) == [f"c{c}-s{s}" for c in range(1, 5) for s in range(1, 6)]
     import giveway
 
@@ -28,17 +28,17 @@ def test_runs_csv_has_a_row_per_run_and_the_summarys_numbers(small):
         assert row[name] == pytest.approx(alone[name], abs=5e-7)
 
 
-def test_pairs_meet_the_same_crowd(small):
+def test_pairs_meet_the_same_crowd(small_study):
     """Until the ego reacts, nothing but the controller differs."""
-    mpc, pid = (rerun(small, f"c{cell}-s3", None) for cell in (1, 2))
+    mpc, pid = (rerun(small_study, f"c{cell}-s3", None) for cell in (1, 2))
     assert mpc.config.controller != pid.config.controller
     first = [(r.crowd_track.x[:3].tolist(), r.crowd_track.y[:3].tolist()) for r in (mpc, pid)]
     assert first[0] == first[1]
 
 
-def test_comparison_csv_holds_the_mean_of_the_paired_differences(small):
-    runs = pd.read_csv(small.path / "runs.csv", dtype={"ego": str})
-    comparison = pd.read_csv(small.path / "comparison.csv")
+def test_comparison_csv_holds_the_mean_of_the_paired_differences(small_study):
+    runs = pd.read_csv(small_study.path / "runs.csv", dtype={"ego": str})
+    comparison = pd.read_csv(small_study.path / "comparison.csv")
     row = comparison.query(
         "`crowd.pedestrians` == 3 and situation == 'general' and metric == 'mean_speed'"
     ).iloc[0]
@@ -49,23 +49,25 @@ def test_comparison_csv_holds_the_mean_of_the_paired_differences(small):
     assert row["n"] == 5
 
 
-def test_every_table_is_described_by_the_data_package(small):
+def test_every_table_is_described_by_the_data_package(small_study):
     import json
 
-    package = json.loads((small.path / "datapackage.json").read_text(encoding="utf-8"))
+    package = json.loads((small_study.path / "datapackage.json").read_text(encoding="utf-8"))
     for resource in package["resources"]:
-        header = (small.path / resource["path"]).read_text(encoding="utf-8").splitlines()[0]
+        header = (small_study.path / resource["path"]).read_text(encoding="utf-8").splitlines()[0]
         names = [field["name"] for field in resource["schema"]["fields"]]
         assert header.split(",") == names
         assert all(field["description"] for field in resource["schema"]["fields"])
     assert {r["name"] for r in package["resources"]} == {
-        path.stem for path in small.path.glob("*.csv")
+        path.stem for path in small_study.path.glob("*.csv")
     }
 
 
-def test_the_number_of_workers_does_not_matter(small, study_of, small_text, tables_of, tmp_path):
-    two = study_of(small_text, tmp_path / "two", jobs=2)
-    assert tables_of(two.path) == tables_of(small.path)
+def test_the_number_of_workers_does_not_matter(
+    small_study, study_of, small_study_text, tables_of, tmp_path
+):
+    two = study_of(small_study_text, tmp_path / "two", jobs=2)
+    assert tables_of(two.path) == tables_of(small_study.path)
 
 
 def test_failed_runs_are_listed_with_the_command_that_repeats_them(study_of, tmp_path):
@@ -94,10 +96,10 @@ def test_failed_runs_are_listed_with_the_command_that_repeats_them(study_of, tmp
     assert states[-1].made == 2
 
 
-def test_what_is_read_back_is_what_was_computed(small, tmp_path):
+def test_what_is_read_back_is_what_was_computed(small_study, tmp_path):
     import shutil
 
-    folder = shutil.copytree(small.path, tmp_path / "copy")
+    folder = shutil.copytree(small_study.path, tmp_path / "copy")
     kept = StudyFolder.open(folder).comparison
     (folder / "comparison.csv").unlink()
     pd.testing.assert_frame_equal(kept, StudyFolder.open(folder).comparison, check_dtype=False)
@@ -133,16 +135,16 @@ def test_seeds_are_added_until_the_interval_is_narrow(study_of, tmp_path):
     assert narrow.planned == len(narrow.runs)
 
 
-def test_the_order_of_the_runs_keeps_pairs_together(small):
-    planned = plan(small.definition, "s")
+def test_the_order_of_the_runs_keeps_pairs_together(small_study):
+    planned = plan(small_study.definition, "s")
     order = [run.id for run in planned.runs(planned.seeds)]
     assert order[:4] == ["c1-s1", "c2-s1", "c3-s1", "c4-s1"]
 
 
-def test_an_unusable_number_of_jobs_is_refused(study_of, small_text, tmp_path):
+def test_an_unusable_number_of_jobs_is_refused(study_of, small_study_text, tmp_path):
     with pytest.raises(GivewayError):
         run_study(
-            _definition(small_text),
+            _definition(small_study_text),
             "s",
             tmp_path / "x",
             StudyOptions(hang_limit=-1.0, jobs=1),

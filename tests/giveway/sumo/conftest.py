@@ -14,7 +14,7 @@ import sumo
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-LOOKS = Path(__file__).with_name("looks.py")
+LOOKS = Path(__file__).parents[2] / "support" / "sumo_persons.py"
 GRID = ["--grid", "--grid.number", "4", "--grid.length", "100", "--no-turnarounds"]
 PAVED = ["--sidewalks.guess", "--crossings.guess", "--walkingareas"]
 CITIES = {
@@ -42,7 +42,7 @@ def city(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 @pytest.fixture
 def look(tmp_path: Path, city: Callable[[str], Path]) -> Callable[..., Any]:
-    """Run one look of looks.py at ``plans`` in a city, in a process of its own.
+    """Run one look of sumo_persons.py at ``plans`` in a city, in a process of its own.
 
     libsumo holds one simulation per process, and a crash of SUMO's must be a test that fails.
     """

@@ -35,9 +35,9 @@ def test_image_axes_are_mirrored_into_a_right_handed_frame(tmp_path: Path) -> No
 
 
 def test_clips_are_found_in_any_folder_with_and_without_vehicles(
-    tmp_path, write_clip, straight
+    tmp_path, write_clip, straight_walks
 ) -> None:
-    x, v = straight(60, [[0, 0], [0, 3]], [[1, 0], [1, 0]])
+    x, v = straight_walks(60, [[0, 0], [0, 3]], [[1, 0], [1, 0]])
     write_clip(tmp_path / "trajectories_filtered" / "p2p_uni", "walk_01", x, v)
     cart = np.tile([9.0, 9.0, 0.0, 1.0], (60, 1))
     write_clip(tmp_path / "trajectories_filtered" / "vci_front", "drive_01", x, v, cart)
@@ -45,8 +45,10 @@ def test_clips_are_found_in_any_folder_with_and_without_vehicles(
     assert [(c.name, c.poses.shape[1]) for c in clips] == [("walk_01", 0), ("drive_01", 1)]
 
 
-def test_who_comes_late_or_leaves_early_is_not_seen_then(tmp_path, write_clip, straight) -> None:
-    x, v = straight(60, [[0, 0], [0, 3]], [[1, 0], [1, 0]])
+def test_who_comes_late_or_leaves_early_is_not_seen_then(
+    tmp_path, write_clip, straight_walks
+) -> None:
+    x, v = straight_walks(60, [[0, 0], [0, 3]], [[1, 0], [1, 0]])
     x[40:, 1] = np.nan
     clip = read_clip(write_clip(tmp_path, "walk_01", x, v))
     assert clip.seen.sum(axis=0).tolist() == [60, 40]
@@ -85,35 +87,35 @@ def test_a_wrong_folder_says_what_was_expected(tmp_path: Path) -> None:
         read_clips(tmp_path)
 
 
-def test_a_vehicle_without_pedestrians_is_refused(tmp_path, write_clip, straight) -> None:
-    x, v = straight(60, [[0, 0]], [[1, 0]])
+def test_a_vehicle_without_pedestrians_is_refused(tmp_path, write_clip, straight_walks) -> None:
+    x, v = straight_walks(60, [[0, 0]], [[1, 0]])
     cart = np.tile([9.0, 9.0, 0.0, 1.0], (60, 1))
     write_clip(tmp_path, "drive_01", x, v, cart).unlink()
     with pytest.raises(DatasetError, match="no pedestrians beside it"):
         read_clips(tmp_path)
 
 
-def test_two_clips_of_one_name_are_refused(tmp_path, write_clip, straight) -> None:
-    x, v = straight(60, [[0, 0]], [[1, 0]])
+def test_two_clips_of_one_name_are_refused(tmp_path, write_clip, straight_walks) -> None:
+    x, v = straight_walks(60, [[0, 0]], [[1, 0]])
     write_clip(tmp_path / "a", "walk_01", x, v)
     write_clip(tmp_path / "b", "walk_01", x, v)
     with pytest.raises(DatasetError, match="a clip of this name is in"):
         read_clips(tmp_path)
 
 
-def test_a_clip_too_short_says_how_long_it_must_be(tmp_path, write_clip, straight) -> None:
-    x, v = straight(37, [[0, 0]], [[1, 0]])
+def test_a_clip_too_short_says_how_long_it_must_be(tmp_path, write_clip, straight_walks) -> None:
+    x, v = straight_walks(37, [[0, 0]], [[1, 0]])
     write_clip(tmp_path, "walk_01", x, v)
     with pytest.raises(DatasetError, match="has 37 frames: expected at least 38"):
         validate(read_clips(tmp_path), SIM)
-    x, v = straight(38, [[0, 0]], [[1, 0]])
+    x, v = straight_walks(38, [[0, 0]], [[1, 0]])
     write_clip(tmp_path, "walk_01", x, v)
     assert len(validate(read_clips(tmp_path), SIM).cut) == 1
 
 
-def test_the_distance_is_to_the_carts_own_body(tmp_path, write_clip, straight) -> None:
+def test_the_distance_is_to_the_carts_own_body(tmp_path, write_clip, straight_walks) -> None:
     """1.0 m to the front, 1.2 m to the rear, 1.2 m wide, turned with its heading."""
-    x, v = straight(2, [[0, 3], [0, -3], [2, 0], [0.5, 0.5], [-1.6, 4.0]], [[0, 0]] * 5)
+    x, v = straight_walks(2, [[0, 3], [0, -3], [2, 0], [0.5, 0.5], [-1.6, 4.0]], [[0, 0]] * 5)
     heading_up = np.tile([0.0, 0.0, math.pi / 2, 1.0], (2, 1))
     clip = read_clip(write_clip(tmp_path, "drive_01", x, v, heading_up))
     distance = distance_to_bodies(clip.position, vehicle_rows(clip, Protocol()))[0]

@@ -26,8 +26,10 @@ def numbers(errors: pd.DataFrame, predictor: str, metric: str, subset: str = "al
     return rows.loc[rows["subset"] == subset, "mean"].tolist()
 
 
-def test_constant_velocity_is_exact_on_straight_tracks(tmp_path, write_clip, straight) -> None:
-    x, v = straight(180, [[0, 0], [3, 50]], [[1.2, 0.3], [-1.0, 0.0]])
+def test_constant_velocity_is_exact_on_straight_tracks(
+    tmp_path, write_clip, straight_walks
+) -> None:
+    x, v = straight_walks(180, [[0, 0], [3, 50]], [[1.2, 0.3], [-1.0, 0.0]])
     write_clip(tmp_path, "walk_01", x, v)
     errors = validate(read_clips(tmp_path), SIM).errors
     for predictor in ("CV", "goalCV"):
@@ -36,10 +38,10 @@ def test_constant_velocity_is_exact_on_straight_tracks(tmp_path, write_clip, str
 
 
 def test_a_velocity_that_is_wrong_by_so_much_gives_so_much_error(
-    tmp_path, write_clip, straight
+    tmp_path, write_clip, straight_walks
 ) -> None:
     """0.1 m/s too fast: after h frames 0.1 h dt off, and on average 0.1 (h + 1)/2 dt."""
-    x, v = straight(180, [[0, 0]], [[1.0, 0.0]])
+    x, v = straight_walks(180, [[0, 0]], [[1.0, 0.0]])
     write_clip(tmp_path, "walk_01", x, v + [0.1, 0.0])
     errors = validate(read_clips(tmp_path), SIM).errors
     h = np.array([22, 60, 120])
@@ -47,8 +49,10 @@ def test_a_velocity_that_is_wrong_by_so_much_gives_so_much_error(
     assert numbers(errors, "CV", "ADE") == pytest.approx(0.1 * (h + 1) / 2 * DT)
 
 
-def test_windows_begin_every_15_frames_after_the_first_15(tmp_path, write_clip, straight) -> None:
-    x, v = straight(100, [[0, 0]], [[1, 0]])
+def test_windows_begin_every_15_frames_after_the_first_15(
+    tmp_path, write_clip, straight_walks
+) -> None:
+    x, v = straight_walks(100, [[0, 0]], [[1, 0]])
     write_clip(tmp_path, "walk_01", x, v)
     clips = read_clips(tmp_path)
     cut = windows(clips, Protocol())
@@ -60,9 +64,9 @@ def test_windows_begin_every_15_frames_after_the_first_15(tmp_path, write_clip, 
 
 
 def test_who_is_lost_on_the_way_does_not_count_from_there_on(
-    tmp_path, write_clip, straight
+    tmp_path, write_clip, straight_walks
 ) -> None:
-    x, v = straight(60, [[0, 0], [0, 4]], [[1, 0], [1, 0]])
+    x, v = straight_walks(60, [[0, 0], [0, 4]], [[1, 0], [1, 0]])
     x[30:33, 1] = np.nan  # lost for three frames
     write_clip(tmp_path, "walk_01", x, v)
     cut = windows(read_clips(tmp_path), Protocol())
@@ -71,9 +75,9 @@ def test_who_is_lost_on_the_way_does_not_count_from_there_on(
     assert not np.isnan(first[:14, 1]).any()
 
 
-def test_near_is_who_comes_near_within_the_horizon(tmp_path, write_clip, straight) -> None:
+def test_near_is_who_comes_near_within_the_horizon(tmp_path, write_clip, straight_walks) -> None:
     """The walker passes a standing cart 1 m beside it; the other stays 20 m away."""
-    x, v = straight(200, [[-4.0, 1.6], [-4.0, 20.0]], [[1.0, 0.0], [1.0, 0.0]])
+    x, v = straight_walks(200, [[-4.0, 1.6], [-4.0, 20.0]], [[1.0, 0.0], [1.0, 0.0]])
     write_clip(tmp_path, "drive_01", x, v, np.tile([0.0, 0.0, 0.0, 0.0], (200, 1)))
     found = validate(read_clips(tmp_path), SIM)
     assert not found.found.near[1::2].any()
@@ -84,11 +88,11 @@ def test_near_is_who_comes_near_within_the_horizon(tmp_path, write_clip, straigh
 
 
 def test_a_cart_that_drives_at_a_walker_touches_constant_velocity_but_not_the_model(
-    tmp_path, write_clip, straight
+    tmp_path, write_clip, straight_walks
 ) -> None:
     """The data step aside and back; constant velocity, and the model without f_v, do not."""
     frames = 240
-    x, v = straight(frames, [[10.0, 0.3]], [[-0.8, 0.0]])
+    x, v = straight_walks(frames, [[10.0, 0.3]], [[-0.8, 0.0]])
     x[:, 0, 1] += 1.6 * np.exp(-(((np.arange(frames) - 190) / 30) ** 2))
     cart = np.zeros((frames, 4))
     cart[:, 0], cart[:, 3] = -8.0 + 2.0 * DT * np.arange(frames), 2.0
@@ -103,16 +107,16 @@ def test_a_cart_that_drives_at_a_walker_touches_constant_velocity_but_not_the_mo
 
 
 def test_clips_without_a_vehicle_have_no_contacts_and_nobody_near(
-    tmp_path, write_clip, straight
+    tmp_path, write_clip, straight_walks
 ) -> None:
-    x, v = straight(180, [[0, 0]], [[1, 0]])
+    x, v = straight_walks(180, [[0, 0]], [[1, 0]])
     write_clip(tmp_path, "walk_01", x, v)
     found = validate(read_clips(tmp_path), SIM)
     assert found.contacts.empty
     assert found.errors.query("subset == 'near'")["count"].sum() == 0
 
 
-def test_the_interval_is_that_of_drawing_clips(straight) -> None:
+def test_the_interval_is_that_of_drawing_clips(straight_walks) -> None:
     """Three clips with means 1, 2 and 6 of 10, 10 and 20 people: no resample is beyond 1 or 6."""
     draws = ClipBootstrap.of(3)
     count = np.array([10.0, 10.0, 20.0])

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 SUMO_HOME = Path(sumo.SUMO_HOME)
-WALKS = Path(__file__).with_name("walks.py")
+WALKS = Path(__file__).parents[2] / "support" / "sumo_walks.py"
 PAVED = ["--sidewalks.guess", "--crossings.guess", "--walkingareas"]
 NETWORKS = {
     # 3 x 3 signalised junctions, 120 m apart, A0 in the south-west, C2 in the north-east
@@ -90,7 +90,7 @@ def bundled_city() -> Path:
 def sumo_walks(
     built: Callable[[str], Built], tmp_path_factory: pytest.TempPathFactory, bundled_city: Path
 ) -> Callable[[str], dict[str, Any]]:
-    """What SUMO's own people do in a network (walks.py), once for each."""
+    """What SUMO's own people do in a network (sumo_walks.py), once for each."""
     done: dict[str, dict[str, Any]] = {}
 
     def walk(name: str) -> dict[str, Any]:

@@ -6,9 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from giveway.studies.definition import parse_definition
-from giveway.studies.study import StudyOptions, run_study
-
 SMALL = """
 name = "small"
 replications = 5
@@ -28,6 +25,9 @@ TABLES = ("runs", "cells", "levels", "comparison", "situations", "failures")
 def study_of():
     """Runs a study from its text: (text, folder, **options) -> StudyFolder."""
 
+    from giveway.studies.definition import parse_definition
+    from giveway.studies.study import StudyOptions, run_study
+
     def make(text: str, out: Path, watcher=None, **options):
         definition = parse_definition(text, "study.toml", Path())
         return run_study(
@@ -38,12 +38,12 @@ def study_of():
 
 
 @pytest.fixture(scope="session")
-def small_text() -> str:
+def small_study_text() -> str:
     return SMALL
 
 
 @pytest.fixture(scope="session")
-def small(study_of, tmp_path_factory):
+def small_study(study_of, tmp_path_factory):
     """The small study, finished; nobody changes its folder."""
     return study_of(SMALL, tmp_path_factory.mktemp("study") / "small")
 

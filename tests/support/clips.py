@@ -7,18 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from giveway.validation.protocol import Protocol
-
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
 RATE = 29.97  # [1/s] of the dataset's camera
-
-
-@pytest.fixture
-def protocol() -> Protocol:
-    return Protocol()
 
 
 @pytest.fixture
@@ -57,7 +50,7 @@ def write_clip() -> Callable[..., Path]:
 
 
 @pytest.fixture
-def straight() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
+def straight_walks() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
     """Positions and velocities (T, n, 2) of walkers at constant velocity."""
 
     def make(frames: int, start: list, velocity: list) -> tuple[np.ndarray, np.ndarray]:

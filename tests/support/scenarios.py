@@ -46,7 +46,7 @@ def call_sumo() -> Callable[..., str]:
 
 
 @pytest.fixture(scope="session")
-def city(tmp_path_factory: pytest.TempPathFactory, call_sumo: Callable[..., str]) -> Path:
+def small_city(tmp_path_factory: pytest.TempPathFactory, call_sumo: Callable[..., str]) -> Path:
     """A grid city with sidewalks, crossings, traffic lights, cars and persons: its .sumocfg."""
     folder = tmp_path_factory.mktemp("city")
     net = folder / "net.net.xml.gz"
@@ -75,13 +75,13 @@ def city(tmp_path_factory: pytest.TempPathFactory, call_sumo: Callable[..., str]
 
 
 @pytest.fixture
-def small(tmp_path: Path, city: Path) -> Callable[..., Path]:
+def small_scenario(tmp_path: Path, small_city: Path) -> Callable[..., Path]:
     """Write a .sumocfg of the given lines, with the city's network and one car, in a new folder."""
 
     def write(*lines: str, folder: str = "scenario") -> Path:
         place = tmp_path / folder
         place.mkdir(parents=True, exist_ok=True)
-        (place / "net.net.xml.gz").write_bytes((city.parent / "net.net.xml.gz").read_bytes())
+        (place / "net.net.xml.gz").write_bytes((small_city.parent / "net.net.xml.gz").read_bytes())
         (place / "car.rou.xml").write_text(
             '<routes><trip id="car" depart="0" from="A0A1" to="C1C2"/></routes>'
         )

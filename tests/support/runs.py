@@ -1,11 +1,15 @@
 """Real runs, shared by the tests that look at them."""
 
-from collections.abc import Callable
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import pytest
 
-import giveway
-from giveway.api import RunResult
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from giveway import RunResult
 
 
 @pytest.fixture(scope="session")
@@ -16,6 +20,8 @@ def run_once() -> Callable[..., RunResult]:
     def run(**config: object) -> RunResult:
         key = repr(sorted(config.items()))
         if key not in results:
+            import giveway
+
             results[key] = giveway.run(config)
         return results[key]
 
