@@ -17,10 +17,10 @@ import numpy as np
 
 from giveway.api import RunResult, simulate
 from giveway.assembly import assemble
-from giveway.configfile import Layer
-from giveway.loading import load
-from giveway.tables import navigational
-from giveway.tracks import Timings
+from giveway.config.layers import Layer
+from giveway.config.loading import load
+from giveway.geometry.angles import headings_to_angles
+from giveway.records.tracks import Timings
 
 
 def baseline(result: RunResult) -> float:
@@ -28,7 +28,7 @@ def baseline(result: RunResult) -> float:
     import libsumo
 
     ego, crowd = result.ego_track, result.crowd_track
-    angle = navigational(np.arctan2(crowd.vy, crowd.vx))
+    angle = headings_to_angles(np.arctan2(crowd.vy, crowd.vx))
     everybody = np.column_stack([crowd.x, crowd.y, angle])
     bounds = np.searchsorted(crowd.step, np.arange(len(ego.time) + 1))
     steps = [

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
     Critical,
     pedestrian_metrics,
@@ -20,7 +21,7 @@ from giveway.metrics import (
     summarise,
     time_to_collision,
 )
-from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
+from giveway.records.tracks import CrowdTrack, EgoTrack
 
 if TYPE_CHECKING:
     from collections.abc import Callable

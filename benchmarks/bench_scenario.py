@@ -30,12 +30,12 @@ import numpy as np
 from cities import City, build_city
 
 from giveway.api import RunResult, simulate
-from giveway.configfile import Layer
+from giveway.config.layers import Layer
+from giveway.config.loading import load
 from giveway.exchange import Exchange
-from giveway.loading import load
 from giveway.mirror import Mirror
+from giveway.records.tracks import Timings
 from giveway.sumo import SumoSession
-from giveway.tracks import Timings
 from giveway.yielding import Yielding
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from dataclasses import asdict
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from giveway.configfile import Layer
-from giveway.loading import load
+from giveway.config.layers import Layer
+from giveway.config.loading import load
 from giveway.studies.execution import cluster_executor, local_executor
 from giveway.studies.identity import software_identity
 from giveway.studies.performing import perform

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from giveway.jit import kernel
+from giveway.geometry.kernel import kernel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.tracks import CrowdTrack
+    from giveway.records.tracks import CrowdTrack
 
     Array = NDArray[np.float64]
     Flags = NDArray[np.uint8]

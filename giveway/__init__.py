@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from giveway._environment import check_rooms, choose_kernel_cache
+from giveway._version import __version__
 from giveway.errors import GivewayError
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from giveway.config import RunConfig
     from giveway.run_result import RunResult
 
-__version__ = "0.1.0"
 __all__ = ["GivewayError", "RunConfig", "RunResult", "__version__", "run"]
 
 check_rooms()

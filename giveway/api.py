@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from giveway import mismatch
 from giveway.assembly import Parts, assemble
-from giveway.configfile import dump_toml
+from giveway.config.layers import dump_toml
+from giveway.config.loading import as_layer, load
 from giveway.errors import GivewayError
 from giveway.heartbeat import Phase
 from giveway.interrupts import DeferredInterrupt
 from giveway.journal import Journal
-from giveway.loading import as_layer, load
 from giveway.manifest import manifest
 from giveway.recorder import Recorder
+from giveway.records.progress import Ending, Progress, Watcher
 from giveway.results import (
     release_folder,
     require_parquet,
@@ -27,7 +28,7 @@ from giveway.results import (
     write_results,
 )
 from giveway.run_result import RunResult, results_of_egos
-from giveway.simulation import Ending, Loop, Progress, Watcher
+from giveway.simulation import Loop
 from giveway.supervised import STDERR_FILE
 from giveway.vehicles import model_margin
 

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.departures import BODY, Departures
+from giveway.config.presets import parameters_of
+from giveway.departures import Departures
 from giveway.drivers import make_driver, make_regulator
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.exchange import Exchange
+from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.population import Population
-from giveway.presets import parameters_of
 from giveway.scenario_files import StartOptions, free_prefix, read_scenario
 from giveway.spawn import PREFIX, Spawned, spawn
 from giveway.sumo import SumoSession
 from giveway.sumo_types import all_types, inserted_type
-from giveway.tracks import VehicleShape
 from giveway.vehicles import model_remark, require_vehicles
 from giveway.walkways import WalkNetwork
 from giveway.yielding import Yielding

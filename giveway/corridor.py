@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from giveway.ego_path import body_pose
+from giveway.geometry.kernel import kernel
+from giveway.geometry.path import body_pose
 from giveway.in_front import closest_ahead, closest_in_sight, vehicles_in_front
-from giveway.jit import kernel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.ego_path import EgoPath
+    from giveway.geometry.path import EgoPath
 
     Array = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from giveway.jit import kernel
-from giveway.metrics.geometry import contact_interval, to_frame
+from giveway.geometry.contact import contact_interval, to_frame
+from giveway.geometry.kernel import kernel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,12 +6,13 @@ import difflib
 import math
 from typing import TYPE_CHECKING
 
+from giveway.config.sections import DEFAULT_SPEED
 from giveway.ego import Ego
-from giveway.ego_path import EgoPath
 from giveway.errors import ConfigError, ScenarioError
+from giveway.geometry.bodies import BODY, VehicleShape
+from giveway.geometry.path import EgoPath
 from giveway.lights import Lights
 from giveway.scenario_files import declares, undeclared
-from giveway.tracks import VehicleShape
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -22,9 +23,7 @@ if TYPE_CHECKING:
     from giveway.sumo import SumoSession
     from giveway.sumo_vehicles import VehicleState
 
-DEFAULT_SPEED = 4.0  # [m/s] of an inserted ego: the paper's
 LONGEST_WAIT = 86_400.0  # [s] for a departure in a scenario that never ends
-BODY = VehicleShape()
 _ON_THE_LINE = 0.01  # [m]
 _MERGE = 20.0  # [m] along which a vehicle beside its lane's centre line joins it
 _NAMES_KEPT = 100_000  # of vehicles that departed, to guess what was meant

@@ -23,9 +23,9 @@ from controller import (
     TunedPidParameters,
 )
 from fmus import FmuError
+from giveway.config.presets import parameters_of
 from giveway.ego import Driver
 from giveway.errors import ControlError, VehicleError
-from giveway.presets import parameters_of
 from giveway.vehicles import identified_reaction_time, model_margin, open_for
 from pedestrian_model import Predictor
 

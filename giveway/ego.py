@@ -15,7 +15,7 @@ from giveway.errors import ControlError, VehicleError
 from giveway.foresight import CrowdForesight
 from giveway.guard import Guard
 from giveway.perception import Perception
-from giveway.recorder import EgoRow
+from giveway.records.rows import EgoRow
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     from controller import Decision, Regulator, SafetyParameters
     from fmus import Vehicle
     from giveway.config import RunConfig
-    from giveway.ego_path import EgoPath, Pose
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.path import EgoPath, Pose
     from giveway.lights import Lights
-    from giveway.tracks import VehicleShape
     from pedestrian_model import Crowd, Predictor, Surroundings
 
     Array = NDArray[np.float64]

@@ -6,21 +6,18 @@ Every message is one line: the file, key or id, the value, what was expected, wh
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from giveway.run_result import RunResult
+from typing import Any
 
 
 class GivewayError(Exception):
     """The root of every error that giveway raises on purpose.
 
     Attributes:
-        result: what the run had recorded when it failed; None if it had not begun.
+        result: the :class:`giveway.RunResult` recorded until the failure; None before the start.
     """
 
     exit_code = 1
-    result: RunResult | None = None
+    result: Any = None  # not typed: errors are the ground floor and import nothing
 
 
 class InstallationError(GivewayError):

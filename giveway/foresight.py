@@ -8,16 +8,16 @@ import numpy as np
 
 from controller.planning import Prospect
 from giveway.courses import Alarm, courses
-from giveway.ego_path import body_pose
+from giveway.geometry.kernel import kernel
+from giveway.geometry.path import body_pose
 from giveway.in_front import closest_in_front, window
-from giveway.jit import kernel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from controller.planning import Manoeuvre
-    from giveway.ego_path import EgoPath
-    from giveway.tracks import VehicleShape
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.path import EgoPath
     from pedestrian_model import Crowd, Predictor, Surroundings
 
     Array = NDArray[np.float64]

@@ -11,8 +11,8 @@ from giveway.way_ahead import WayAhead
 if TYPE_CHECKING:
     from controller import Decision
     from giveway.config import RunConfig
-    from giveway.ego_path import EgoPath
-    from giveway.tracks import VehicleShape
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.path import EgoPath
     from pedestrian_model import Crowd
 
 

@@ -68,7 +68,7 @@ def forget_old_kernels(folder: Path) -> None:
 def _tiny_run() -> None:
     """Pass through every kernel once: a free drive, people in the way, cars, walls."""
     from giveway.api import run
-    from giveway.simulation import Ending
+    from giveway.records.progress import Ending
 
     people = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
     hard = {"soft": False, "gap_choice": False}  # nothing is planned then but braking by the PID

@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from giveway import __version__
+from giveway._version import __version__
 from giveway.scenario_files import read_scenario
 
 if TYPE_CHECKING:

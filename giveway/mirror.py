@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.errors import CrowdError, VehicleError
-from giveway.in_front import SIGHT
-from giveway.jit import kernel
+from giveway.geometry.angles import angle_of_velocity
+from giveway.geometry.kernel import kernel
+from giveway.geometry.passage import SIGHT
 from giveway.traffic import NO_VEHICLES, BackgroundVehicles
 from pedestrian_model import Vehicles
 
@@ -224,6 +225,6 @@ def walking_angles(
         if not np.isfinite(position[j, 0] + position[j, 1] + v_x + v_y):
             return j
         if v_x * v_x + v_y * v_y > _STANDING * _STANDING:
-            memory[present[j]] = (90.0 - np.degrees(np.arctan2(v_y, v_x))) % 360.0
+            memory[present[j]] = angle_of_velocity(v_x, v_y)
         angles[j] = memory[present[j]]
     return -1

@@ -11,8 +11,8 @@ from fmus.checking.manoeuvres import Trace
 from fmus.checking.prediction import position_errors
 
 if TYPE_CHECKING:
+    from giveway.records.tracks import EgoTrack
     from giveway.run_result import EgoResult
-    from giveway.tracks import EgoTrack
 
 _TOLERATED = 0.05  # [m] over the horizon
 _SURE = 0.1  # half width of M's 95 % interval, relative, up to which a fit is worth telling

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from giveway.in_front import look
-from giveway.jit import kernel
+from giveway.geometry.kernel import kernel
+from giveway.geometry.passage import look
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

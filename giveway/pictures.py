@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from giveway.geometry.bodies import VehicleShape
     from giveway.run_result import EgoResult, RunResult
-    from giveway.tracks import VehicleShape
     from pedestrian_model import VciParameters
 
     Array = NDArray[np.float64]

@@ -15,10 +15,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-LEDGER = ("added", "taken_over", "handed_back", "arrived", "continued", "walking")
-"""The entries of :attr:`Population.ledger`, in order."""
-
-
 class Population:
     """The crowd and the names of those in it.
 

@@ -7,47 +7,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.jit import kernel
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import kernel
 from giveway.journal import Journal
-from giveway.population import LEDGER
-from giveway.tracks import (
-    BackgroundTrack,
-    CrowdTrack,
-    EgoTrack,
-    PredictionTrack,
-    Timings,
-    VehicleShape,
-)
+from giveway.records.rows import EGO_NUMBERS, LEDGER, EgoRow
+from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from giveway.ego_path import Pose
     from giveway.traffic import BackgroundVehicles
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-
-EGO_NUMBERS = 12  # of an EgoRow, the pose's three among them
-
-
-class EgoRow(NamedTuple):
-    """An ego at one control instant, in the order of :class:`EgoTrack`'s arrays."""
-
-    time: float
-    position: float
-    pose: Pose
-    speed: float
-    acceleration: float
-    force: float
-    gap: float
-    reference_speed: float
-    vehicle_gap: float
-    stop_gap: float
-    acting: str
-    reason: str
-    status: str
-    iterations: int
 
 
 class Recorder:

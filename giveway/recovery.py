@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.api import keep
-from giveway.configfile import read_toml_text
+from giveway.config.layers import read_toml_text
+from giveway.config.loading import load
 from giveway.errors import CrashError
 from giveway.journal_reader import read_journal
-from giveway.loading import load
 from giveway.manifest import manifest
 from giveway.recorder import Tables
+from giveway.records.progress import Ending
 from giveway.results import release_folder
 from giveway.run_result import RunResult, results_of_egos
-from giveway.simulation import Ending
 
 if TYPE_CHECKING:
     from giveway.config import RunConfig

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.errors import ResultsError
-from giveway.scene import SCENE_FILE, scene_of
+from giveway.records.scene import SCENE_FILE
+from giveway.results_scene import scene_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
+    from giveway.records.columns import Column
     from giveway.run_result import RunResult
-    from giveway.schema import Column
 
 SUMO_FOLDER = "sumo"
 MARKS = ("", *(f"_{number}" for number in range(2, 100)))

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from giveway.configfile import dump_toml
+from giveway.config.layers import dump_toml
+from giveway.config.presets import parameters_of
+from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
     PEDESTRIAN_FIELDS,
     SUMMARY_FIELDS,
@@ -16,8 +18,7 @@ from giveway.metrics import (
     pedestrian_metrics,
     summarise,
 )
-from giveway.presets import parameters_of
-from giveway.schema import (
+from giveway.records.columns import (
     EGO_COLUMNS,
     PREDICTION_COLUMNS,
     SUMMARY_HEAD,
@@ -25,16 +26,9 @@ from giveway.schema import (
     TRAJECTORY_COLUMNS,
     Column,
 )
-from giveway.simulation import Ending
+from giveway.records.progress import Ending
+from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
 from giveway.tables import ego_table, prediction_table, timing_table, trajectory_table
-from giveway.tracks import (
-    BackgroundTrack,
-    CrowdTrack,
-    EgoTrack,
-    PredictionTrack,
-    Timings,
-    VehicleShape,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -16,9 +16,6 @@ algebraic loop.
 
 from __future__ import annotations
 
-import enum
-from collections.abc import Callable
-from dataclasses import dataclass
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -31,42 +28,18 @@ from giveway.disturbance import disturbance_of
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.heartbeat import Phase
 from giveway.mirror import Mirror
+from giveway.records.progress import Ending, Progress, Watcher
 from giveway.standstill import Standstill
 from pedestrian_model import PedestrianModelError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from giveway.assembly import Parts
     from giveway.ego import Ego
     from giveway.recorder import Recorder
 
 Array = NDArray[np.float64]
-
-
-class Ending(enum.StrEnum):
-    """Why a run, or one ego's drive, ended."""
-
-    COMPLETED = "completed"  # the ego has driven its distance
-    TIME_LIMIT = "time limit"  # it has not within the time limit
-    SCENARIO_END = "scenario end"  # the scenario's own end came first
-    INTERRUPTED = "interrupted"  # the user wanted it to end
-    FAILED = "failed"  # an error ended it
-    CRASHED = "crashed"  # native code ended or hung its process
-
-
-@dataclass(frozen=True)
-class Progress:
-    """Where a run stands, for whoever watches."""
-
-    time: float  # [s] since the run's first instant; 0 while SUMO runs up to it by itself
-    clock: float  # [s] SUMO's
-    position: float  # [m] driven by the first ego on the road; nan without one
-    goal: float  # [m] it is to drive; nan without one
-    speed: float  # [m/s] of it; nan without one
-    acting: str  # which controller acts; empty without an ego
-    pedestrians: int  # in the crowd
-
-
-Watcher = Callable[[Progress], None]
 
 
 def looks_ahead(period: float | None, time_step: float) -> int:

@@ -12,8 +12,8 @@ from giveway.errors import CrowdError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.ego_path import EgoPath, Pose
-    from giveway.sections import CrowdConfig
+    from giveway.config.sections import CrowdConfig
+    from giveway.geometry.path import EgoPath, Pose
 
     Array = NDArray[np.float64]
 

@@ -23,19 +23,19 @@ from typing import TYPE_CHECKING, Any, Self
 
 from giveway.errors import InstallationError, ScenarioError, SumoError
 from giveway.footpaths import FootPaths
+from giveway.geometry.angles import heading_to_angle
 from giveway.handover import NOWHERE
 from giveway.lanes import Lanes
 from giveway.native_stderr import NativeStderr
 from giveway.scenario_files import prepare_start
 from giveway.sumo_types import PEDESTRIAN_TYPE
 from giveway.sumo_vehicles import SumoVehicles
-from giveway.traffic import heading_to_angle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from types import TracebackType
 
-    from giveway.ego_path import Pose
+    from giveway.geometry.path import Pose
     from giveway.scenario_files import ScenarioFiles, StartOptions
 
 POSITION_TOLERANCE = 1e-6  # [m] between our state and SUMO's after each step

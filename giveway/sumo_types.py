@@ -10,7 +10,7 @@ from giveway.errors import ScenarioError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from giveway.tracks import VehicleShape
+    from giveway.geometry.bodies import VehicleShape
 
 EGO_TYPE = "giveway_ego"
 PEDESTRIAN_TYPE = "giveway_pedestrian"

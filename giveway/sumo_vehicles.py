@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.errors import ScenarioError, SumoError
+from giveway.geometry.angles import angle_to_heading, angles_to_headings
 from giveway.sumo_types import ego_type, inserted_type
-from giveway.traffic import NO_VEHICLES, BackgroundVehicles, angle_to_heading
+from giveway.traffic import NO_VEHICLES, BackgroundVehicles
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
+    from giveway.geometry.bodies import VehicleShape
     from giveway.lanes import Lanes
-    from giveway.tracks import VehicleShape
 
     Array = NDArray[np.float64]
 
@@ -96,7 +97,7 @@ class SumoVehicles:
             types=types,
             x=np.ascontiguousarray(places[:, 0]),
             y=np.ascontiguousarray(places[:, 1]),
-            heading=np.radians(90.0 - np.array(list(map(self._angle, ids)))),
+            heading=angles_to_headings(np.array(list(map(self._angle, ids)))),
             speed=np.array(list(map(self._speed, ids))),
             length=np.array(lengths),
             width=np.array(widths),

@@ -1,4 +1,4 @@
-"""The run's tables as pandas frames, columns as in :mod:`giveway.schema`."""
+"""The run's tables as pandas frames, columns as in :mod:`giveway.records.columns`."""
 
 from __future__ import annotations
 
@@ -7,23 +7,30 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from giveway.schema import EGO_COLUMNS, PREDICTION_COLUMNS, TIMING_COLUMNS, TRAJECTORY_COLUMNS
+from giveway.geometry.angles import headings_to_angles
+from giveway.records.columns import (
+    EGO_COLUMNS,
+    PREDICTION_COLUMNS,
+    TIMING_COLUMNS,
+    TRAJECTORY_COLUMNS,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
+    from giveway.records.tracks import (
+        BackgroundTrack,
+        CrowdTrack,
+        EgoTrack,
+        PredictionTrack,
+        Timings,
+    )
 
     Array = NDArray[np.float64]
 
 _STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
-
-
-def navigational(heading: Array) -> Array:
-    """SUMO's angles [deg, 0 = north, clockwise] of headings [rad]."""
-    return np.mod(np.round(90.0 - np.degrees(heading), 6), 360.0)
 
 
 def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
@@ -36,7 +43,7 @@ def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
         track.position,
         track.front_x,
         track.front_y,
-        navigational(track.heading),
+        headings_to_angles(track.heading),
         track.speed,
         track.acceleration,
         track.force,
@@ -113,13 +120,13 @@ def _moving(
 ) -> pd.DataFrame:
     velocity = {"vx": speed * np.cos(heading), "vy": speed * np.sin(heading)}
     placed = {"time": time, "id": name, "type": kind, "x": x, "y": y}
-    angle = navigational(heading)
+    angle = headings_to_angles(heading)
     return pd.DataFrame({**placed, "angle": angle, "speed": speed, **velocity})
 
 
 def _walking(time: Array, crowd: CrowdTrack) -> pd.DataFrame:
     speed = np.hypot(crowd.vx, crowd.vy)
-    angle = navigational(np.arctan2(crowd.vy, crowd.vx))
+    angle = headings_to_angles(np.arctan2(crowd.vy, crowd.vx))
     angle = np.where(speed < _STANDING, np.nan, angle)
     angles = pd.Series(angle).groupby(crowd.pedestrian).ffill().fillna(0.0)
     ids = np.array(crowd.ids, dtype=object)[crowd.pedestrian]

@@ -1,8 +1,7 @@
-"""SUMO's own vehicles at one instant, and its convention of angles."""
+"""SUMO's own vehicles at one instant."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -32,13 +31,3 @@ class BackgroundVehicles:
 
 
 NO_VEHICLES = BackgroundVehicles((), (), *(np.empty(0) for _ in range(6)))
-
-
-def heading_to_angle(heading: float) -> float:
-    """SUMO's navigational angle [deg, 0 = north, clockwise] of a heading [rad]."""
-    return (90.0 - math.degrees(heading)) % 360.0
-
-
-def angle_to_heading(angle: float) -> float:
-    """The heading [rad, counter-clockwise from +x] of SUMO's navigational angle [deg]."""
-    return math.radians(90.0 - angle)

@@ -23,7 +23,7 @@ from fmus import (
 )
 from fmus.checking import convergence, goes_the_wrong_way, opener_of, remedy
 from fmus.profile import Axis
-from giveway.departures import DEFAULT_SPEED
+from giveway.config.sections import DEFAULT_SPEED
 from giveway.errors import VehicleError
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from fmus.profile import FittedModel
     from giveway.config import RunConfig
-    from giveway.sections import VehicleConfig
+    from giveway.config.sections import VehicleConfig
 
 _CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
 _SAME_STEP = 1e-6  # relative

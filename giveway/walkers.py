@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.footpaths import Foot, FootPaths
+from giveway.geometry.angles import angle_to_heading
 from giveway.handover import Handover, Walk
-from giveway.traffic import angle_to_heading
 from giveway.walk_speeds import WalkSpeeds
 
 if TYPE_CHECKING:

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.ego_path import body_pose, segment_at
-from giveway.jit import kernel
+from giveway.geometry.kernel import kernel
+from giveway.geometry.path import body_pose, segment_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.ego_path import EgoPath
+    from giveway.geometry.path import EgoPath
 
     Array = NDArray[np.float64]
 

@@ -61,7 +61,7 @@ def _with_flags(
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        from giveway import __version__
+        from giveway._version import __version__
 
         typer.echo(f"giveway {__version__}")
         raise typer.Exit
@@ -121,8 +121,8 @@ def _config(
 ) -> None:
     """Print the effective configuration as TOML, with units."""
     from giveway.cli.run import layers_of
-    from giveway.configfile import dump_toml
-    from giveway.loading import load
+    from giveway.config.layers import dump_toml
+    from giveway.config.loading import load
 
     typer.echo(dump_toml(load(layers_of(scenario, config, settings))[0]), nl=False)
 

@@ -10,9 +10,9 @@ from rich.markup import escape
 from rich.table import Table
 
 from giveway.cli.counting import counting
+from giveway.config.presets import SUFFIX, parameters_of, preset_text
 from giveway.errors import ConfigError, ResultsError
 from giveway.kernels import compile_kernels_once
-from giveway.presets import SUFFIX, parameters_of, preset_text
 from giveway.validation import Calibration, calibrate, read_clips
 from giveway.validation.fitting import FACTOR
 

@@ -12,9 +12,9 @@ from fmus.controller_fmu.parameters import CONTROLLER_FILES, ControllerParameter
 from fmus.errors import FmuError
 from giveway.assembly import control_step
 from giveway.cli.run import layers_of
+from giveway.config.loading import load
 from giveway.drivers import make_regulator
 from giveway.errors import ConfigError, ControlError, ResultsError
-from giveway.loading import load
 from giveway.scenario_files import read_scenario
 from giveway.vehicles import model_margin
 

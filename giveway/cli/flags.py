@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from giveway.configfile import Location, Option, options
+from giveway.config.layers import Location, Option, options
 
 if typing.TYPE_CHECKING:
     from collections.abc import Callable

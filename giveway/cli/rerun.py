@@ -11,8 +11,8 @@ from giveway.cli import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
 from giveway.cli.run import Outputs, show
 from giveway.kernels import compile_kernels_once
+from giveway.records.progress import Ending
 from giveway.results import check_folder
-from giveway.simulation import Ending
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import config_of, rerun
 

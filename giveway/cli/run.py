@@ -11,12 +11,12 @@ from rich.markup import escape
 
 from giveway.cli import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
-from giveway.configfile import Layer, read_toml
+from giveway.config.layers import Layer, read_toml
+from giveway.config.loading import load
 from giveway.errors import GivewayError
-from giveway.loading import load
+from giveway.records.progress import Ending
 from giveway.results import check_folder, require_parquet
 from giveway.scenario_files import read_scenario
-from giveway.simulation import Ending
 from giveway.zone import Zone
 
 if TYPE_CHECKING:

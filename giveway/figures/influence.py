@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from giveway.figures.style import BLACK, BLUE, keep_panels, styled
-from giveway.tracks import VehicleShape
+from giveway.geometry.bodies import VehicleShape
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

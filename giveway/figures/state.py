@@ -25,7 +25,7 @@ from giveway.figures.style import (
     quiet_grid,
     styled,
 )
-from giveway.tracks import EgoTrack
+from giveway.records.tracks import EgoTrack
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-    from giveway.tracks import EgoTrack
+    from giveway.records.tracks import EgoTrack
 
 DASHES = (0, (4, 2))
 

@@ -21,7 +21,8 @@ from giveway.metrics.groups import PedestrianGroups
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from giveway.tracks import BackgroundTrack, CrowdTrack, EgoTrack, VehicleShape
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack
 
 Road = Sequence[NDArray[np.float64]]
 """Lines (k, 2) [m] to draw underneath; one that ends where it starts is a filled area."""

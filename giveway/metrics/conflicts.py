@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.jit import kernel
-from giveway.metrics.geometry import contact_interval, signed_distance, to_frame
+from giveway.geometry.contact import contact_interval, signed_distance, to_frame
+from giveway.geometry.kernel import kernel
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.records.tracks import CrowdTrack, EgoTrack
 
 
 def clearance(

@@ -10,7 +10,8 @@ import numpy as np
 from giveway.metrics.conflicts import time_to_collision
 
 if TYPE_CHECKING:
-    from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.records.tracks import CrowdTrack, EgoTrack
 
 CRITICAL_TTC = 1.5
 """[s] Below it an encounter is a conflict: the threshold of SSAM (Gettman & Head 2003, FHWA), in

@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.jit import kernel
+from giveway.geometry.contact import contact_interval, to_frame
+from giveway.geometry.kernel import kernel
 from giveway.metrics.conflicts import as_floats, as_integers, centre_poses, check_records
-from giveway.metrics.geometry import contact_interval, to_frame
 from giveway.metrics.groups import PedestrianGroups
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.records.tracks import CrowdTrack, EgoTrack
 
 BLOCK = 8  # ego instants that are ruled out together
 SECTIONS = 16  # of a control period, to find the smallest separation in it

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import get_args, get_type_hints
 
-from giveway.schema import Column, ColumnType
+from giveway.records.columns import Column, ColumnType
 
 _TYPES: dict[type, ColumnType] = {
     bool: "boolean",

@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.tracks import CrowdTrack
+    from giveway.records.tracks import CrowdTrack
 
 
 class PedestrianGroups:

@@ -16,7 +16,8 @@ from giveway.metrics.groups import PedestrianGroups
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.records.tracks import CrowdTrack, EgoTrack
 
 
 class PedestrianRow:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.metrics.critical import Critical
-    from giveway.tracks import EgoTrack
+    from giveway.records.tracks import EgoTrack
 
 STOP_SPEED = 0.2
 """[m/s] Below it the ego stands: Yang & Özgüner 2019, section 2.1, treat it as an obstacle then."""

@@ -12,9 +12,10 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from shapely import LineString
 
+from giveway.config.presets import parameters_of
 from giveway.errors import ResultsError
+from giveway.geometry.angles import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
-from giveway.presets import parameters_of
 from giveway.replays.contours import influence_contours
 from giveway.replays.packing import (
     Frame,
@@ -231,7 +232,7 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
         "frame": packed(frame.index(rows["time"]), np.uint32),
         "x": frame.across(rows["x"]),
         "y": frame.up(rows["y"]),
-        "heading": packed(np.radians(90.0 - rows["angle"].to_numpy(np.float64)), np.float32),
+        "heading": packed(angles_to_headings(rows["angle"].to_numpy(np.float64)), np.float32),
         "path": _path(rows, frame),
         "station": packed(rows["position"] - rows["position"].iloc[0], np.float32),
         **{key: packed(rows[key].to_numpy(np.float64), np.float32) for key in _NUMBERS},
@@ -244,7 +245,7 @@ def _path(rows: pd.DataFrame, frame: Frame) -> dict[str, str]:
     The way that it would have taken is not on record.
     """
     points = rows[["x", "y"]].to_numpy(np.float64)
-    heading = np.radians(90.0 - float(rows["angle"].iloc[-1]))
+    heading = angle_to_heading(float(rows["angle"].iloc[-1]))
     beyond = points[-1] + _BEYOND * np.array((np.cos(heading), np.sin(heading)))
     line = np.array(LineString([*points, beyond]).simplify(0.01).coords)
     return {"x": frame.across(line[:, 0]), "y": frame.up(line[:, 1])}

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from giveway.configfile import build_config, read_toml
+from giveway.config.layers import build_config, read_toml
 from giveway.errors import ConfigError, ResultsError
-from giveway.scene import Scene
-from giveway.schema import EGO_COLUMNS, PREDICTION_COLUMNS, TRAJECTORY_COLUMNS
+from giveway.records.columns import EGO_COLUMNS, PREDICTION_COLUMNS, TRAJECTORY_COLUMNS
+from giveway.records.scene import Scene
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.config import RunConfig
-    from giveway.schema import Column
+    from giveway.records.columns import Column
 
     Array = NDArray[np.float64]
 

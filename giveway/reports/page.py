@@ -14,7 +14,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from giveway.configfile import options
+from giveway.config.layers import options
 from giveway.errors import ResultsError
 from giveway.figures.style import save_figure
 from giveway.metrics import SUMMARY_FIELDS

@@ -11,9 +11,9 @@ from typing import Annotated, Any, Literal
 import tomlkit
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
-from giveway.configfile import anchored
+from giveway.config.layers import anchored
+from giveway.config.option import Section
 from giveway.errors import ConfigError
-from giveway.sections import Section
 
 Situation = Literal["general", "stop-and-wait", "non-stop"]
 

@@ -7,7 +7,7 @@ import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from giveway.configfile import Layer, merge, options
+from giveway.config.layers import Layer, merge, options
 from giveway.errors import ConfigError
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.studies.statistics.columns import (

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from giveway.metrics import SUMMARY_FIELDS
-from giveway.schema import Column
+from giveway.records.columns import Column
 from giveway.studies.record import CRASHED, run_id
 
 if TYPE_CHECKING:

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 from giveway._environment import ROOMS
 from giveway.config import RunConfig
+from giveway.config.presets import is_preset_file
 from giveway.errors import ConfigError, GivewayError
 from giveway.manifest import scenario_hashes, scenario_inputs, sha256, software_versions
-from giveway.presets import is_preset_file
 from giveway.scenario_files.extra_options import parse_options
 from giveway.vehicles import fmu_path
 from sumo_scenarios import ScenarioError, find

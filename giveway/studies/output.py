@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from giveway.records.columns import Column
 from giveway.results import package_of
-from giveway.schema import Column
 from giveway.studies.frames import (
     COMPUTING_COLUMNS,
     EXECUTION_COLUMNS,

@@ -23,8 +23,8 @@ from giveway.studies.record import FAILED, Computing, RunRecord, Scalar, Task
 from sumo_scenarios import find
 
 if TYPE_CHECKING:
+    from giveway.records.tracks import Timings
     from giveway.run_result import RunResult
-    from giveway.tracks import Timings
 
 
 _LONGEST_FAILURE = 2000  # characters

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from giveway.assembly import control_step
+from giveway.config.loading import load
 from giveway.errors import ConfigError, GivewayError
-from giveway.loading import load
 from giveway.scenario_files import read_scenario
 from giveway.studies.design import design
 from giveway.studies.identity import cell_digest, input_hashes, run_key, software_identity

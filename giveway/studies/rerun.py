@@ -6,18 +6,18 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from giveway.api import run_layers
-from giveway.configfile import Layer
+from giveway.config.layers import Layer
+from giveway.config.loading import load
 from giveway.errors import GivewayError
-from giveway.loading import load
-from giveway.simulation import Ending
+from giveway.records.progress import Ending
 from giveway.studies.performing import rows_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from giveway.config import RunConfig
+    from giveway.records.progress import Watcher
     from giveway.run_result import RunResult
-    from giveway.simulation import Watcher
     from giveway.studies.folder import StudyFolder
     from giveway.studies.record import RunRecord, Scalar
 

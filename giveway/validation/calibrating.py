@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.config.presets import NAMES, require_parameter
 from giveway.errors import ConfigError, DatasetError
-from giveway.presets import NAMES, require_parameter
 from giveway.validation.contacts import contact_table
 from giveway.validation.fitting import Objective, Search, average
 from giveway.validation.intervals import TAILS, ClipBootstrap

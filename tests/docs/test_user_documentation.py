@@ -8,9 +8,14 @@ from typing import get_args
 import pytest
 
 from fmus import VehicleProfile, make_profile
-from giveway.configfile import options
+from giveway.config.layers import options
 from giveway.metrics import PEDESTRIAN_FIELDS, SUMMARY_FIELDS
-from giveway.schema import EGO_COLUMNS, PREDICTION_COLUMNS, TIMING_COLUMNS, TRAJECTORY_COLUMNS
+from giveway.records.columns import (
+    EGO_COLUMNS,
+    PREDICTION_COLUMNS,
+    TIMING_COLUMNS,
+    TRAJECTORY_COLUMNS,
+)
 
 DOCS = Path(__file__).parents[2] / "docs"
 

@@ -16,7 +16,7 @@ from controller import (
     Regulator,
 )
 from giveway.api import RunResult
-from giveway.simulation import Ending, Progress
+from giveway.records.progress import Ending, Progress
 from pedestrian_model import SIM, Crowd, CrowdModel, Predictor, Vehicles, constant_speed
 
 Run = Callable[..., RunResult]

@@ -9,17 +9,18 @@ import pytest
 
 import giveway
 from giveway.assembly import Parts, assemble
-from giveway.configfile import Layer
-from giveway.ego_path import Pose
+from giveway.config.layers import Layer
+from giveway.config.loading import load
 from giveway.errors import ConfigError, GivewayError, SumoError
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import Pose
 from giveway.interrupts import DeferredInterrupt
-from giveway.loading import load
 from giveway.recorder import Recorder
+from giveway.records.progress import Ending
 from giveway.scenario_files import StartOptions, read_scenario
-from giveway.simulation import Ending, Loop
+from giveway.simulation import Loop
 from giveway.sumo import SumoSession
 from giveway.sumo_types import all_types, inserted_type
-from giveway.tracks import VehicleShape
 from sumo_scenarios import find
 
 PLAZA = find("shared_space").config_file
@@ -124,7 +125,7 @@ def test_an_impatient_ctrl_c_is_noted_and_python_goes_on() -> None:
 
 
 def test_angles_convert_between_the_conventions() -> None:
-    from giveway.traffic import angle_to_heading, heading_to_angle
+    from giveway.geometry.angles import angle_to_heading, heading_to_angle
 
     assert heading_to_angle(0.0) == 90.0
     assert heading_to_angle(math.pi / 2) == pytest.approx(0.0)

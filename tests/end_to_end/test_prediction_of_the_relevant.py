@@ -11,9 +11,9 @@ from controller.planning import Manoeuvre
 from giveway.config import RunConfig
 from giveway.drivers import make_driver, make_regulator
 from giveway.ego import Ego
-from giveway.ego_path import EgoPath
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import EgoPath
 from giveway.lights import Lights
-from giveway.tracks import VehicleShape
 from pedestrian_model import OPEN_GROUND, Crowd
 
 BEND = [(-50.0, 0.0), (0.0, 0.0), (30.0, 0.0), (60.0, 20.0), (100.0, 60.0)]

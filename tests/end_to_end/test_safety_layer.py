@@ -8,9 +8,9 @@ import pytest
 from controller import Decision, SafetyParameters
 from giveway.api import RunResult
 from giveway.config import RunConfig
-from giveway.ego_path import EgoPath
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import EgoPath
 from giveway.guard import Guard
-from giveway.tracks import VehicleShape
 from giveway.way_ahead import WayAhead
 from pedestrian_model import Crowd
 

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import libsumo
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.scenario_files import StartOptions, prepare_start, read_scenario
 from giveway.sumo_types import all_types
-from giveway.tracks import VehicleShape
 
 
 def main(request: dict) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from giveway.schema import Column
+from giveway.records.columns import Column
 
 _WHO = (
     Column("ego", "string", None, "SUMO id of the ego; empty: the run has none"),

@@ -12,7 +12,7 @@ import pytest
 import shapely
 
 import giveway
-from giveway.simulation import Ending
+from giveway.records.progress import Ending
 
 if TYPE_CHECKING:
     from pathlib import Path

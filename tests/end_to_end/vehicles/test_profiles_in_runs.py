@@ -8,10 +8,10 @@ import pytest
 import tomlkit
 
 import giveway as library
-from giveway.configfile import Layer, read_toml
+from giveway.config.layers import Layer, read_toml
+from giveway.config.loading import load
 from giveway.drivers import make_regulator
 from giveway.errors import ConfigError, VehicleError
-from giveway.loading import load
 from giveway.vehicles import model_margin
 
 H = 0.05  # [s]

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 import giveway
+from giveway.config.loading import as_layer, load
+from giveway.config.presets import parameters_of, preset_text
 from giveway.errors import ConfigError
-from giveway.loading import as_layer, load
-from giveway.presets import parameters_of, preset_text
 from giveway.studies.identity import cell_digest, input_hashes
 from pedestrian_model import PRESETS, SIM, TABLE2, VciParameters
 

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from giveway.config import RunConfig
-from giveway.configfile import Layer, build_config, dump_toml, flag_of, options, read_toml
+from giveway.config.layers import Layer, build_config, dump_toml, flag_of, options, read_toml
+from giveway.config.loading import as_layer, load
 from giveway.errors import ConfigError, ScenarioError
-from giveway.loading import as_layer, load
 
 
 def explain(values: dict, *, flags: bool = False) -> str:

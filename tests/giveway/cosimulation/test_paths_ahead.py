@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from giveway.ego_path import EgoPath
+from giveway.geometry.path import EgoPath
 from giveway.in_front import closest_in_front
 from giveway.lanes import Lanes
 from giveway.paths_ahead import Ways, gaps_ahead, sort_people

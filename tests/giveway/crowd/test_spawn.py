@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from giveway.ego_path import EgoPath
+from giveway.config.sections import CrowdConfig
 from giveway.errors import CrowdError
-from giveway.sections import CrowdConfig
+from giveway.geometry.path import EgoPath
 from giveway.spawn import spawn
 
 AXIS = EgoPath.through([(-20, 0), (100, 0)])

@@ -9,9 +9,9 @@ import shapely
 from controller import LongitudinalModel, SafetyLayer, SafetyParameters
 from controller.planning import Manoeuvre
 from giveway.courses import Alarm, is_threat
-from giveway.ego_path import EgoPath
 from giveway.foresight import PASSED, CrowdForesight, assess
-from giveway.tracks import VehicleShape
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, SIM, Crowd, Predictor
 
 N, DT = 20, 0.05

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from giveway.tracks import CrowdTrack, EgoTrack, VehicleShape
+from giveway.geometry.bodies import VehicleShape
+from giveway.records.tracks import CrowdTrack, EgoTrack
 
 DT = 0.05  # [s]
 BODY_RADIUS = 0.27  # [m]

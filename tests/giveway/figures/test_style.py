@@ -9,7 +9,7 @@ import matplotlib as mpl
 import pytest
 
 from giveway.figures import save_figure, state_figure, top_view_figure
-from giveway.tracks import VehicleShape
+from giveway.geometry.bodies import VehicleShape
 
 
 def draw(run, kind):

@@ -12,7 +12,8 @@ from matplotlib.patches import Polygon
 
 from giveway.figures import crowd_view_figure, top_view_figure
 from giveway.figures.top_view import SLENDEREST, VIEW, rectangle
-from giveway.tracks import BackgroundTrack, CrowdTrack, VehicleShape
+from giveway.geometry.bodies import VehicleShape
+from giveway.records.tracks import BackgroundTrack, CrowdTrack
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from giveway.corridor import Corridor
-from giveway.ego_path import EgoPath
 from giveway.errors import ScenarioError
+from giveway.geometry.path import EgoPath
 
 L_SHAPE = [(0, 0), (10, 0), (10, 20)]  # 10 m east, then 20 m north
 

@@ -18,9 +18,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.contact import contact_interval, signed_distance
 from giveway.metrics import clearance, deceleration_to_avoid_crash, time_to_collision
-from giveway.metrics.geometry import contact_interval, signed_distance
-from giveway.tracks import VehicleShape
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27

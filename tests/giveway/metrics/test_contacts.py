@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import clearance, conflicts, contacts, pedestrian_metrics
-from giveway.tracks import VehicleShape
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27

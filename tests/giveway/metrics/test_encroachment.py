@@ -9,8 +9,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import post_encroachment_time
-from giveway.tracks import VehicleShape
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
     PEDESTRIAN_FIELDS,
     SUMMARY_FIELDS,
@@ -19,7 +20,7 @@ from giveway.metrics import (
     summarise,
     waiting_times,
 )
-from giveway.tracks import CrowdTrack, VehicleShape
+from giveway.records.tracks import CrowdTrack
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27

@@ -10,8 +10,8 @@ import pytest
 
 from giveway import run
 from giveway.api import run_layers
+from giveway.config.loading import as_layer
 from giveway.journal_reader import read_journal
-from giveway.loading import as_layer
 from giveway.recorder import Tables
 from giveway.simulation import looks_ahead
 

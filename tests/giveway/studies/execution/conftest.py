@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import psutil
 import pytest
 
-from giveway.configfile import Layer
-from giveway.loading import load
+from giveway.config.layers import Layer
+from giveway.config.loading import load
 from giveway.studies.identity import software_identity
 from giveway.studies.performing import perform
 from giveway.studies.record import RunRecord, Task

@@ -16,14 +16,6 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class VehicleShape:
-    """A rectangle, placed by the centre of its front bumper and its heading."""
-
-    length: float = 5.0  # [m]
-    width: float = 2.0  # [m]
-
-
-@dataclass(frozen=True)
 class EgoTrack:
     """The ego at the T control instants t_k; ``front_*`` is the centre of its front bumper."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import hypot, inf, sqrt
 
-from giveway.jit import kernel
+from giveway.geometry.kernel import kernel
 
 AT_REST = 1e-12
 """[m/s] Relative speeds below this are none at all: contact would be ages away."""

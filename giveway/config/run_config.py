@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
 
-from giveway.control_sections import (
+from giveway.config.controller_sections import (
     MpcConfig,
     PerceptionConfig,
     PidConfig,
@@ -18,15 +18,14 @@ from giveway.control_sections import (
     SafetyConfig,
     TunedPidConfig,
 )
-from giveway.sections import (
+from giveway.config.option import Section, option
+from giveway.config.sections import (
     CrowdConfig,
     EgoConfig,
     RecordConfig,
-    Section,
     SumoConfig,
     TrafficConfig,
     VehicleConfig,
-    option,
 )
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fmus import FmuError, read_profile
-from giveway.config import RunConfig
-from giveway.configfile import Layer, build_config, merge, read_toml
+from giveway.config.layers import Layer, build_config, merge, read_toml
+from giveway.config.presets import parameters_of
+from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError, ScenarioError, VehicleError
-from giveway.presets import parameters_of
 from sumo_scenarios import ScenarioError as UnknownScenario
 from sumo_scenarios import available, find
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from giveway.errors import ScenarioError
-from giveway.jit import kernel
+from giveway.geometry.kernel import kernel
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from giveway.sections import Preset, Section, option
+from giveway.config.option import Preset, Section, option
 
 
 class RegulationConfig(Section):

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, get_args
 import tomlkit
 from pydantic import ValidationError
 
-from giveway.config import RunConfig
+from giveway.config.option import Section
+from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError
-from giveway.sections import Section
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo

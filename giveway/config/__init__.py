@@ -1,0 +1,5 @@
+"""Options declared once, settings from layers, and one validated configuration of a run."""
+
+from giveway.config.run_config import RunConfig
+
+__all__ = ["RunConfig"]

@@ -1,0 +1,1 @@
+"""Paths, poses, rectangles and angles: plane geometry as kernels and the types round them."""

@@ -1,0 +1,17 @@
+"""The outlines of vehicles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class VehicleShape:
+    """A rectangle, placed by the centre of its front bumper and its heading."""
+
+    length: float = 5.0  # [m]
+    width: float = 2.0  # [m]
+
+
+BODY = VehicleShape()
+"""The ego's body where neither the options nor SUMO name one (Yang & Özgüner 2019: 5 m by 2 m)."""

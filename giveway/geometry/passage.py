@@ -1,0 +1,58 @@
+"""Where a path comes past a point."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.geometry.kernel import kernel
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+SIGHT = 100.0
+"""[m] along the path: who or what is farther ahead counts as out of sight."""
+
+
+@kernel
+def look(
+    vertices: Array,
+    stations: Array,
+    first: int,
+    last: int,
+    x: float,
+    y: float,
+    front: float,
+    half_width: float,
+    reach: float,
+) -> tuple[float, bool]:
+    """Station of a point's closest passage in front (else inf), and could it walk there?"""
+    end = len(vertices) - 2
+    closest = np.inf
+    reachable = False
+    beyond_before = False  # is (x, y) beyond the end of the segment before?
+    for i in range(first, last + 1):
+        # Each segment counts on its own: a path that crosses itself or turns back comes past
+        # the same place twice, and only the passage ahead matters.
+        x_0, y_0 = vertices[i, 0], vertices[i, 1]
+        length = stations[i + 1] - stations[i]
+        e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
+        along = (x - x_0) * e_x + (y - y_0) * e_y
+        at_corner = along < 0.0 and i > 0 and beyond_before
+        beside = (along >= 0.0 or i == 0) and (along <= length or i == end)
+        beyond_before = along > length
+        if not (beside or at_corner):
+            continue
+        if at_corner:
+            along = 0.0
+        d_x, d_y = x - (x_0 + along * e_x), y - (y_0 + along * e_y)
+        distance = np.sqrt(d_x * d_x + d_y * d_y)
+        station = stations[i] + along
+        if distance <= half_width + reach and not (end == 0 and station + reach < front):
+            reachable = True
+        if front < station < closest and distance <= half_width:
+            closest = station
+    return closest, reachable

@@ -1,0 +1,1 @@
+"""What a run records: columns, tracks, rows, and how it ended."""
