@@ -22,7 +22,7 @@ from controller import Observation
 from fmus.controller_fmu.export import export_controller
 from fmus.controller_fmu.parameters import ControllerParameters
 from giveway.config import RunConfig
-from giveway.drivers import make_regulator
+from giveway.ego.controllers import make_regulator
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -16,9 +16,9 @@ from time import perf_counter
 import numpy as np
 
 from giveway.api import RunResult, simulate
-from giveway.assembly import assemble
 from giveway.config.layers import Layer
 from giveway.config.loading import load
+from giveway.cosimulation.assembly import assemble
 from giveway.geometry.angles import headings_to_angles
 from giveway.records.tracks import Timings
 

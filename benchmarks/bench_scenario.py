@@ -32,11 +32,11 @@ from cities import City, build_city
 from giveway.api import RunResult, simulate
 from giveway.config.layers import Layer
 from giveway.config.loading import load
-from giveway.exchange import Exchange
-from giveway.mirror import Mirror
+from giveway.cosimulation.mirror import Mirror
+from giveway.cosimulation.yielding import Yielding
+from giveway.crowd.exchange import Exchange
 from giveway.records.tracks import Timings
-from giveway.sumo import SumoSession
-from giveway.yielding import Yielding
+from giveway.sumo.session import SumoSession
 
 if TYPE_CHECKING:
     from collections.abc import Callable

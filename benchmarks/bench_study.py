@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 from giveway.config.layers import Layer
 from giveway.config.loading import load
 from giveway.studies.execution import cluster_executor, local_executor
+from giveway.studies.execution.perform import perform
 from giveway.studies.identity import software_identity
-from giveway.studies.performing import perform
 from giveway.studies.record import RunRecord, Task
 
 if TYPE_CHECKING:

@@ -33,7 +33,7 @@ from giveway.studies.statistics.bootstrap import mean_interval, seed_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
 
 CONTROLLERS = ("pid-tuned", "mpc", "mpc-paper")
 NOBODY = "nobody drives"

@@ -69,7 +69,7 @@ def fingerprint(name: str) -> dict[str, str]:
         folder = Path(temporary)
         settings = json.loads(json.dumps({"record": {"predictions": 0.5}, **RUNS[name]}))
         if settings.get("vehicle", {}).get("fmu") == "FOREIGN":
-            settings["vehicle"]["fmu"] = str(_foreign(fmus.bundled_fmu("fmi2"), folder))
+            settings["vehicle"]["fmu"] = str(_foreign(fmus.bundled_fmu("2.0"), folder))
         giveway.run(settings, results=folder / "run", pictures=False)
         return {
             file.name: hashlib.sha256(file.read_bytes()).hexdigest()

@@ -18,7 +18,7 @@ from giveway.errors import GivewayError
 if TYPE_CHECKING:
     from giveway.api import run
     from giveway.config import RunConfig
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
 
 __all__ = ["GivewayError", "RunConfig", "RunResult", "__version__", "run"]
 

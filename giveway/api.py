@@ -8,35 +8,34 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from giveway import mismatch
-from giveway.assembly import Parts, assemble
 from giveway.config.layers import dump_toml
 from giveway.config.loading import as_layer, load
+from giveway.cosimulation.assembly import Parts, assemble
+from giveway.cosimulation.loop import Loop
+from giveway.ego.vehicle import model_margin
 from giveway.errors import GivewayError
-from giveway.heartbeat import Phase
-from giveway.interrupts import DeferredInterrupt
-from giveway.journal import Journal
-from giveway.manifest import manifest
-from giveway.recorder import Recorder
+from giveway.processes.child import STDERR_FILE
+from giveway.processes.heartbeat import Phase
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.journal import Journal
+from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
-from giveway.results import (
+from giveway.results import mismatch
+from giveway.results.folder import (
     release_folder,
     require_parquet,
     sumo_folder,
     take_folder,
-    write_pictures,
     write_results,
 )
-from giveway.run_result import RunResult, results_of_egos
-from giveway.simulation import Loop
-from giveway.supervised import STDERR_FILE
-from giveway.vehicles import model_margin
+from giveway.results.provenance import manifest
+from giveway.results.run_result import RunResult, results_of_egos
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from giveway.config import RunConfig
-    from giveway.run_result import EgoResult
+    from giveway.results.run_result import EgoResult
     from sumo_scenarios import Scenario
 
 __all__ = ["RunResult", "run", "run_layers", "simulate"]
@@ -149,6 +148,8 @@ def keep(result: RunResult, folder: Path, *, parquet: bool, pictures: bool, take
     if len(result.time):
         write_results(result, folder, parquet=parquet)
         if pictures:
+            from giveway.results.pictures import write_pictures
+
             write_pictures(result, folder)
     elif taken:
         release_folder(folder)
@@ -213,8 +214,8 @@ def _result(
     elapsed: float,
 ) -> RunResult:
     """What the loop has left behind."""
-    tables = recorder.tables()
-    egos = results_of_egos(parts.config, tables, ending, loop.endings)
+    rows = recorder.rows()
+    egos = results_of_egos(parts.config, rows, ending, loop.endings)
     remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos))
     if recorder.journal.failure:
         remarks = (*remarks, recorder.journal.failure)
@@ -223,18 +224,18 @@ def _result(
         scenario=scenario,
         ending=ending,
         error=error,
-        time=tables.time,
+        time=rows.time,
         egos=egos,
-        crowd_track=tables.crowd_track(),
-        background_track=tables.background_track(),
-        timings=tables.timings(),
+        crowd_track=rows.crowd_track(),
+        background_track=rows.background_track(),
+        timings=rows.timings(),
         elapsed=elapsed,
         manifest=manifest(
             parts.config,
             scenario,
             config_text=dump_toml(parts.config),
             vehicles={driver.id: driver.description for driver in parts.drivers},
-            pedestrians=parts.population.ledger,
+            pedestrians=parts.roster.ledger,
             traffic={} if parts.yielding is None else parts.yielding.report,
             sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
             time_step=parts.time_step,

@@ -11,17 +11,17 @@ from giveway.api import keep
 from giveway.config.layers import read_toml_text
 from giveway.config.loading import load
 from giveway.errors import CrashError
-from giveway.journal_reader import read_journal
-from giveway.manifest import manifest
-from giveway.recorder import Tables
+from giveway.recording.journal_reader import read_journal
+from giveway.recording.recorded import RecordedRows
 from giveway.records.progress import Ending
-from giveway.results import release_folder
-from giveway.run_result import RunResult, results_of_egos
+from giveway.results.folder import release_folder
+from giveway.results.provenance import manifest
+from giveway.results.run_result import RunResult, results_of_egos
 
 if TYPE_CHECKING:
     from giveway.config import RunConfig
-    from giveway.journal_reader import JournalContents
-    from giveway.supervisor import Verdict
+    from giveway.processes.supervisor import Verdict
+    from giveway.recording.journal_reader import JournalContents
     from sumo_scenarios import Scenario
 
 
@@ -67,29 +67,29 @@ def _result_of(
     error: CrashError,
     verdict: Verdict,
 ) -> RunResult:
-    tables = Tables(contents.tables, contents.names)
+    rows = RecordedRows(contents.tables, contents.names)
     endings = {
-        drive.id: Ending.COMPLETED
-        for drive in tables.drives()
-        if drive.track.position[-1] >= drive.goal  # it had left the road before the crash
+        ego.id: Ending.COMPLETED
+        for ego in rows.egos()
+        if ego.track.position[-1] >= ego.goal  # it had left the road before the crash
     }
     return RunResult(
         config=config,
         scenario=scenario,
         ending=Ending.CRASHED,
         error=error,
-        time=tables.time,
-        egos=results_of_egos(config, tables, Ending.CRASHED, endings),
-        crowd_track=tables.crowd_track(),
-        background_track=tables.background_track(),
-        timings=tables.timings(),
-        elapsed=float(np.nansum(tables.timings().seconds[:, -1])),
+        time=rows.time,
+        egos=results_of_egos(config, rows, Ending.CRASHED, endings),
+        crowd_track=rows.crowd_track(),
+        background_track=rows.background_track(),
+        timings=rows.timings(),
+        elapsed=float(np.nansum(rows.timings().seconds[:, -1])),
         manifest=manifest(
             config,
             scenario,
             config_text=contents.meta["config"],
             vehicles={},
-            pedestrians=tables.ledger,
+            pedestrians=rows.ledger,
             traffic={},
             sumo={},
             time_step=None,

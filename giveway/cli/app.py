@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 from giveway.cli.fmu import build_export, build_fmu
-from giveway.cli.recorded import add_recorded
 from giveway.cli.studies import add_studies
+from giveway.cli.validation import add_recorded
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
 
@@ -103,7 +103,7 @@ def _run(
 ) -> None:
     """Drive the ego through a crowd once: summary, CSVs, pictures."""
     from giveway.cli.isolated import run_isolated, supervised
-    from giveway.supervised import take_journal_folder
+    from giveway.processes.child import take_journal_folder
 
     journal = take_journal_folder()
     if isolate and journal is None:

@@ -12,7 +12,7 @@ from rich.table import Table
 from giveway.cli.counting import counting
 from giveway.config.presets import SUFFIX, parameters_of, preset_text
 from giveway.errors import ConfigError, ResultsError
-from giveway.kernels import compile_kernels_once
+from giveway.precompile import compile_kernels_once
 from giveway.validation import Calibration, calibrate, read_clips
 from giveway.validation.fitting import FACTOR
 

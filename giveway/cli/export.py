@@ -10,13 +10,13 @@ from controller import Pid
 from fmus.controller_fmu.export import export_controller
 from fmus.controller_fmu.parameters import CONTROLLER_FILES, ControllerParameters
 from fmus.errors import FmuError
-from giveway.assembly import control_step
 from giveway.cli.run import layers_of
 from giveway.config.loading import load
-from giveway.drivers import make_regulator
+from giveway.cosimulation.assembly import control_step
+from giveway.ego.controllers import make_regulator
+from giveway.ego.vehicle import model_margin
 from giveway.errors import ConfigError, ControlError, ResultsError
 from giveway.scenario_files import read_scenario
-from giveway.vehicles import model_margin
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

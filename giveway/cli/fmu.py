@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from giveway.cli import fail
+from giveway.cli.exit import fail
 from giveway.errors import ConfigError, GivewayError
 
 _Fmu = Annotated[Path, typer.Argument(help="The FMU (.fmu).")]

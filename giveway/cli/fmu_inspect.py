@@ -20,7 +20,7 @@ from fmus.fmi.reading import binary_of, findings, model_of
 from fmus.model import Unit
 from fmus.text import printable
 from fmus.units import quantity, to_si
-from giveway.cli import fail
+from giveway.cli.exit import fail
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from giveway.cli import INTERRUPTED, fail
+from giveway.cli.exit import INTERRUPTED, fail
 from giveway.errors import GivewayError
-from giveway.supervised import Supervised
-from giveway.supervisor import journal_folder, own_command, supervise
+from giveway.processes.child import Supervised
+from giveway.processes.supervisor import journal_folder, own_command, supervise
 
 if TYPE_CHECKING:
     from collections.abc import Callable

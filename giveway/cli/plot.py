@@ -11,7 +11,7 @@ from giveway.config.presets import parameters_of
 from giveway.errors import ConfigError, ResultsError
 from giveway.figures import save_figure
 from giveway.geometry.bodies import VehicleShape
-from giveway.pictures import influence_picture
+from giveway.results.pictures import influence_picture
 
 if TYPE_CHECKING:
     from pathlib import Path

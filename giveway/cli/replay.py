@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from giveway.replays.page import write_replay
-from giveway.replays.predicting import Predicted, predicted_again
+from giveway.replays.rerun import Predicted, predicted_again
 from giveway.replays.run_folder import PREDICTIONS, RunFolder
 
 if TYPE_CHECKING:

@@ -30,9 +30,9 @@ def report_command(study: Path, *, replays: bool, quiet: bool) -> int:
 
 def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> None:
     """Write the tables, unless those of the whole study are there, figures, replays, the report."""
-    from giveway.kernels import compile_kernels_once
+    from giveway.precompile import compile_kernels_once
+    from giveway.reports.with_replays import write_report_of
     from giveway.studies.output import write_tables
-    from giveway.studies.reporting import write_report_of
 
     compile_kernels_once(console)
     if not (study.complete and (study.path / "comparison.csv").is_file()):

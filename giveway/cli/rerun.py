@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.markup import escape
 
-from giveway.cli import INTERRUPTED, fail
+from giveway.cli.exit import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
 from giveway.cli.run import Outputs, show
-from giveway.kernels import compile_kernels_once
+from giveway.precompile import compile_kernels_once
 from giveway.records.progress import Ending
-from giveway.results import check_folder
+from giveway.results.folder import check_folder
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import config_of, rerun
 

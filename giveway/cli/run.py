@@ -9,21 +9,21 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.markup import escape
 
-from giveway.cli import INTERRUPTED, fail
+from giveway.cli.exit import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
 from giveway.config.layers import Layer, read_toml
 from giveway.config.loading import load
+from giveway.crowd.zone import Zone
 from giveway.errors import GivewayError
 from giveway.records.progress import Ending
-from giveway.results import check_folder, require_parquet
+from giveway.results.folder import check_folder, require_parquet
 from giveway.scenario_files import read_scenario
-from giveway.zone import Zone
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from giveway.config import RunConfig
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
 
 
 @dataclass(frozen=True)
@@ -75,9 +75,9 @@ def run_command(
     files = read_scenario(found.config_file)
     files.require_inputs()
     Zone(effective.crowd.zone, effective.crowd.zone_margin)
-    from giveway.assembly import control_step
-    from giveway.kernels import compile_kernels_once
-    from giveway.vehicles import require_vehicles
+    from giveway.cosimulation.assembly import control_step
+    from giveway.ego.vehicle import require_vehicles
+    from giveway.precompile import compile_kernels_once
 
     require_vehicles(effective.each_ego(), control_step(effective, files))
     compile_kernels_once(console)

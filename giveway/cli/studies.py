@@ -100,7 +100,7 @@ def _rerun(
 ) -> None:
     """Make one run of a study again, with all trajectories; its numbers must be the study's."""
     from giveway.cli.isolated import run_isolated, supervised
-    from giveway.supervised import take_journal_folder
+    from giveway.processes.child import take_journal_folder
 
     journal = take_journal_folder()
     if journal is None:

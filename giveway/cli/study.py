@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from giveway.cli.study_summary import print_plan, print_summary
-from giveway.kernels import compile_kernels_once
+from giveway.precompile import compile_kernels_once
 from giveway.studies.definition import changed, find_study, read_definition
 from giveway.studies.plan import plan
 from giveway.studies.study import estimate, processors, run_study

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rich.table import Table
 
 if TYPE_CHECKING:
-    from giveway.run_result import EgoResult, RunResult
+    from giveway.results.run_result import EgoResult, RunResult
 
 _SHOWN = (
     ("Time to the goal", "completion_time", "s"),

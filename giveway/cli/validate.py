@@ -11,7 +11,7 @@ from rich.table import Table
 
 from giveway.cli.counting import counting
 from giveway.config.presets import parameters_of
-from giveway.kernels import compile_kernels_once
+from giveway.precompile import compile_kernels_once
 from giveway.validation import read_clips, validate
 from giveway.validation.contacts import ORDER
 from giveway.validation.evaluation import EVERYWHERE, NEAR

@@ -28,7 +28,7 @@ _ENOUGH_SPACE = 1e9  # [bytes] for the results of a study
 _OLDEST_PYTHON = (3, 11)
 _PATIENCE = 60.0  # [s] for a child process
 _CHARACTERS = "Özgüner – m/s² ± µs"  # what our summaries print
-_IMPORT_SUMO = "import libsumo; print(libsumo.simulation.getVersion()[1])"
+_IMPORT_SUMO = "from giveway.sumo.library import version; print(version())"
 
 
 def examine_environment(results: Path = Path("results")) -> list[Finding]:

@@ -25,7 +25,7 @@ def try_in_sumo(config_file: Path, patience: float = PATIENCE) -> list[Finding]:
         patience: how long to wait [s].
     """
     # -P: a controller.py in the user's folder is not our controller
-    command = [sys.executable, "-P", "-m", "giveway.doctor.probe", str(config_file)]
+    command = [sys.executable, "-P", "-m", "giveway.sumo.probe", str(config_file)]
     ours = os.pathsep.join(filter(None, (str(_HOUSE), os.environ.get("PYTHONPATH"))))
     try:
         result = subprocess.run(

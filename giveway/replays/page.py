@@ -17,6 +17,7 @@ from giveway.errors import ResultsError
 from giveway.geometry.angles import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.replays.contours import influence_contours
+from giveway.replays.events import events, why
 from giveway.replays.packing import (
     Frame,
     longest_gap,
@@ -26,7 +27,6 @@ from giveway.replays.packing import (
     thinning,
 )
 from giveway.replays.run_folder import PREDICTIONS, RunFolder, read_predictions
-from giveway.replays.story import events, why
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from giveway.reports.choice import ExamplePair
-    from giveway.run_result import EgoResult, RunResult
+    from giveway.results.run_result import EgoResult, RunResult
 
 TITLES = {
     "median": "A typical pair",

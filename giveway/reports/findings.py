@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from giveway.reports.beside import agreement, published_frame
+from giveway.reports.published import agreement, published_frame
 from giveway.reports.study import (
     baseline_label,
     compared_labels,

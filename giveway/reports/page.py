@@ -19,12 +19,12 @@ from giveway.errors import ResultsError
 from giveway.figures.style import save_figure
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.reports import findings, tables
-from giveway.reports.beside import published_frame, published_table
 from giveway.reports.choice import example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
 from giveway.reports.examples import TITLES, example_pictures
 from giveway.reports.levels import levels_section
 from giveway.reports.pictures import Picture, study_pictures
+from giveway.reports.published import published_frame, published_table
 from giveway.reports.study import contexts
 from giveway.reports.wording import pretty_unit
 from giveway.studies.statistics import METRICS
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from giveway.reports.choice import ExamplePair, WorstRun
     from giveway.reports.study import Study
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
 
 REPORT = "report.html"
 FIGURES = "figures"

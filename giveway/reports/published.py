@@ -5,13 +5,22 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from giveway.reports.study import baseline_label, contexts, treatment_labels
-from giveway.studies.statistics import PUBLISHED
+from giveway.reports.study import (
+    baseline_label,
+    contexts,
+    level_label,
+    short_name,
+    treatment_labels,
+)
+from giveway.reports.tables import Cell, Table
+from giveway.reports.wording import digits_for, interval, number
+from giveway.studies.statistics import PUBLISHED, TABLE_2_COLUMNS, table2
 from giveway.studies.statistics.yang2019 import METRIC_OF
 
 if TYPE_CHECKING:
-    from giveway.reports.study import Study
+    import pandas as pd
 
+    from giveway.reports.study import Study
 SOURCE = "Yang & Özgüner 2019"
 DENSITY = "crowd.pedestrians"
 TREATMENT, BASELINE = "mpc-paper", "pid-paper"
@@ -31,3 +40,66 @@ def published_numbers(study: Study) -> dict[Key, float]:
             if context.levels.get(DENSITY) == str(pedestrians) and math.isfinite(mean):
                 found[context.key, TREATMENT, situation, METRIC_OF[situation]] = mean
     return found
+
+
+_WORDS = {
+    "inside": "inside our interval",
+    "below": "below our interval",
+    "above": "above our interval",
+}
+
+
+def published_frame(study: Study) -> pd.DataFrame | None:
+    """Table 2 as ``table2`` gives it; None where the study names no such reference."""
+    if study.definition.reference != "yang2019":
+        return None
+    frame = table2(study.comparison)
+    return None if frame.empty else frame
+
+
+def published_table(frame: pd.DataFrame) -> Table:
+    """Ours beside theirs: a row per number of pedestrians and situation."""
+    known = {column.name for column in TABLE_2_COLUMNS}
+    others = [name for name in frame.columns if name not in known]
+    headings = [*map(short_name, others), "pedestrians", "situation", "quantity", SOURCE, "giveway"]
+    rows = []
+    for row in frame.to_dict("records"):
+        missing = not math.isfinite(row["mean_difference"])
+        digits = digits_for(row["ci_high"] - row["ci_low"])
+        ours = "N.A." if missing else number(row["mean_difference"], digits)
+        theirs = number(row["published"], 4)
+        waits = METRIC_OF[row["situation"]] == "longest_wait"
+        rows.append(
+            [
+                *(Cell(level_label(row[name])) for name in others),
+                Cell(str(row["pedestrians"]), "number"),
+                Cell(row["situation"]),
+                Cell("longest wait" if waits else "completion time"),
+                Cell(theirs, "na" if theirs == "N.A." else "number"),
+                Cell(ours, "na" if missing else "number"),
+                Cell(interval(row["ci_low"], row["ci_high"])),
+                Cell(f"{int(row['n']):,}", "number"),
+                Cell(_WORDS.get(str(row["agreement"]), "–")),
+            ]
+        )
+    return Table(
+        name="published-table",
+        caption=f"Mean differences MPC minus PID [s]: Table 2 of {SOURCE} beside this study",
+        headings=[*headings, "our interval", "our pairs", "the published number lies"],
+        rows=rows,
+        note="N.A.: too few pairs; the paper gives no number of pairs per situation.",
+    )
+
+
+def agreement(frame: pd.DataFrame) -> str:
+    """How many of the published numbers lie within our intervals, as a sentence."""
+    found = frame["agreement"].astype(str)
+    known = int(found.isin(list(_WORDS)).sum())
+    if not known:
+        return ""
+    inside = int((found == "inside").sum())
+    same = int((frame["published"] * frame["mean_difference"] > 0).sum())
+    return (
+        f"Of the {known} numbers of {SOURCE} that can be compared, {inside} "
+        f"{'lies' if inside == 1 else 'lie'} within our intervals; {same} have the same sign."
+    )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from giveway.config.layers import Layer, merge, options
 from giveway.errors import ConfigError
 from giveway.metrics import SUMMARY_FIELDS
-from giveway.studies.statistics.columns import (
+from giveway.studies.columns import (
     COMPARISON_COLUMNS,
     LEVEL_COLUMNS,
     PRECISION_COLUMNS,

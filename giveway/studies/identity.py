@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING
 from giveway._environment import ROOMS
 from giveway.config import RunConfig
 from giveway.config.presets import is_preset_file
+from giveway.ego.vehicle import fmu_path
 from giveway.errors import ConfigError, GivewayError
-from giveway.manifest import scenario_hashes, scenario_inputs, sha256, software_versions
+from giveway.results.provenance import scenario_hashes, scenario_inputs, sha256, software_versions
 from giveway.scenario_files.extra_options import parse_options
-from giveway.vehicles import fmu_path
 from sumo_scenarios import ScenarioError, find
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ _NAMING_FILES = (
     ("crowd", "preset"),
     ("perception", "preset"),
 )
-_ROWS = frozenset({"studies/performing.py", "studies/record.py"})  # but for what makes them
+_ROWS = frozenset({"studies/execution/perform.py", "studies/record.py"})  # but for what makes them
 _NO_MATTER = frozenset({"platform", "machine", "pandas", "python"})
 
 

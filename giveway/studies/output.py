@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from giveway.records.columns import Column
-from giveway.results import package_of
+from giveway.results.folder import package_of
+from giveway.studies.atomic_files import write_whole
 from giveway.studies.frames import (
     COMPUTING_COLUMNS,
     EXECUTION_COLUMNS,
@@ -16,7 +17,6 @@ from giveway.studies.frames import (
     runs_columns,
     written,
 )
-from giveway.studies.whole_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from giveway.assembly import control_step
 from giveway.config.loading import load
+from giveway.cosimulation.assembly import control_step
+from giveway.crowd.zone import Zone
+from giveway.ego.vehicle import require_vehicles
 from giveway.errors import ConfigError, GivewayError
 from giveway.scenario_files import read_scenario
 from giveway.studies.design import design
 from giveway.studies.identity import cell_digest, input_hashes, run_key, software_identity
 from giveway.studies.record import Task, run_id
 from giveway.studies.statistics import metric
-from giveway.vehicles import require_vehicles
-from giveway.zone import Zone
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

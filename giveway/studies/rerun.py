@@ -10,14 +10,14 @@ from giveway.config.layers import Layer
 from giveway.config.loading import load
 from giveway.errors import GivewayError
 from giveway.records.progress import Ending
-from giveway.studies.performing import rows_of
+from giveway.studies.execution.perform import rows_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from giveway.config import RunConfig
     from giveway.records.progress import Watcher
-    from giveway.run_result import RunResult
+    from giveway.results.run_result import RunResult
     from giveway.studies.folder import StudyFolder
     from giveway.studies.record import RunRecord, Scalar
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from giveway.errors import ResultsError
+from giveway.studies.atomic_files import write_whole
 from giveway.studies.record import RunRecord
-from giveway.studies.whole_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

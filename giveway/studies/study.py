@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from giveway.errors import GivewayError
-from giveway.manifest import software_versions
-from giveway.studies.claim import claimed, clear, forget_tables
+from giveway.results.provenance import software_versions
+from giveway.studies.atomic_files import write_whole
 from giveway.studies.definition import dump_definition
 from giveway.studies.folder import DEFINITION, MANIFEST, StudyFolder
 from giveway.studies.frames import runs_frame
 from giveway.studies.identity import software_identity
+from giveway.studies.lock import claimed, clear, forget_tables
 from giveway.studies.options import StudyOptions, processors
 from giveway.studies.output import write_tables
 from giveway.studies.plan import Plan, plan
 from giveway.studies.statistics import looks, precise_enough
 from giveway.studies.store import RecordStore
-from giveway.studies.whole_files import write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable

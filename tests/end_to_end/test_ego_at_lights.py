@@ -10,12 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.config import RunConfig
-from giveway.drivers import make_driver, make_regulator
-from giveway.ego import Ego
+from giveway.ego.controllers import make_driver, make_regulator
+from giveway.ego.ego import Ego
+from giveway.ego.lights import Lights
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
-from giveway.lanes import Light
-from giveway.lights import Lights
+from giveway.sumo.lanes import Light
 from pedestrian_model import OPEN_GROUND, Crowd
 
 STEP = 0.05  # [s]

@@ -112,7 +112,7 @@ def test_an_endless_scenario_waits_for_every_ego_that_is_to_be_inserted(
 def test_a_scenario_without_an_end_ends_when_the_way_stays_blocked(
     scenario: Scenario, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("giveway.standstill.LONGEST", 20.0)  # an hour, in earnest
+    monkeypatch.setattr("giveway.cosimulation.standstill.LONGEST", 20.0)  # an hour, in earnest
     stop = '<stop lane="A0B0_0" endPos="40" duration="1000000"/>'
     broken_down = f'<vehicle id="broken" depart="0" departLane="0">{ROUTE}{stop}</vehicle>'
     ego = {"route": EASTWARDS, "lane": 0, "depart_time": 30}

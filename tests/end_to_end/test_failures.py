@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 import giveway
-from giveway.assembly import Parts, assemble
 from giveway.config.layers import Layer
 from giveway.config.loading import load
+from giveway.cosimulation.assembly import Parts, assemble
+from giveway.cosimulation.loop import Loop
 from giveway.errors import ConfigError, GivewayError, SumoError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import Pose
-from giveway.interrupts import DeferredInterrupt
-from giveway.recorder import Recorder
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending
 from giveway.scenario_files import StartOptions, read_scenario
-from giveway.simulation import Loop
-from giveway.sumo import SumoSession
-from giveway.sumo_types import all_types, inserted_type
+from giveway.sumo.session import SumoSession
+from giveway.sumo.types import all_types, inserted_type
 from sumo_scenarios import find
 
 PLAZA = find("shared_space").config_file
@@ -40,7 +40,7 @@ def test_a_nan_in_the_crowd_is_named_by_id_and_step() -> None:
         parts = parts_of(stack, controller="pid")
         recorder = Recorder()
         loop = Loop(parts, recorder)
-        parts.population.crowd.position[3] = np.nan
+        parts.roster.crowd.position[3] = np.nan
         with pytest.raises(GivewayError, match=r"ped3.*step 0"):
             loop.run(None, lambda: False)
         assert recorder.steps == 1

@@ -4,11 +4,11 @@ from pathlib import Path
 
 from giveway.api import run_layers
 from giveway.config.loading import as_layer
-from giveway.heartbeat import Phase, Pulse
-from giveway.journal import ROWS_FILE
+from giveway.processes.heartbeat import Phase, Pulse
+from giveway.processes.supervisor import Verdict
+from giveway.recording.journal import ROWS_FILE
 from giveway.records.progress import Ending
 from giveway.recovery import recover
-from giveway.supervisor import Verdict
 
 SHORT = {"crowd": {"pedestrians": 3}, "ego": {"travel_distance": 8.0}}
 

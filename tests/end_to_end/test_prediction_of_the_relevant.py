@@ -9,11 +9,11 @@ import pytest
 
 from controller.planning import Manoeuvre
 from giveway.config import RunConfig
-from giveway.drivers import make_driver, make_regulator
-from giveway.ego import Ego
+from giveway.ego.controllers import make_driver, make_regulator
+from giveway.ego.ego import Ego
+from giveway.ego.lights import Lights
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
-from giveway.lights import Lights
 from pedestrian_model import OPEN_GROUND, Crowd
 
 BEND = [(-50.0, 0.0), (0.0, 0.0), (30.0, 0.0), (60.0, 20.0), (100.0, 60.0)]
@@ -41,7 +41,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
         people = crowd(rng)
         seen = []
         for predict_all in (150, 10**9):
-            monkeypatch.setattr("giveway.ego._PREDICT_ALL", predict_all)
+            monkeypatch.setattr("giveway.ego.ego._PREDICT_ALL", predict_all)
             with ExitStack() as stack:
                 driver = make_driver(CONFIG, make_regulator(CONFIG, 0.05), 0.05, stack)
                 driver.start(speed)
@@ -71,7 +71,7 @@ def test_who_is_left_out_changes_nothing_that_a_manoeuvre_would_lead_to(
         people = crowd(rng, widest=150.0)
         seen = []
         for predict_all in (150, 10**9):
-            monkeypatch.setattr("giveway.ego._PREDICT_ALL", predict_all)
+            monkeypatch.setattr("giveway.ego.ego._PREDICT_ALL", predict_all)
             with ExitStack() as stack:
                 driver = make_driver(PLANNING, make_regulator(PLANNING, 0.05), 0.05, stack)
                 driver.start(speed)

@@ -8,10 +8,10 @@ import pytest
 from controller import Decision, SafetyParameters
 from giveway.api import RunResult
 from giveway.config import RunConfig
+from giveway.ego.safety import Guard
+from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
-from giveway.guard import Guard
-from giveway.way_ahead import WayAhead
 from pedestrian_model import Crowd
 
 Run = Callable[..., RunResult]

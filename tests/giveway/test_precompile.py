@@ -6,7 +6,7 @@ import sys
 import time
 from pathlib import Path
 
-from giveway.kernels import forget_old_kernels
+from giveway.precompile import forget_old_kernels
 
 SCRIPT = """
 import io, sys

@@ -12,7 +12,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from giveway.heartbeat import Heartbeat
+from giveway.processes.heartbeat import Heartbeat
 
 LONG = ["--pedestrians", "3000", "--spawn-area", "20,-200,120,-10", "--no-pictures"]
 LONG += ["--regulation-reference-speed", "0.1", "--time-limit", "120"]

@@ -14,7 +14,7 @@ import libsumo
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.scenario_files import StartOptions, prepare_start, read_scenario
-from giveway.sumo_types import all_types
+from giveway.sumo.types import all_types
 
 
 def main(request: dict) -> None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import libsumo
 
-from giveway.walkers import Arrival, ScenarioWalkers, Walker
+from giveway.sumo.persons import Arrival, Person, ScenarioPersons
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -21,16 +21,16 @@ PERSON = libsumo.person
 
 
 @contextmanager
-def simulation(command: list[str], ours: Sequence[str] = ()) -> Iterator[ScenarioWalkers]:
+def simulation(command: list[str], ours: Sequence[str] = ()) -> Iterator[ScenarioPersons]:
     libsumo.start(["sumo", *command, *FLAGS, "--duration-log.disable", "true"])
     try:
-        yield ScenarioWalkers(libsumo, ours)
+        yield ScenarioPersons(libsumo, ours)
     finally:
         libsumo.simulationStep()  # a move that is still pending at close() is a crash
         libsumo.close()
 
 
-def step(walkers: ScenarioWalkers, places: dict[str, tuple[float, float]] | None = None) -> None:
+def step(walkers: ScenarioPersons, places: dict[str, tuple[float, float]] | None = None) -> None:
     """One SUMO step with the held persons at their ``places``."""
     for name, (x, y) in (places or {}).items():
         PERSON.moveToXY(name, "", x, y, 0.0, keepRoute=2, matchThreshold=-1)
@@ -38,12 +38,12 @@ def step(walkers: ScenarioWalkers, places: dict[str, tuple[float, float]] | None
     walkers.positions()
 
 
-def wait_until(walkers: ScenarioWalkers, time: float) -> None:
+def wait_until(walkers: ScenarioPersons, time: float) -> None:
     while libsumo.simulation.getTime() < time:
         step(walkers)
 
 
-def hold(walkers: ScenarioWalkers, walker: Walker, steps: int = 5) -> None:
+def hold(walkers: ScenarioPersons, walker: Person, steps: int = 5) -> None:
     for _ in range(steps):
         step(walkers, {walker.id: (walker.x, walker.y)})
 
@@ -55,11 +55,11 @@ def take(command: list[str], time: float, name: str = "a") -> Any:
         return described(walkers.take([name]))
 
 
-def described(taken: list[Walker]) -> dict[str, Any] | None:
+def described(taken: list[Person]) -> dict[str, Any] | None:
     if not taken:
         return None
     walker = taken[0]
-    return {name: getattr(walker, name) for name in Walker.__slots__}
+    return {name: getattr(walker, name) for name in Person.__slots__}
 
 
 def hand_back(
@@ -204,7 +204,7 @@ def roam(command: list[str], radius: float, seconds: float) -> Any:
     """
     at: dict[str, tuple[float, float]] = {}
     goals: dict[str, list[tuple[float, float]]] = {}
-    plans: dict[str, Walker] = {}
+    plans: dict[str, Person] = {}
     arrived: list[str] = []
     wrong, worst = 0, 0.0
     with simulation(command) as walkers:

@@ -17,7 +17,7 @@ from contextlib import suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final, Self
 
-from giveway.studies.execution.errand import Errand
+from giveway.studies.execution.cluster_runs import ClusterRuns
 from giveway.studies.execution.errors import WorkerError
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class ClusterExecutor:
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
         """As the protocol says."""
-        return Errand(self, tasks).run()
+        return ClusterRuns(self, tasks).run()
 
     def __enter__(self) -> Self:
         self._connect()
@@ -107,7 +107,7 @@ class ClusterExecutor:
         if cluster is not None:
             _in_time(lambda: cluster.close(timeout=_FAREWELL))
 
-    # --- for Errand --------------------------------------------------------------------------
+    # --- for ClusterRuns ----------------------------------------------------------------------
 
     def submit(self, task: Task, name: str) -> Any:
         """Hand a run out.

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from giveway.heartbeat import LOOP, Phase
+from giveway.processes.heartbeat import LOOP, Phase
 from giveway.studies.execution.errors import WorkerError
 
 HANG_LIMIT: Final = 120.0  # [s] of wall clock without a sign of life from the loop

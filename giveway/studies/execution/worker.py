@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Final
 
 from giveway.errors import GivewayError
-from giveway.heartbeat import Heartbeat, Phase
-from giveway.journal import Journal
+from giveway.processes.child import TRACEBACK_FILE, die_with
+from giveway.processes.heartbeat import Heartbeat, Phase
+from giveway.recording.journal import Journal
 from giveway.studies.execution.wire import ERROR, READY, RECORD, REFUSED, Line
 from giveway.studies.record import Task
-from giveway.supervised import TRACEBACK_FILE, die_with
 
 SUMO_FILE: Final = "sumo"  # what SUMO has printed during the run
 _HIGH: Final = 200  # FMUs that close or write to files that are not theirs try low numbers
@@ -42,9 +42,9 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
     with (Path(folder) / TRACEBACK_FILE).open("w", encoding="utf-8") as file:
         faulthandler.enable(file)
         heartbeat = Heartbeat(Path(folder))
-        from giveway.kernels import compile_kernels_once
-        from giveway.studies import identity, performing  # noqa: F401 - no run is to wait for it
-        from giveway.sumo import import_libsumo
+        from giveway.precompile import compile_kernels_once
+        from giveway.studies.execution import perform as performing  # noqa: F401 - no run is to wait for it
+        from giveway.sumo.library import import_libsumo
 
         import_libsumo()  # what every run would find missing is no run's failure
         compile_kernels_once()  # nor is half a minute of compiling a run's hang
@@ -60,7 +60,8 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
 
 def _answer(task: Task, heartbeat: Heartbeat, folder: Path) -> tuple[bytes, bytes]:
     """Make the run, and say so: a message's kind and payload."""
-    from giveway.studies import identity, performing
+    from giveway.studies import identity
+    from giveway.studies.execution import perform as performing
 
     try:
         identity.require_same(task)

@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from fmus.text import printable
-from giveway.heartbeat import LOOP, Heartbeat, Phase, Stillness
-from giveway.process_ends import cause_of_end, stood_still, text_in
+from giveway.processes.causes import cause_of_end, stood_still, text_in
+from giveway.processes.child import STDERR_FILE, TRACEBACK_FILE
+from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Stillness
 from giveway.studies.execution.errors import WorkerError
 from giveway.studies.execution.starting import START_LIMIT, start
 from giveway.studies.execution.wire import (
@@ -30,7 +31,6 @@ from giveway.studies.execution.wire import (
 )
 from giveway.studies.execution.worker import SUMO_FILE
 from giveway.studies.record import RunRecord
-from giveway.supervised import STDERR_FILE, TRACEBACK_FILE
 
 if TYPE_CHECKING:
     from giveway.studies.execution.limits import Limits

@@ -5,7 +5,7 @@ docs/statistics.md says in words what is computed here.
 
 from __future__ import annotations
 
-from giveway.studies.statistics.columns import (
+from giveway.studies.columns import (
     COMPARISON_COLUMNS,
     LEVEL_COLUMNS,
     PRECISION_COLUMNS,

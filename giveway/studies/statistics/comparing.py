@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
+from giveway.studies.columns import COMPARISON_COLUMNS
 from giveway.studies.statistics.bootstrap import Interval, mean_interval, seed_of
-from giveway.studies.statistics.columns import COMPARISON_COLUMNS
 from giveway.studies.statistics.metrics import METRICS
 from giveway.studies.statistics.pairs import other_factors, paired
 from giveway.studies.statistics.rounding import mean, median, tabulated, to_decimals

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from giveway.studies.columns import LEVEL_COLUMNS
 from giveway.studies.statistics.bootstrap import mean_interval, seed_of
-from giveway.studies.statistics.columns import LEVEL_COLUMNS
 from giveway.studies.statistics.metrics import METRICS
 from giveway.studies.statistics.pairs import cleaned, without_result
 from giveway.studies.statistics.rounding import mean, tabulated

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from giveway.studies.statistics.columns import PRECISION_COLUMNS
+from giveway.studies.columns import PRECISION_COLUMNS
 from giveway.studies.statistics.comparing import differences, interval
 from giveway.studies.statistics.metrics import metric
 from giveway.studies.statistics.pairs import other_factors, paired

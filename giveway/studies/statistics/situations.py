@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 import pandas as pd
 
+from giveway.studies.columns import SITUATION_COLUMNS
 from giveway.studies.definition import Situation
-from giveway.studies.statistics.columns import SITUATION_COLUMNS
 from giveway.studies.statistics.pairs import other_factors, paired
 
 if TYPE_CHECKING:

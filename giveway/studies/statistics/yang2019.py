@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pandas as pd
 
-from giveway.studies.statistics.columns import COMPARISON_COLUMNS, TABLE_2_COLUMNS
+from giveway.studies.columns import COMPARISON_COLUMNS, TABLE_2_COLUMNS
 
 if TYPE_CHECKING:
     from giveway.studies.definition import Situation

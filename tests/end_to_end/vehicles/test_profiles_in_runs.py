@@ -10,9 +10,9 @@ import tomlkit
 import giveway as library
 from giveway.config.layers import Layer, read_toml
 from giveway.config.loading import load
-from giveway.drivers import make_regulator
+from giveway.ego.controllers import make_regulator
+from giveway.ego.vehicle import model_margin
 from giveway.errors import ConfigError, VehicleError
-from giveway.vehicles import model_margin
 
 H = 0.05  # [s]
 IDENTIFIED = {

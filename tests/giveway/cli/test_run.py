@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from giveway.heartbeat import Heartbeat
+from giveway.processes.heartbeat import Heartbeat
 
 
 def giveway(*words: object, cwd: Path, timeout: float = 300) -> subprocess.CompletedProcess[str]:

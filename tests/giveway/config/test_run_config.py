@@ -234,7 +234,7 @@ def test_texts_that_sumo_could_not_use_are_refused(settings: dict, expected: str
 
 
 def test_a_long_clock_keeps_its_fractions_on_the_way_to_sumo() -> None:
-    from giveway.assembly import _start_options
+    from giveway.cosimulation.assembly import _start_options
 
     config = RunConfig.model_validate({"sumo": {"end": 54012.35}})
     assert _start_options(config, True, None).extra == ("--end", "54012.350")

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from giveway.cosimulation.paths_ahead import Ways, gaps_ahead, sort_people
+from giveway.ego.in_front import closest_in_front
 from giveway.geometry.path import EgoPath
-from giveway.in_front import closest_in_front
-from giveway.lanes import Lanes
-from giveway.paths_ahead import Ways, gaps_ahead, sort_people
-from giveway.sumo_vehicles import SumoVehicles
+from giveway.sumo.lanes import Lanes
+from giveway.sumo.vehicles import SumoVehicles
 from sumo_scenarios import find
 
 HALF_WIDTH = 1.25

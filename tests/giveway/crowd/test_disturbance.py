@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.config import RunConfig
-from giveway.disturbance import Disturbance, disturbance_of
+from giveway.crowd.disturbance import Disturbance, disturbance_of
 from pedestrian_model import OPEN_GROUND, SIM, Crowd, CrowdModel, Vehicles
 
 DT = 0.05

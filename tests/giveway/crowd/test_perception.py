@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from giveway.config import RunConfig
-from giveway.perception import Perception
+from giveway.crowd.perception import Perception
 from pedestrian_model import Crowd, CrowdModel, Vehicles
 
 

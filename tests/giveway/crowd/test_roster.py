@@ -1,10 +1,10 @@
-"""The population: who is present, under which name, in which row."""
+"""The roster: who is present, under which name, in which row."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from giveway.population import Population
+from giveway.crowd.roster import Roster
 from pedestrian_model import Crowd
 
 
@@ -16,23 +16,23 @@ def at(*stations: float) -> Crowd:
 
 
 def test_who_comes_back_has_its_own_name_and_index_but_a_new_row() -> None:
-    population = Population()
-    population.take_in(["ann", "bob", "eve"], at(1.0, 2.0, 3.0))
-    assert population.release(np.array([True, False, False])) == ["ann"]
-    assert population.names == ["bob", "eve"]
-    population.take_in(["ann"], at(9.0))
-    assert population.names == ["bob", "eve", "ann"]  # not the order in which they first came
-    assert population.present.tolist() == [1, 2, 0]
-    assert [population.ids[i] for i in population.present] == population.names
-    assert population.crowd.position[:, 0].tolist() == [2.0, 3.0, 9.0]
+    roster = Roster()
+    roster.take_in(["ann", "bob", "eve"], at(1.0, 2.0, 3.0))
+    assert roster.release(np.array([True, False, False])) == ["ann"]
+    assert roster.names == ["bob", "eve"]
+    roster.take_in(["ann"], at(9.0))
+    assert roster.names == ["bob", "eve", "ann"]  # not the order in which they first came
+    assert roster.present.tolist() == [1, 2, 0]
+    assert [roster.ids[i] for i in roster.present] == roster.names
+    assert roster.crowd.position[:, 0].tolist() == [2.0, 3.0, 9.0]
 
 
 def test_the_ledger_adds_up() -> None:
-    population = Population(["own"], at(0.0))
-    population.take_in(["ann", "bob"], at(1.0, 2.0))
-    population.release(np.array([True, True, False]))
-    population.count("arrived")
-    population.count("continued")
-    ledger = population.ledger
+    roster = Roster(["own"], at(0.0))
+    roster.take_in(["ann", "bob"], at(1.0, 2.0))
+    roster.release(np.array([True, True, False]))
+    roster.count("arrived")
+    roster.count("continued")
+    ledger = roster.ledger
     left = ledger["handed_back"] + ledger["arrived"] + ledger["continued"]
     assert ledger["added"] + ledger["taken_over"] == left + ledger["walking"] == 3

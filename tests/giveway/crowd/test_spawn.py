@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from giveway.config.sections import CrowdConfig
+from giveway.crowd.spawn import spawn
 from giveway.errors import CrowdError
 from giveway.geometry.path import EgoPath
-from giveway.spawn import spawn
 
 AXIS = EgoPath.through([(-20, 0), (100, 0)])
 

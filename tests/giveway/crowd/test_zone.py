@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from giveway.crowd.zone import Zone
 from giveway.errors import ConfigError
-from giveway.zone import Zone
 
 POINTS = np.array([[0.0, 0.0], [9.0, 0.0], [11.0, 0.0], [16.0, 0.0], [100.0, 3.0]])
 EGOS = np.array([[0.0, 0.0], [100.0, 0.0]])

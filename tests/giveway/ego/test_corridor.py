@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from giveway.corridor import NO_LEADER, Corridor, Leader
+from giveway.ego.corridor import NO_LEADER, Corridor, Leader
+from giveway.ego.in_front import closest_in_front
 from giveway.geometry.passage import SIGHT
 from giveway.geometry.path import EgoPath
-from giveway.in_front import closest_in_front
 
 STRAIGHT = EgoPath.through([(0.0, 0.0), (300.0, 0.0)])
 IN_PIECES = EgoPath.through([(float(x), 0.0) for x in range(301)])

@@ -8,8 +8,8 @@ import shapely
 
 from controller import LongitudinalModel, SafetyLayer, SafetyParameters
 from controller.planning import Manoeuvre
-from giveway.courses import Alarm, is_threat
-from giveway.foresight import PASSED, CrowdForesight, assess
+from giveway.ego.foresight import PASSED, CrowdForesight, assess
+from giveway.ego.threats import Alarm, is_threat
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, SIM, Crowd, Predictor

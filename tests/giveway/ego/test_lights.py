@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from giveway.lanes import Light
-from giveway.lights import STOP_BEFORE, Lights
+from giveway.ego.lights import STOP_BEFORE, Lights
+from giveway.sumo.lanes import Light
 
 LINE = 100.0  # [m]
 STOP = LINE - STOP_BEFORE

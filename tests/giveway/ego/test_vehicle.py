@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from giveway.config import RunConfig
-from giveway.vehicles import model_remark
+from giveway.ego.vehicle import model_remark
 
 PROFILE = """
 [inputs.force]

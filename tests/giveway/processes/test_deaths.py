@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from giveway.heartbeat import Phase
-from giveway.journal_reader import read_journal
-from giveway.supervisor import Verdict, supervise
+from giveway.processes.heartbeat import Phase
+from giveway.processes.supervisor import Verdict, supervise
+from giveway.recording.journal_reader import read_journal
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the deaths here are Unix's")
 

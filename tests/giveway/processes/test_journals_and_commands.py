@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from giveway.supervised import JOURNAL_VARIABLE, take_journal_folder
-from giveway.supervisor import journal_folder, own_command, supervise
+from giveway.processes.child import JOURNAL_VARIABLE, take_journal_folder
+from giveway.processes.supervisor import journal_folder, own_command, supervise
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the deaths here are Unix's")
 
@@ -62,7 +62,7 @@ def test_open_files_reach_the_child(tmp_path: Path, journal: Path) -> None:
 
 
 def test_we_start_again_as_we_were_started() -> None:
-    script = "from giveway.supervisor import own_command; print(own_command())"
+    script = "from giveway.processes.supervisor import own_command; print(own_command())"
     done = subprocess.run(
         [sys.executable, "-X", "utf8", "-c", script, "run", "--seed", "1"],
         capture_output=True,
@@ -76,7 +76,7 @@ def test_we_start_again_as_we_were_started() -> None:
 
 
 def test_supervising_imports_nothing_heavy() -> None:
-    code = "import sys, giveway.supervisor; print({m.split('.')[0] for m in sys.modules})"
+    code = "import sys, giveway.processes.supervisor; print({m.split('.')[0] for m in sys.modules})"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
     )

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.errors import ResultsError
-from giveway.heartbeat import Heartbeat, Phase
-from giveway.journal import ROWS_FILE, Journal, JournalRows, NameTable
-from giveway.journal_reader import read_journal
+from giveway.processes.heartbeat import Heartbeat, Phase
+from giveway.recording.journal import ROWS_FILE, Journal, JournalRows, NameTable
+from giveway.recording.journal_reader import read_journal
 
 NAMES = st.text(st.characters(), max_size=8)  # lone surrogates, quotes, newlines and all
 

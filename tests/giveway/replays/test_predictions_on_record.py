@@ -11,9 +11,9 @@ import pytest
 from giveway import run
 from giveway.api import run_layers
 from giveway.config.loading import as_layer
-from giveway.journal_reader import read_journal
-from giveway.recorder import Tables
-from giveway.simulation import looks_ahead
+from giveway.cosimulation.loop import looks_ahead
+from giveway.recording.journal_reader import read_journal
+from giveway.recording.recorded import RecordedRows
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -95,7 +95,7 @@ def test_a_journal_has_it_too(tmp_path: Path) -> None:
     layer = as_layer({**SETTINGS, "time_limit": 6.0, "record": {"predictions": 0.25}})
     result = run_layers([layer], results=None, journal=tmp_path)
     contents = read_journal(tmp_path)
-    (drive,) = Tables(contents.tables, contents.names).drives()
+    (drive,) = RecordedRows(contents.tables, contents.names).egos()
     mine = result.egos[0].predictions
     assert drive.predictions.x.size > 0
     for name in ("time", "pedestrian", "look_ahead", "x", "y"):

@@ -15,8 +15,8 @@ from giveway import run
 from giveway.cli.replay import replay_command
 from giveway.errors import ResultsError
 from giveway.replays import write_replay
+from giveway.replays.events import events, why
 from giveway.replays.packing import Frame, pack_tracks, thinning
-from giveway.replays.story import events, why
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,9 +13,9 @@ import pytest
 
 from giveway.studies.definition import parse_definition
 from giveway.studies.design import design
+from giveway.studies.execution.perform import perform
 from giveway.studies.folder import StudyFolder
 from giveway.studies.output import write_tables
-from giveway.studies.performing import perform
 from giveway.studies.record import CRASHED
 from giveway.studies.rerun import rerun
 from giveway.studies.store import RecordStore

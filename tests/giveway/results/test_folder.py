@@ -11,7 +11,7 @@ import pytest
 
 import giveway
 from giveway.errors import ResultsError
-from giveway.results import FILES, take_folder, write_results
+from giveway.results.folder import FILES, take_folder, write_results
 
 CONFIG = {"seed": 4, "crowd": {"pedestrians": 8}}
 DETERMINISTIC = ("ego.csv", "trajectories.csv", "pedestrians.csv", "summary.csv", "config.toml")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from giveway.config import RunConfig
-from giveway.mismatch import remark
+from giveway.results.mismatch import remark
 
 H = 0.05  # [s]
 FORCE = np.repeat([2000.0, 0.0, -3000.0, 1000.0, -500.0, 3000.0, -2000.0], 20)  # [N]

@@ -10,7 +10,7 @@ import pytest
 from giveway.errors import ConfigError, ScenarioError
 from giveway.geometry.bodies import VehicleShape
 from giveway.scenario_files import SUMO_SEED, Start, StartOptions, prepare_start, read_scenario
-from giveway.sumo_types import ROAD_CLASSES, all_types, ego_type
+from giveway.sumo.types import ROAD_CLASSES, all_types, ego_type
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

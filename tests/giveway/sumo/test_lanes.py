@@ -10,7 +10,7 @@ import sumo as sumo_wheel
 
 from giveway.errors import ScenarioError
 from giveway.scenario_files import StartOptions, read_scenario
-from giveway.sumo import SumoSession
+from giveway.sumo.session import SumoSession
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,8 @@ import pytest
 
 from giveway.config.layers import Layer
 from giveway.config.loading import load
+from giveway.studies.execution.perform import perform
 from giveway.studies.identity import software_identity
-from giveway.studies.performing import perform
 from giveway.studies.record import RunRecord, Task
 
 if TYPE_CHECKING:

@@ -1,0 +1,301 @@
+"""From a configuration to the parts of a run, each set up and at its initial state."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.config.presets import parameters_of
+from giveway.cosimulation.departures import Departures
+from giveway.cosimulation.yielding import Yielding
+from giveway.crowd.exchange import Exchange
+from giveway.crowd.roster import Roster
+from giveway.crowd.spawn import PREFIX, Spawned, spawn
+from giveway.crowd.zone import Zone
+from giveway.ego.controllers import make_driver, make_regulator
+from giveway.ego.vehicle import model_remark, require_vehicles
+from giveway.errors import ConfigError, CrowdError, ScenarioError
+from giveway.geometry.bodies import BODY, VehicleShape
+from giveway.scenario_files import StartOptions, free_prefix, read_scenario
+from giveway.sumo.session import SumoSession
+from giveway.sumo.types import all_types, inserted_type
+from giveway.walkways import WalkNetwork
+from pedestrian_model import (
+    OPEN_GROUND,
+    Crowd,
+    CrowdModel,
+    PedestrianModelError,
+    Surroundings,
+    arrived,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from contextlib import ExitStack
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from giveway.config import RunConfig
+    from giveway.ego.ego import Driver
+    from giveway.scenario_files import ScenarioFiles
+    from sumo_scenarios import Scenario
+
+ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
+LONGEST_STEP = 0.05  # [s] of the co-simulation: the paper's, and what the crowd is stable at
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What a run is made of."""
+
+    config: RunConfig
+    sumo: SumoSession
+    time_step: float  # [s]
+    substeps: int  # control steps per SUMO step
+    horizon: int  # steps that anybody looks ahead
+    drivers: tuple[Driver, ...]
+    departures: Departures
+    roster: Roster
+    crowd_model: CrowdModel
+    exchange: Exchange | None  # None: the scenario's walkers stay SUMO's
+    surroundings: Surroundings
+    yielding: Yielding | None  # None: SUMO's cars do not look for pedestrians
+    remarks: tuple[str, ...]  # what the user should know
+
+    @property
+    def all_remarks(self) -> tuple[str, ...]:
+        """The remarks, with what has come up on the way."""
+        remarks = [
+            f"ego '{name}': its {count} stop(s) are left out; the vehicle FMU drives on"
+            for name, count in self.sumo.vehicles.dropped_stops.items()
+        ]
+        identified = [model_remark(d.config, self.time_step) for d in self.drivers]
+        remarks += [text for text in identified if text]
+        remarks += [f"ego '{d.id}': {text}" for d in self.drivers for text in d.vehicle.warnings]
+        unconnected = 0 if self.exchange is None else self.exchange.unconnected
+        if unconnected:
+            remarks.append(
+                f"walkers: {unconnected} hop(s) of their routes lead where the network has no "
+                "walkway; they take the straight line"
+            )
+        return (*self.remarks, *remarks)
+
+    def arrived(self, crowd: Crowd) -> NDArray[np.bool_]:
+        """(n,) who of ``crowd`` has reached the last way-point."""
+        return arrived(crowd, ARRIVAL_RADIUS)
+
+
+def assemble(
+    config: RunConfig,
+    scenario: Scenario,
+    stack: ExitStack,
+    *,
+    outputs: Path | None = None,
+    native_log: Path | None = None,
+    goes_on: Callable[[float], bool] = lambda _: True,
+) -> Parts:
+    """Set up every part and let SUMO run up to the first departure; ``stack`` closes everything.
+
+    The cheap and the fallible come first, SUMO before the vehicles: what is wrong with a request
+    is said before anything runs.
+
+    Args:
+        config: the run's.
+        scenario: its scenario.
+        stack: closes SUMO and the FMUs.
+        outputs: folder for SUMO's own outputs; None drops them.
+        native_log: file for what SUMO prints; None: a temporary one.
+        goes_on: asked, with SUMO's clock, at each step until the first departure.
+
+    Raises:
+        GivewayError: a part cannot be set up as asked.
+    """
+    files = read_scenario(scenario.config_file)
+    zone = Zone(config.crowd.zone, config.crowd.zone_margin)
+    egos = config.each_ego()
+    _require_distinct(egos)
+    time_step = control_step(config, files)
+    require_vehicles(egos, time_step)
+    regulators = [make_regulator(ego, time_step) for ego in egos]
+    walkers = not zone.nowhere and not (zone.follows_egos and not egos)
+    moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
+    sumo = stack.enter_context(
+        SumoSession(
+            files, _start_options(config, moved, outputs), _types(egos), native_log=native_log
+        )
+    )
+    substeps = _substeps(time_step, sumo.step_length)
+    remarks = list(sumo.start.remarks)
+    network = WalkNetwork.read(files.net_file) if walkers or config.crowd.walls else None
+    if network is not None:
+        zone.require_overlap(network.boundary)
+        remarks += _remarks_on(network, files.net_file)
+    drivers = tuple(
+        make_driver(ego, regulator, time_step, stack)
+        for ego, regulator in zip(egos, regulators, strict=True)
+    )
+    departures = Departures(drivers, sumo, scenario.config_file, time_step)
+    departures.run_until_first(goes_on)
+    roster = _roster(config, departures, sumo, files.net_file, network)
+    exchange = None
+    if network is not None:
+        exchange = Exchange(
+            sumo,
+            network,
+            zone if walkers else Zone("none", 0.0),
+            roster,
+            walls=config.crowd.walls,
+        )
+    yielding = None
+    if config.traffic.yielding and (len(roster) or walkers):
+        yielding = Yielding(sumo.vehicles, sumo.step_length, config.traffic.yield_distance)
+    return Parts(
+        config=config,
+        sumo=sumo,
+        time_step=time_step,
+        substeps=substeps,
+        horizon=max((driver.horizon for driver in drivers), default=1),
+        drivers=drivers,
+        departures=departures,
+        roster=roster,
+        crowd_model=CrowdModel(parameters_of(config.crowd.preset), time_step),
+        exchange=exchange,
+        surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
+        yielding=yielding,
+        remarks=tuple(remarks),
+    )
+
+
+def _require_distinct(egos: Sequence[RunConfig]) -> None:
+    names = [ego.ego_id for ego in egos]
+    for name in names:
+        if names.count(name) > 1:
+            msg = f"ego '{name}': two egos have this id; give each [[egos]] entry its own"
+            raise ConfigError(msg)
+
+
+def _start_options(config: RunConfig, moved: bool, outputs: Path | None) -> StartOptions:
+    sumo = config.sumo
+    seed = config.seed if sumo.seed == "run" else sumo.seed
+    extra = sumo.options if sumo.end is None else ("--end", f"{sumo.end:.3f}", *sumo.options)
+    return StartOptions(
+        seed=None if seed == "scenario" else int(seed),
+        fallback_seed=config.seed,
+        step_length=sumo.step_length,
+        interact=moved,
+        outputs=outputs,
+        fcd=sumo.fcd,
+        tripinfo=sumo.tripinfo,
+        ssm=sumo.ssm,
+        summary=sumo.summary,
+        extra=extra,
+    )
+
+
+def _types(egos: Sequence[RunConfig]) -> str:
+    """The vehicle types of all egos to be inserted, and of those to be taken over."""
+    bodies = {
+        inserted_type(ego.ego.id): VehicleShape(
+            ego.vehicle.length or BODY.length, ego.vehicle.width or BODY.width
+        )
+        for ego in egos
+        if not ego.ego.take_over
+    }
+    return all_types(bodies)
+
+
+def _remarks_on(network: WalkNetwork, net_file: Path) -> list[str]:
+    if network.has_walkingareas or network.has_sidewalks:
+        return []
+    return [
+        f"{net_file.name}: neither sidewalks nor walkingareas; walkers keep to the side of the "
+        "roads and go straight over junctions; netconvert's --sidewalks.guess, --walkingareas and "
+        "--crossings.guess add them"
+    ]
+
+
+def _roster(
+    config: RunConfig,
+    departures: Departures,
+    sumo: SumoSession,
+    net_file: Path,
+    network: WalkNetwork | None,
+) -> Roster:
+    """The pedestrians that giveway adds."""
+    if not config.crowd.pedestrians:
+        return Roster()
+    prefix = free_prefix(PREFIX, (file for file in sumo.start.read if file != net_file))
+    spawned = spawn(config.crowd, departures.first_path, config.seed, prefix)
+    for name in departures.names:
+        if name in spawned.ids:
+            msg = f"--ego-id '{name}': a pedestrian has this id; choose another"
+            raise ConfigError(msg)
+    host = config.crowd.host_edge or _host(config, network or WalkNetwork.read(net_file), net_file)
+    sumo.add_persons(spawned.ids, host)
+    return Roster(spawned.ids, _crowd(spawned))
+
+
+def _host(config: RunConfig, network: WalkNetwork, net_file: Path) -> str:
+    """The edge for pedestrians that is nearest to the spawn area."""
+    x_min, y_min, x_max, y_max = config.crowd.spawn_area
+    lane = network.nearest_lane((x_min + x_max) / 2, (y_min + y_max) / 2)
+    if lane is None:
+        msg = (
+            f"{net_file}: no lane for pedestrians, where SUMO could register the added ones; "
+            "build the network with netconvert --sidewalks.guess, or add none (--pedestrians 0)"
+        )
+        raise ScenarioError(msg)
+    return lane.edge
+
+
+def _crowd(spawned: Spawned) -> Crowd:
+    """Everybody already walks: at the desired speed, towards the destination."""
+    way = spawned.destination - spawned.position
+    direction = way / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)[:, None]
+    try:
+        return Crowd.create(
+            spawned.position,
+            spawned.desired_speed[:, None] * direction,
+            spawned.desired_speed,
+            [destination[None] for destination in spawned.destination],
+        )
+    except PedestrianModelError as error:
+        raise CrowdError(f"pedestrians cannot be placed: {error}") from error
+
+
+def control_step(config: RunConfig, files: ScenarioFiles) -> float:
+    """The control step [s] of a run of these files."""
+    step_length = _whole_milliseconds(config.sumo.step_length or files.step_length)
+    return _time_step(config.time_step, step_length)
+
+
+def _whole_milliseconds(step_length: float) -> float:
+    """SUMO's step [s] as it keeps it: half a millisecond is rounded up."""
+    return math.floor(1000.0 * step_length + 0.5) / 1000.0
+
+
+def _time_step(wanted: float | None, step_length: float) -> float:
+    """The control step [s]: as wanted, or 0.05 s, or the longest below that divides SUMO's."""
+    if wanted is not None:
+        return wanted
+    return step_length / max(1, math.ceil(step_length / LONGEST_STEP - 1e-9))
+
+
+def _substeps(time_step: float, step_length: float) -> int:
+    """How many control steps make one SUMO step.
+
+    Raises:
+        ConfigError: they do not fit a whole number of times.
+    """
+    substeps = round(step_length / time_step)
+    if substeps < 1 or abs(substeps * time_step - step_length) > 1e-9:
+        msg = (
+            f"--time-step {time_step:g}: SUMO's step of {step_length:g} s is not a whole multiple "
+            "of it; choose another time step [s] or --sumo-step-length, or leave it out"
+        )
+        raise ConfigError(msg)
+    return substeps

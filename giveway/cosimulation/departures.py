@@ -1,0 +1,280 @@
+"""When each ego enters the road, and how: inserted by us, or taken over as it departs."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from typing import TYPE_CHECKING
+
+from giveway.config.sections import DEFAULT_SPEED
+from giveway.ego.ego import Ego
+from giveway.ego.lights import Lights
+from giveway.errors import ConfigError, ScenarioError
+from giveway.geometry.bodies import BODY, VehicleShape
+from giveway.geometry.path import EgoPath
+from giveway.scenario_files import declares, undeclared
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from giveway.ego.ego import Driver
+    from giveway.sumo.lanes import Way
+    from giveway.sumo.session import SumoSession
+    from giveway.sumo.vehicles import VehicleState
+
+LONGEST_WAIT = 86_400.0  # [s] for a departure in a scenario that never ends
+_ON_THE_LINE = 0.01  # [m]
+_MERGE = 20.0  # [m] along which a vehicle beside its lane's centre line joins it
+_NAMES_KEPT = 100_000  # of vehicles that departed, to guess what was meant
+
+
+class Departures:
+    """Watches SUMO for the departure of each driver's vehicle.
+
+    Args:
+        drivers: with their FMUs loaded.
+        session: the running simulation.
+        config_file: the scenario, for messages.
+        time_step: [s] of the co-simulation.
+
+    Raises:
+        ScenarioError, ConfigError: an ego to be inserted has no way, or no file declares one that
+            is to be taken over.
+    """
+
+    def __init__(
+        self, drivers: Sequence[Driver], session: SumoSession, config_file: Path, time_step: float
+    ) -> None:
+        self.waiting = list(drivers)
+        self._session = session
+        self._config_file = config_file
+        self._time_step = time_step
+        for driver in drivers:
+            if driver.taken_over:
+                self._require_declared(driver.id)
+            else:
+                self._require_undeclared(driver.id)
+        self._departed: dict[str, None] = dict.fromkeys(session.vehicles.present())
+        self._ways = {
+            driver.id: self._way_of_inserted(driver) for driver in drivers if not driver.taken_over
+        }
+
+    def _require_declared(self, name: str) -> None:
+        """A vehicle that no file declares need not be waited for."""
+        hint = undeclared(name, self._session.start.read)
+        if hint is not None:
+            msg = f"--ego {name}: no such vehicle in the routes of {self._config_file}; {hint}"
+            raise ScenarioError(msg)
+
+    def _require_undeclared(self, name: str) -> None:
+        """Two vehicles cannot have the same id, be it that one departs later."""
+        if declares(name, self._session.start.read):
+            msg = (
+                f"--ego-id {name}: {self._config_file} has a vehicle of this id; choose another, "
+                f"or take that one over with --ego {name}"
+            )
+            raise ScenarioError(msg)
+
+    @property
+    def names(self) -> list[str]:
+        """Ids of the vehicles that have not departed yet."""
+        return [driver.id for driver in self.waiting]
+
+    @property
+    def first_path(self) -> EgoPath | None:
+        """The way of the first ego to be inserted, if there is one."""
+        return next((path for path, _ in self._ways.values()), None)
+
+    def run_until_first(self, goes_on: Callable[[float], bool]) -> None:
+        """Let the scenario run by itself until somebody is due.
+
+        Args:
+            goes_on: asked at each SUMO step, with SUMO's clock [s].
+
+        Raises:
+            ScenarioError: nobody ever is.
+        """
+        session = self._session
+        began = session.time
+        while self.waiting and not any(map(self._is_due, self.waiting)):
+            if not goes_on(session.time):
+                return
+            over = session.time >= min(session.end, began + LONGEST_WAIT) - 1e-9
+            if over or (session.end == math.inf and not session.expects_more and self._all_taken):
+                raise ScenarioError(self._never(self.waiting[0]))
+            session.step()
+            self.note()
+
+    @property
+    def _all_taken(self) -> bool:
+        return all(driver.taken_over for driver in self.waiting)
+
+    def note(self) -> None:
+        """Once after each SUMO step: who departed in it."""
+        if self.waiting:
+            departed = self._session.vehicles.departed()
+            if departed and len(self._departed) < _NAMES_KEPT:
+                self._departed.update(dict.fromkeys(departed))
+            elif departed:
+                self._departed.update((d.id, None) for d in self.waiting if d.id in departed)
+
+    def due(self) -> list[Ego]:
+        """The egos that enter the road now."""
+        if not self.waiting:
+            return []
+        ready = [driver for driver in self.waiting if self._is_due(driver)]
+        self.waiting = [driver for driver in self.waiting if driver not in ready]
+        return [self._enter(driver) for driver in ready]
+
+    def require_all(self) -> None:
+        """Make sure that everybody has departed.
+
+        Raises:
+            ScenarioError: somebody has not.
+        """
+        if self.waiting:
+            raise ScenarioError(self._never(self.waiting[0]))
+
+    def _is_due(self, driver: Driver) -> bool:
+        if not driver.taken_over:
+            return self._session.time >= driver.config.ego.depart_time - 1e-9
+        return (
+            driver.id in self._departed
+            and driver.id in self._session.vehicles.present()
+            and self._session.vehicles.on_a_road(driver.id)
+        )
+
+    def _never(self, driver: Driver) -> str:
+        if not driver.taken_over:
+            departure = driver.config.ego.depart_time
+            return (
+                f"ego '{driver.id}': {self._config_file} ends at {self._session.time:.12g} s, "
+                f"before its departure at {departure:.12g} s; let it depart earlier"
+            )
+        names = list(self._departed)
+        close = difflib.get_close_matches(driver.id, names, n=1)
+        hint = "nobody did; look at its begin and end"
+        if names:
+            shown = ", ".join(names[:3])
+            hint = f"did you mean '{close[0]}'?" if close else f"name one that does, like {shown}"
+        return (
+            f"--ego {driver.id}: no such vehicle departed in {self._config_file} until "
+            f"{self._session.time:.12g} s ({len(names)} others did); {hint}"
+        )
+
+    # --- inserted -----------------------------------------------------------------------------
+
+    def _way_of_inserted(self, driver: Driver) -> tuple[EgoPath, Way]:
+        ego = driver.config.ego
+        if ego.depart_time >= self._session.end:
+            msg = (
+                f"--ego-depart-time {ego.depart_time:.12g}: {self._config_file} ends at "
+                f"{self._session.end:.12g} s; let the ego depart before [s]"
+            )
+            raise ConfigError(msg)
+        if not ego.route:
+            name = self._config_file.stem
+            msg = (
+                f"{self._config_file}: no ego; take a vehicle of the scenario with --ego ID, "
+                f"insert one with --ego-route EDGE,EDGE or in {name}.giveway.toml, [ego] route, "
+                "or drive none with --no-ego"
+            )
+            raise ConfigError(msg)
+        way = self._session.lanes.along(ego.route, ego.lane, start=ego.depart_position)
+        path = EgoPath.through(way.points)
+        self._require_room(driver, path, ego.depart_position)
+        return path, way
+
+    def _require_room(self, driver: Driver, path: EgoPath, departure: float) -> None:
+        distance = driver.config.ego.travel_distance
+        if departure >= path.length - 1e-3:
+            msg = (
+                f"ego '{driver.id}': its way is {path.length:.1f} m long and it departs at "
+                f"{departure:.1f} m; let it depart earlier or lengthen its route"
+            )
+            raise ScenarioError(msg)
+        if distance is not None and departure + distance > path.length:
+            msg = (
+                f"--ego-travel-distance {distance:g}: the way of ego '{driver.id}' is "
+                f"{path.length:.1f} m long and it departs at {departure:.1f} m; "
+                "shorten the distance or lengthen --ego-route"
+            )
+            raise ScenarioError(msg)
+
+    # --- entering -----------------------------------------------------------------------------
+
+    def _enter(self, driver: Driver) -> Ego:
+        if driver.taken_over:
+            return self._take_over(driver)
+        ego, vehicle = driver.config.ego, driver.config.vehicle
+        path, way = self._ways[driver.id]
+        speed = DEFAULT_SPEED if ego.initial_speed is None else ego.initial_speed
+        self._session.vehicles.insert(
+            driver.id,
+            ego.route,
+            lane=ego.lane or 0,
+            position=ego.depart_position,
+            speed=speed,
+        )
+        shape = VehicleShape(vehicle.length or BODY.length, vehicle.width or BODY.width)
+        return self._seated(driver, path, way, ego.depart_position, shape, speed)
+
+    def _take_over(self, driver: Driver) -> Ego:
+        state = self._session.vehicles.state(driver.id)
+        vehicle = driver.config.vehicle
+        shape = VehicleShape(vehicle.length or state.length, vehicle.width or state.width)
+        way = self._session.lanes.along(
+            state.edges, state.lane, kind=state.kind, start=state.lane_position
+        )
+        path, departure, lights = _joined(way, state)
+        self._require_room(driver, path, departure)
+        self._session.vehicles.adopt(state, shape)
+        speed = driver.config.ego.initial_speed
+        speed = state.speed if speed is None else speed
+        return self._seated(driver, path, lights, departure, shape, speed)
+
+    def _seated(
+        self,
+        driver: Driver,
+        path: EgoPath,
+        way: Way,
+        departure: float,
+        shape: VehicleShape,
+        speed: float,
+    ) -> Ego:
+        config = driver.config
+        driver.start(speed)
+        goal = config.ego.travel_distance
+        lights = Lights(
+            way.lights if config.regulation.traffic_lights else (),
+            comfortable=config.regulation.comfortable_deceleration,
+            hardest=config.mpc.force_limit / config.vehicle.mass,
+        )
+        return Ego(
+            driver,
+            path,
+            departure,
+            shape,
+            lights,
+            path.length - departure if goal is None else goal,
+            self._time_step,
+        )
+
+
+def _joined(way: Way, state: VehicleState) -> tuple[EgoPath, float, Way]:
+    """The path of a vehicle that is taken over, its front bumper's station, and its lights.
+
+    SUMO's front bumper lies on the lane's centre line as a rule; a vehicle beside it (changing
+    lanes, or with SUMO's sublane model) joins the line within ``_MERGE``.
+    """
+    path = EgoPath.through(way.points)
+    station, lateral = path.locate(state.x, state.y, near=state.lane_position)
+    if abs(lateral) <= _ON_THE_LINE:
+        return path, station, way
+    share = (path.stations - station) / _MERGE
+    beside = path.vertices[share > 1.0]
+    joined = EgoPath.through([(state.x, state.y), *beside])
+    shift = joined.length - (path.length - station)
+    lights = [light._replace(station=light.station - station + shift) for light in way.lights]
+    return joined, 0.0, type(way)(joined.vertices, tuple(lights))

@@ -1,0 +1,313 @@
+"""The master loop: vehicle FMUs, controllers, crowd and SUMO, one control step after the other.
+
+The order of one step, from t_k to t_k+1 (Yang & Özgüner 2019, algorithm 1):
+
+1. where SUMO has just stepped, read it: egos that depart, walkers who enter or leave the zone,
+   lights, SUMO's own vehicles and whom they yield to;
+2. for each ego: predict the crowd, solve for the force u(k);
+3. record the state at t_k and u(k);
+4. step the vehicles and the crowd, both from the state at t_k, so that their order is irrelevant;
+5. where SUMO's step ends at t_k+1: move everybody there, step SUMO, compare.
+
+All that may raise comes before the moves of 5. The controller sits inside the master, without a
+lag of one sample: position and speed do not depend on the force instantaneously, so there is no
+algebraic loop.
+"""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controller import ControllerError
+from fmus import FmuError
+from giveway.cosimulation.mirror import Mirror
+from giveway.cosimulation.standstill import Standstill
+from giveway.crowd.disturbance import disturbance_of
+from giveway.errors import ControlError, CrowdError, VehicleError
+from giveway.processes.heartbeat import Phase
+from giveway.records.progress import Ending, Progress, Watcher
+from pedestrian_model import PedestrianModelError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from giveway.cosimulation.assembly import Parts
+    from giveway.ego.ego import Ego
+    from giveway.recording.recorder import Recorder
+
+Array = NDArray[np.float64]
+
+
+def looks_ahead(period: float | None, time_step: float) -> int:
+    """Every how many steps of look-ahead a prediction is kept for a ``period`` [s]; 0: never."""
+    return 0 if period is None else max(1, round(period / time_step))
+
+
+class Loop:
+    """One run's state and its steps.
+
+    Args:
+        parts: what the run is made of, set up and at its initial state.
+        recorder: gathers the rows.
+
+    Attributes:
+        endings: of each ego that has left the road or was on it when the run ended.
+        remarks: what the user should know of how it went.
+    """
+
+    endings: dict[str, Ending]
+    remarks: list[str]
+
+    def __init__(self, parts: Parts, recorder: Recorder) -> None:
+        self._parts = parts
+        self._recorder = recorder
+        self._beat = recorder.journal.heartbeat
+        self._start = parts.sumo.time
+        self._time_step = parts.time_step
+        self._k = 0
+        self._roster = parts.roster
+        self._egos: list[Ego] = []
+        self.endings = {}
+        self.remarks = []
+        self._standstill = Standstill()
+        self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
+        self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
+        self._far_background = -self._far_steps
+        self._near = parts.config.record.near
+        self._looks = looks_ahead(parts.config.record.predictions, parts.time_step)
+        self._named = 0
+        self._fronts = np.empty((0, 2))
+        self._disturbance = disturbance_of(parts.config, parts.crowd_model)
+
+    def run(self, watcher: Watcher | None, interrupted: Callable[[], bool]) -> Ending:
+        """Step until every ego is done, a limit or an interrupt.
+
+        Raises:
+            GivewayError: a part failed; everything recorded so far stays recorded.
+        """
+        try:
+            ending = self._run(watcher, interrupted)
+        except FmuError as error:
+            raise VehicleError(f"step {self._k}: {error}") from error
+        except ControllerError as error:
+            raise ControlError(f"controller at step {self._k}: {error}") from error
+        except PedestrianModelError as error:
+            raise CrowdError(self._blame(error)) from error
+        for ego in self._egos:
+            self.endings.setdefault(ego.id, ending)
+        if ending in {Ending.SCENARIO_END, Ending.TIME_LIMIT}:
+            self._parts.departures.require_all()
+        return ending
+
+    def _blame(self, error: PedestrianModelError) -> str:
+        """Name the pedestrian whose state is not finite by its id."""
+        crowd, roster = self._roster.crowd, self._roster
+        state = np.concatenate([crowd.position, crowd.velocity], axis=1)
+        bad = np.flatnonzero(~np.isfinite(state).all(axis=1))
+        if not len(bad):
+            return f"crowd at step {self._k}: {error}"
+        name = roster.ids[roster.present[bad[0]]]
+        return (
+            f"pedestrian '{name}' at step {self._k}: position and velocity "
+            f"{state[bad[0]].tolist()}; expected finite numbers [m, m/s]"
+        )
+
+    def _run(self, watcher: Watcher | None, interrupted: Callable[[], bool]) -> Ending:
+        parts = self._parts
+        limit = np.inf if parts.config.time_limit is None else parts.config.time_limit
+        last_step = min(limit, parts.sumo.end - self._start) / self._time_step - 1e-6
+        while True:
+            self._began = perf_counter()
+            if self._k % parts.substeps == 0:
+                self._read_sumo()
+            self._read_at = perf_counter()
+            acting = self._control()
+            if watcher is not None:
+                watcher(self._progress(acting))
+            self._see_arrivals()
+            if parts.drivers and not self._egos and not parts.departures.waiting:
+                return Ending.COMPLETED
+            if self._k >= last_step:
+                over = limit / self._time_step - 1e-6 <= self._k
+                return Ending.TIME_LIMIT if over else Ending.SCENARIO_END
+            if not self._egos and self._nobody_comes():
+                return Ending.SCENARIO_END
+            elapsed = self._k * self._time_step
+            if parts.sumo.end == np.inf and self._standstill.too_long(self._egos, elapsed):
+                self.remarks.append(self._standstill.remark)
+                return Ending.TIME_LIMIT
+            if interrupted():
+                return Ending.INTERRUPTED
+            self._advance()
+
+    def _nobody_comes(self) -> bool:
+        """Whether a scenario without an end has nobody left, and no ego is to be inserted."""
+        sumo, waiting = self._parts.sumo, self._parts.departures.waiting
+        return (
+            sumo.end == np.inf
+            and not sumo.expects_more
+            and all(driver.taken_over for driver in waiting)
+        )
+
+    def _progress(self, acting: str) -> Progress:
+        elapsed, people = self._k * self._time_step, len(self._roster)
+        clock = self._start + elapsed
+        if not self._egos:
+            return Progress(elapsed, clock, np.nan, np.nan, np.nan, acting, people)
+        ego = self._egos[0]
+        position, speed = ego.vehicle.position, ego.vehicle.speed
+        return Progress(elapsed, clock, position, ego.goal, speed, acting, people)
+
+    # --- step 1 -------------------------------------------------------------------------------
+
+    def _read_sumo(self) -> None:
+        parts = self._parts
+        if parts.departures.waiting:
+            arrivals = parts.departures.due()
+            self._egos += arrivals
+            for ego in arrivals:
+                self._recorder.drive(ego.id, ego.shape, ego.goal)
+        if parts.exchange is not None:
+            parts.exchange.update(self._places())
+        people = self._roster.crowd.position
+        self._mirror.read(self._egos, people)
+        for ego in self._egos:
+            if ego.lights.systems:
+                states = parts.sumo.light_states(ego.lights.systems)
+                ego.lights.update(states, ego.front, ego.vehicle.speed)
+        if parts.yielding is not None:
+            parts.yielding.update(self._mirror.background, self._roster.crowd)
+        self._record_background()
+        self._recorder.ledger(self._roster.ledger)
+
+    def _places(self) -> Array:
+        """(e, 2) [m] the egos' front bumpers."""
+        if len(self._fronts) != len(self._egos):
+            self._fronts = np.empty((len(self._egos), 2))
+        for row, ego in enumerate(self._egos):
+            self._fronts[row, 0], self._fronts[row, 1], _ = ego.pose
+        return self._fronts
+
+    # --- steps 2 and 3 ------------------------------------------------------------------------
+
+    def _control(self) -> str:
+        """Decide on every ego's force, and record the instant."""
+        time = self._start + self._k * self._time_step
+        self._beat.step(self._k, time)
+        self._beat.beat(Phase.CONTROLLING)
+        recorder, mirror = self._recorder, self._mirror
+        recorder.instant(time)
+        mirror.place(self._egos)
+        crowd, surroundings = self._roster.crowd, self._parts.surroundings
+        predicting = controlling = 0.0
+        acting = ""
+        for row, ego in enumerate(self._egos):
+            look_at = perf_counter()
+            seen = ego.look(row, mirror.poses, crowd, surroundings)
+            decide_at = perf_counter()
+            decision = ego.decide(self._k, seen)
+            controlled_at = perf_counter()
+            recorder.ego(ego.id, ego.row(time, seen, decision))
+            predicted = ego.expected(seen) if self._looks else None
+            if predicted is not None:
+                self._record_predictions(ego.id, predicted, seen.whom)
+            predicting += decide_at - look_at
+            controlling += controlled_at - decide_at
+            acting = acting or decision.acting
+        self._record_crowd()
+        recorder.journal.commit()
+        self._predicting, self._controlling = predicting, controlling
+        return acting
+
+    def _record_crowd(self) -> None:
+        """Everybody near an ego, and from time to time everybody."""
+        roster = self._roster
+        if len(roster.ids) > self._named:
+            self._recorder.name_pedestrians(roster.ids[self._named :])
+            self._named = len(roster.ids)
+        crowd = roster.crowd
+        within = self._near if self._k % self._far_steps else np.inf
+        self._recorder.crowd(roster.present, crowd.position, crowd.velocity, self._places(), within)
+
+    def _record_predictions(
+        self, ego_id: str, predicted: Array, whom: NDArray[np.bool_] | None
+    ) -> None:
+        present = self._roster.present
+        people = present if whom is None else present[whom]
+        every = min(self._looks, len(predicted))  # of a period beyond the horizon, its end is kept
+        kept = predicted[every - 1 :: every]
+        looks = np.arange(every, len(predicted) + 1, every, dtype=np.float64)
+        self._recorder.predictions(ego_id, people, self._time_step * looks, kept)
+
+    def _record_background(self) -> None:
+        background = self._mirror.background
+        if not background.ids:
+            return
+        within = self._near
+        if self._k - self._far_background >= self._far_steps:
+            self._far_background, within = self._k, np.inf
+        time = self._start + self._k * self._time_step
+        self._recorder.background(time, background, self._places(), within)
+
+    # --- steps 4 and 5 ------------------------------------------------------------------------
+
+    def _see_arrivals(self) -> None:
+        """Egos that have driven their distance leave the road."""
+        for ego in self._egos[:]:
+            if not ego.arrived:
+                continue
+            self.endings[ego.id] = Ending.COMPLETED
+            self._mirror.drop(self._egos.index(ego))
+            self._egos.remove(ego)
+            if self._egos or self._parts.departures.waiting:
+                self._parts.sumo.vehicles.dismiss(ego.id)
+
+    def _advance(self) -> None:
+        parts, mirror = self._parts, self._mirror
+        recorded_at = perf_counter()
+        self._beat.beat(Phase.VEHICLE)
+        for ego in self._egos:
+            ego.advance()
+        vehicle_at = perf_counter()
+        self._beat.beat(Phase.CROWD)
+        self._step_crowd()
+        crowd_at = perf_counter()
+        self._k += 1
+        self._beat.beat(Phase.SUMO)
+        if self._k % parts.substeps:
+            mirror.carry_on()
+        else:
+            mirror.push(self._k, self._egos, self._roster)
+            parts.departures.note()
+        ended = perf_counter()
+        self._recorder.timing(
+            self._predicting,
+            self._controlling,
+            vehicle_at - recorded_at,
+            crowd_at - vehicle_at,
+            ended - crowd_at + self._read_at - self._began,
+            ended - self._began,
+        )
+
+    def _step_crowd(self) -> None:
+        """Move the crowd under the vehicles at t_k; who has arrived leaves."""
+        parts, roster = self._parts, self._roster
+        if not len(roster.present):
+            return
+        crowd, now = roster.crowd, (self._mirror.vehicles, parts.surroundings)
+        if self._disturbance is None:
+            parts.crowd_model.advance(crowd, *now)
+        else:
+            people = roster.present, len(roster.ids)
+            self._disturbance.advance(crowd, *now, *people)
+        there = parts.arrived(roster.crowd)
+        if not np.count_nonzero(there):
+            return
+        names = roster.release(there)  # they leave SUMO with its next step
+        ours = names if parts.exchange is None else parts.exchange.arrive(names)
+        parts.sumo.remove_persons(ours)
+        roster.count("arrived", len(ours))

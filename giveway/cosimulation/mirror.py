@@ -1,0 +1,230 @@
+"""What SUMO and our own world tell each other: poses of vehicles in, places of people out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.errors import CrowdError, VehicleError
+from giveway.geometry.angles import angle_of_velocity
+from giveway.geometry.kernel import kernel
+from giveway.geometry.passage import SIGHT
+from giveway.sumo.background import NO_VEHICLES, BackgroundVehicles
+from pedestrian_model import Vehicles
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from giveway.crowd.roster import Roster
+    from giveway.ego.ego import Ego
+    from giveway.sumo.session import SumoSession
+
+Array = NDArray[np.float64]
+
+_INFLUENCE_RANGE = 10.0  # [m] from a vehicle's contour: the influence is exp(-26) of the strongest
+_NOSE = 1.5  # [s] the contour's nose is no longer than this times the speed
+_NONE = np.empty(0, dtype=np.int64)
+_STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
+
+
+class Mirror:
+    """Keeps SUMO where our world is, and our world's background vehicles where SUMO's are.
+
+    SUMO steps once every ``substeps`` control steps; in between its vehicles go on straight at
+    the speed they had.
+
+    Args:
+        session: the running simulation.
+        time_step: of the control [s].
+        substeps: control steps per SUMO step.
+        horizon: N, steps that anybody looks ahead.
+
+    Attributes:
+        background: SUMO's own vehicles at its latest instant.
+        poses: (N, e + b, 7) vehicles over the prediction horizon; the first e rows of each step
+            are the egos, which their corridors fill in; ``poses[0]`` is now.
+        vehicles: a view of ``poses[0]`` for the crowd's step.
+    """
+
+    background: BackgroundVehicles
+    poses: Array
+    vehicles: Vehicles
+
+    def __init__(self, session: SumoSession, time_step: float, substeps: int, horizon: int) -> None:
+        self._session = session
+        self._time_step = time_step
+        self._substeps = substeps
+        self._horizon = horizon
+        self._span = (substeps + horizon) * time_step  # [s]
+        self._egos = 0
+        self._driven: list[Ego] = []
+        self._angles = np.zeros(0)
+        self._row = np.zeros(0)
+        self.background = NO_VEHICLES
+        self._allocate((), 0)
+
+    def _allocate(self, egos: Sequence[Ego], others: int) -> None:
+        self._egos, self._driven = len(egos), list(egos)
+        self.poses = np.zeros((self._horizon, self._egos + others, 7))
+        self.poses[:, :, 4:] = 1.0  # a body of some size, until the row is filled
+        for row, ego in enumerate(egos):
+            half = ego.shape.length / 2
+            self.poses[:, row, 4:] = half, half, ego.shape.width
+        self.vehicles = Vehicles(self.poses[0])
+
+    # --- from SUMO ----------------------------------------------------------------------------
+
+    def read(self, egos: Sequence[Ego], people: Array) -> None:
+        """Take over where SUMO's own vehicles are now.
+
+        Args:
+            egos: on the road, in the order of their rows.
+            people: (n, 2) [m] the pedestrians now.
+
+        Raises:
+            VehicleError: SUMO has a vehicle at no finite place.
+        """
+        self.background = background = self._session.vehicles.background()
+        near = _NONE
+        if background.ids:
+            self._require_finite(background)
+            drives = [(*ego.pose[:2], ego.vehicle.speed) for ego in egos]
+            near = _relevant(background, people, drives, self._span)
+        if self.poses.shape[1] != len(egos) + len(near) or self._driven != egos:
+            self._allocate(egos, len(near))
+        if len(near):
+            now = self.poses[0, self._egos :]
+            half_length = background.length[near] / 2
+            now[:, 0] = background.x[near] - half_length * np.cos(background.heading[near])
+            now[:, 1] = background.y[near] - half_length * np.sin(background.heading[near])
+            now[:, 2] = background.heading[near]
+            now[:, 3] = background.speed[near]
+            now[:, 4] = now[:, 5] = half_length
+            now[:, 6] = background.width[near]
+            extrapolate(self.poses, self._egos, self._time_step)
+
+    def _require_finite(self, vehicles: BackgroundVehicles) -> None:
+        bad = ~np.isfinite(vehicles.x + vehicles.y + vehicles.speed)
+        if bad.any():
+            i = int(np.argmax(bad))
+            place, speed = f"({vehicles.x[i]}, {vehicles.y[i]})", vehicles.speed[i]
+            msg = f"vehicle '{vehicles.ids[i]}' at {self._session.time:.12g} s: SUMO has it at "
+            msg += f"{place} with {speed} m/s; expected finite numbers; check its route and type"
+            raise VehicleError(msg)
+
+    def place(self, egos: Sequence[Ego]) -> None:
+        """Fill the egos' rows from where they are now."""
+        for row, ego in enumerate(egos):
+            ego.corridor.fill_poses(self.poses, row, ego.front, ego.vehicle.speed)
+
+    def drop(self, row: int) -> None:
+        """Take the ego in ``row`` out of the vehicles, between two of SUMO's steps or not."""
+        self._egos -= 1
+        self.poses = np.ascontiguousarray(np.delete(self.poses, row, axis=1))
+        self.vehicles = Vehicles(self.poses[0])
+
+    def carry_on(self) -> None:
+        """Move SUMO's vehicles on by one control step, since SUMO itself does not step yet."""
+        if self.poses.shape[1] > self._egos:
+            carry_on(self.poses, self._egos, self._time_step)
+
+    # --- to SUMO ------------------------------------------------------------------------------
+
+    def push(self, step: int, egos: Sequence[Ego], roster: Roster) -> None:
+        """Move everybody in SUMO to where they are at the control step ``step``, and step SUMO.
+
+        Raises:
+            CrowdError, VehicleError: a value that SUMO must not be given (it hangs on them).
+            SumoError: SUMO failed or disagrees.
+        """
+        places = [(ego.id, ego.check_pose(step)) for ego in egos]
+        present, crowd = roster.present, roster.crowd
+        self._reserve(len(roster.ids))
+        angles = self._row[: len(present)]
+        bad = walking_angles(crowd.position, crowd.velocity, present, self._angles, angles)
+        if bad >= 0:
+            msg = (
+                f"pedestrian '{roster.ids[present[bad]]}' at step {step}: position "
+                f"{crowd.position[bad].tolist()}; expected finite numbers"
+            )
+            raise CrowdError(msg)
+        x, y = crowd.position.T.tolist()
+        self._session.mirror(places, roster.names, x, y, angles.tolist())
+
+    def _reserve(self, people: int) -> None:
+        if people > len(self._angles):
+            more = max(people, 2 * len(self._angles))
+            self._angles = np.concatenate([self._angles, np.zeros(more - len(self._angles))])
+            self._row = np.empty(more)
+
+
+def _relevant(
+    vehicles: BackgroundVehicles,
+    people: Array,
+    egos: Sequence[tuple[float, float, float]],
+    ahead: float,
+) -> NDArray[np.int64]:
+    """Indices of the vehicles that matter to anybody within ``ahead`` [s].
+
+    Args:
+        vehicles: SUMO's.
+        people: (n, 2) [m].
+        egos: x, y [m] and speed [m/s] of each.
+        ahead: [s].
+    """
+    speed = np.abs(vehicles.speed)
+    reach = _INFLUENCE_RANGE + vehicles.length + vehicles.width + (_NOSE + ahead) * speed
+    matters = np.zeros(len(vehicles.ids), dtype=np.bool_)
+    if len(people):
+        low, high = people.min(axis=0), people.max(axis=0)
+        matters |= (
+            (vehicles.x >= low[0] - reach)
+            & (vehicles.x <= high[0] + reach)
+            & (vehicles.y >= low[1] - reach)
+            & (vehicles.y <= high[1] + reach)
+        )
+    for x, y, own_speed in egos:
+        distance = np.hypot(vehicles.x - x, vehicles.y - y)
+        matters |= distance <= SIGHT + reach + ahead * own_speed
+    return np.flatnonzero(matters)
+
+
+@kernel
+def extrapolate(poses: Array, egos: int, time_step: float) -> None:
+    """Fill the background vehicles' poses of steps 1 ... N-1 from step 0 at constant speed."""
+    for i in range(1, poses.shape[0]):
+        for j in range(egos, poses.shape[1]):
+            distance = poses[0, j, 3] * time_step * i
+            poses[i, j] = poses[0, j]
+            poses[i, j, 0] += distance * np.cos(poses[0, j, 2])
+            poses[i, j, 1] += distance * np.sin(poses[0, j, 2])
+
+
+@kernel
+def carry_on(poses: Array, egos: int, time_step: float) -> None:
+    """Move all background vehicles of all steps on by one time step at constant speed."""
+    for i in range(poses.shape[0]):
+        for j in range(egos, poses.shape[1]):
+            distance = poses[i, j, 3] * time_step
+            poses[i, j, 0] += distance * np.cos(poses[i, j, 2])
+            poses[i, j, 1] += distance * np.sin(poses[i, j, 2])
+
+
+@kernel
+def walking_angles(
+    position: Array, velocity: Array, present: NDArray[np.int64], memory: Array, angles: Array
+) -> int:
+    """Fill each one's angle [deg, 0 = north, clockwise]; the first not finite state, or -1.
+
+    ``memory`` holds the angles of all pedestrians: who stands keeps the last one.
+    """
+    for j in range(len(present)):
+        v_x, v_y = velocity[j, 0], velocity[j, 1]
+        if not np.isfinite(position[j, 0] + position[j, 1] + v_x + v_y):
+            return j
+        if v_x * v_x + v_y * v_y > _STANDING * _STANDING:
+            memory[present[j]] = angle_of_velocity(v_x, v_y)
+        angles[j] = memory[present[j]]
+    return -1

@@ -1,0 +1,94 @@
+"""What no model knows of how people walk: a random acceleration on top of their own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.crowd.noise import planar_noise
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.config import RunConfig
+    from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles
+
+    Array = NDArray[np.float64]
+
+_STREAM = 0xACC  # tells these draws from others of the same seed
+
+
+class Disturbance:
+    """A random acceleration of everybody, constant over each step and new in the next.
+
+    Drawn for everybody who ever was in the crowd, present or not: a pedestrian meets the same
+    accelerations at the same instants whichever controller drives.
+
+    Args:
+        model: of the crowd, whose limits of speed and acceleration hold all the same.
+        deviation: standard deviation on each axis [m/s^2], before it is cut off at twice that.
+        seed: of the draws.
+    """
+
+    def __init__(self, model: CrowdModel, deviation: float, seed: int) -> None:
+        self._model = model
+        self._deviation = deviation
+        self._time_step = model.time_step
+        self._fastest = model.parameters.max_speed
+        self._most = model.parameters.max_acceleration * model.time_step  # [m/s] in a step
+        self._random = np.random.default_rng((seed, _STREAM))
+
+    def advance(
+        self,
+        crowd: Crowd,
+        vehicles: Vehicles,
+        surroundings: Surroundings,
+        present: NDArray[np.integer],
+        people: int,
+    ) -> None:
+        """Step the crowd in place as the model does, and push everybody.
+
+        Args:
+            crowd: n people.
+            vehicles: in their way.
+            surroundings: the walls and lights that they heed.
+            present: (n,) which of all ``people`` they are.
+            people: how many ever were in the crowd.
+        """
+        before = crowd.velocity.copy()
+        self._model.advance(crowd, vehicles, surroundings)
+        push = planar_noise(self._random, people)[present]
+        push *= self._deviation * self._time_step
+        self.push(crowd, before, push)
+
+    def push(self, crowd: Crowd, before: Array, push: Array) -> None:
+        """Change the step's velocities by ``push`` (n, 2) [m/s], within the limits.
+
+        The whole change of the step, the model's own and the random one, keeps a_max, and the
+        result v_max. Taking a velocity back to v_max shortens its way from ``before``, which lies
+        within, so the second limit keeps the first. Positions follow: half the added velocity
+        times the step, as constant acceleration has it.
+
+        Args:
+            crowd: after its step.
+            before: (n, 2) [m/s] its velocities before.
+            push: (n, 2) [m/s] to be added.
+        """
+        change = crowd.velocity + push - before
+        wanted = before + change * _within(change, self._most)
+        wanted *= _within(wanted, self._fastest)
+        crowd.position[:] += 0.5 * self._time_step * (wanted - crowd.velocity)
+        crowd.velocity[:] = wanted
+
+
+def disturbance_of(config: RunConfig, model: CrowdModel) -> Disturbance | None:
+    """What pushes a run's crowd; None: nothing does."""
+    noise = config.crowd.acceleration_noise
+    return Disturbance(model, noise, config.seed) if noise else None
+
+
+def _within(vectors: Array, longest: float) -> Array:
+    """(n, 1) factors that shorten each vector (n, 2) to ``longest``; 1 for the shorter ones."""
+    length = np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
+    return np.asarray(longest / np.maximum(length, longest))

@@ -1,0 +1,149 @@
+"""Who of the scenario's walkers joins our crowd, and who goes back to SUMO."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.sumo.persons import Arrival
+from pedestrian_model import Crowd, Surroundings, Walls
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from giveway.crowd.roster import Roster
+    from giveway.crowd.zone import Zone
+    from giveway.sumo.persons import Person
+    from giveway.sumo.session import SumoSession
+    from giveway.walkways import WalkNetwork
+
+    Array = NDArray[np.float64]
+
+HANDED_BACK_WITHIN = 3.0  # [m] of the middle of a lane for pedestrians, or SUMO makes them jump
+_CLOSED = frozenset("rRyYus")  # states of a crossing's light at which nobody sets out
+
+
+class Exchange:
+    """Takes the scenario's walkers over in the zone and hands them back outside.
+
+    Args:
+        session: the running simulation.
+        network: where people can walk.
+        zone: where they are ours.
+        roster: our crowd.
+        walls: whether the edges of walkways hold people back.
+    """
+
+    def __init__(
+        self,
+        session: SumoSession,
+        network: WalkNetwork,
+        zone: Zone,
+        roster: Roster,
+        *,
+        walls: bool,
+    ) -> None:
+        self._session = session
+        self._network = network
+        self._zone = zone
+        self._roster = roster
+        self._walkers = session.persons(roster.added)
+        self._states: dict[str, str] = {}
+        self._crossings: dict[str, list[tuple[int, int]]] = {}  # of each light: signal, movement
+        for number, signal in enumerate(network.signals):
+            self._crossings.setdefault(signal.tls, []).append((number, signal.link))
+        self.unconnected = 0  # hops of routes that the network does not connect
+        self.surroundings = Surroundings(
+            walls=Walls.create(network.wall_segments()) if walls else None,
+            closed=np.zeros(len(network.signals), dtype=np.bool_),
+        )
+
+    def update(self, egos: Array) -> None:
+        """Once after each SUMO step: who leaves, who joins, then the lights.
+
+        Args:
+            egos: (e, 2) [m] the egos' front bumpers.
+        """
+        self._hand_back(egos)
+        self._take_over(egos)
+        self._read_lights()  # for those who have just joined, too: some wait at a red one
+
+    def _read_lights(self) -> None:
+        """A crossing whose light is not green is closed."""
+        if not len(self._roster):
+            return
+        closed = self.surroundings.closed
+        for system, crossings in self._crossings.items():
+            state = self._session.light_state(system)
+            if state != self._states.get(system):  # which is seldom
+                self._states[system] = state
+                for number, link in crossings:
+                    closed[number] = state[link] in _CLOSED
+
+    def _take_over(self, egos: Array) -> None:
+        if self._zone.nowhere:
+            return
+        ids, places = self._walkers.positions()
+        inside = self._zone.enters(places, egos)
+        if not inside.any():
+            return
+        walkers = self._walkers.take([ids[i] for i in np.flatnonzero(inside)])
+        if walkers:
+            self._roster.take_in([walker.id for walker in walkers], self._crowd(walkers))
+
+    def _crowd(self, walkers: Sequence[Person]) -> Crowd:
+        routes = [
+            self._network.route(
+                walker.edges,
+                position=(walker.x, walker.y),
+                lane=walker.lane,
+                arrival_position=walker.arrival_position,
+            )
+            for walker in walkers
+        ]
+        self.unconnected += sum(route.gaps for route in routes)
+        velocity = [(w.speed * math.cos(w.heading), w.speed * math.sin(w.heading)) for w in walkers]
+        return Crowd.create(
+            [(w.x, w.y) for w in walkers],
+            velocity,
+            [w.desired_speed for w in walkers],
+            [route.waypoints for route in routes],
+            passages=[route.passages for route in routes],
+            signals=[route.signals for route in routes],
+        )
+
+    def _hand_back(self, egos: Array) -> None:
+        """Those outside go back once they are on a lane; until then they walk on as ours."""
+        roster = self._roster
+        if self._zone.everywhere or not self._walkers.held:
+            return
+        outside = ~self._zone.keeps(roster.crowd.position, egos)
+        if not outside.any():
+            return
+        gone = np.zeros(len(roster), dtype=np.bool_)
+        for i in np.flatnonzero(outside):
+            name = roster.ids[roster.present[i]]
+            if name not in self._walkers.held:
+                continue  # one that giveway added
+            x, y = roster.crowd.position[i].tolist()
+            lane = self._network.nearest_lane(x, y)
+            if lane is None or lane.distance > HANDED_BACK_WITHIN:
+                continue
+            gone[i] = self._walkers.hand_back(name, x, y, (lane.edge, lane.position))
+        if gone.any():
+            roster.count("handed_back", len(roster.release(gone)))
+
+    def arrive(self, names: Sequence[str]) -> list[str]:
+        """Let walkers end their walk in SUMO's next step; those of ``names`` that are not its."""
+        others = []
+        for name in names:
+            if name not in self._walkers.held:
+                others.append(name)
+                continue
+            arrival = self._walkers.arrive(name)
+            self._roster.count("arrived" if arrival is Arrival.ARRIVED else "continued")
+        return others

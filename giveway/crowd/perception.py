@@ -1,0 +1,68 @@
+"""What an ego's controllers see of the crowd, as far as it is not the truth.
+
+Prediction and control work on what is seen here; tables and metrics on the truth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.crowd.noise import planar_noise
+
+if TYPE_CHECKING:
+    from giveway.config import RunConfig
+    from pedestrian_model import Crowd
+
+_STREAM = 0x5EE  # tells these draws from others of the same seed
+
+
+class Perception:
+    """One ego's eyes: positions with noise, and desired speeds that nobody can see.
+
+    Each observation draws new noise for everybody, from a generator of this ego's own: equal runs
+    see the same, whatever else runs beside them.
+
+    Args:
+        config: of this ego alone.
+    """
+
+    def __init__(self, config: RunConfig) -> None:
+        self._noise = config.perception.position_noise
+        known = config.perception.desired_speeds == "known"
+        self._speed = None if known else config.crowd.desired_speed_mean
+        self._random = np.random.default_rng((config.seed, _STREAM, *config.ego_id.encode()))
+        self._truth: Crowd | None = None
+        self._seen: Crowd | None = None
+
+    @property
+    def exact(self) -> bool:
+        """Whether it sees the truth."""
+        return not self._noise and self._speed is None
+
+    def observe(self, crowd: Crowd) -> Crowd:
+        """The crowd as it is seen; ``crowd`` itself where there is nothing to change.
+
+        Args:
+            crowd: as it is; not changed. Its arrays are shared where they are seen as they are.
+
+        Returns:
+            A crowd of the same people in the same order, which the next call overwrites.
+        """
+        if self.exact or not len(crowd):
+            return crowd
+        if crowd is not self._truth or self._seen is None:
+            self._truth, self._seen = crowd, self._look_at(crowd)
+        if self._noise:
+            noise = planar_noise(self._random, len(crowd))
+            noise *= self._noise
+            np.add(crowd.position, noise, out=self._seen.position)
+        return self._seen
+
+    def _look_at(self, crowd: Crowd) -> Crowd:
+        """A crowd that shares with ``crowd``, which is stepped in place, what is seen exactly."""
+        position = crowd.position.copy() if self._noise else crowd.position
+        speed = crowd.desired_speed if self._speed is None else np.full(len(crowd), self._speed)
+        return replace(crowd, position=position, desired_speed=speed)

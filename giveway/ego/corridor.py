@@ -1,0 +1,179 @@
+"""Who and what is in front of the ego: the corridor about its path, now and in the future.
+
+The paper speaks of "the closest pedestrian in front" without saying who that is. Our reading (an
+option): body centres ahead of the front bumper, at most ``half_width`` from the ego's path, at
+that instant. A vehicle is in front where a part of its outline is. Nobody in front is an infinite
+distance, and so is whoever is out of sight: more than 100 m ahead along the path.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from giveway.ego.in_front import closest_ahead, closest_in_sight, vehicles_in_front
+from giveway.geometry.kernel import kernel
+from giveway.geometry.path import body_pose
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.geometry.path import EgoPath
+
+    Array = NDArray[np.float64]
+
+
+class Leader(NamedTuple):
+    """The closest vehicle in front."""
+
+    station: float  # [m] of its closest point; inf: none
+    speed: float  # [m/s] along the ego's path, at least 0
+
+
+NO_LEADER = Leader(math.inf, 0.0)
+
+
+class Corridor:
+    """The corridor about a path; its arrays are allocated once and handed out again and again.
+
+    Args:
+        path: the ego's.
+        half_width: [m].
+        horizon: N [steps].
+        time_step: [s].
+        walking_speed_limit: [m/s] that nobody exceeds on foot.
+        body_length: of the ego [m].
+        straight: steps for which vehicles beside the path are taken to go straight on; None: N.
+    """
+
+    def __init__(
+        self,
+        path: EgoPath,
+        *,
+        half_width: float,
+        horizon: int,
+        time_step: float,
+        walking_speed_limit: float,
+        body_length: float = 5.0,
+        straight: int | None = None,
+    ) -> None:
+        self.path = path
+        self.half_width = half_width
+        self.time_step = time_step
+        self.body_length = body_length
+        self._straight = horizon if straight is None else straight
+        self._reach = walking_speed_limit * horizon * time_step  # [m] walked within the horizon
+        self._ahead = np.full(horizon, np.inf)
+        self._vehicles_ahead = np.full(horizon, np.inf)
+        self._nobody = np.full(horizon, np.inf)
+
+    @property
+    def nobody(self) -> Array:
+        """(N,) what :meth:`closest_predicted` gives when nobody is ever in front."""
+        return self._nobody
+
+    def closest_now(self, positions: Array, front: float) -> tuple[float, bool]:
+        """Station of the closest pedestrian in front [m], and whether a prediction is needed.
+
+        It is not when nobody can be in front within the horizon: everybody is further from the
+        path than the half width plus what can be walked, or (on a straight path, where stations
+        change no faster than people walk) is left behind by more than that.
+        """
+        path = self.path
+        closest, reachable = closest_in_sight(
+            path.vertices, path.stations, positions, front, self.half_width, self._reach
+        )
+        return closest, reachable
+
+    def closest_predicted(self, positions: Array, front: float, speed: float) -> Array:
+        """(N,) stations [m] of the closest predicted pedestrian in front at steps 1 ... N.
+
+        Args:
+            positions: (N, n, 2) [m] predicted at steps 1 ... N.
+            front: the front bumper's station now [m].
+            speed: the ego's speed [m/s], held over the horizon as in the prediction.
+        """
+        path = self.path
+        closest_ahead(
+            path.vertices,
+            path.stations,
+            positions,
+            front,
+            speed * self.time_step,
+            self.half_width,
+            self._reach,
+            self._ahead,
+        )
+        return self._ahead
+
+    def closest_vehicle(
+        self, poses: Array, own: int, front: float, speed: float
+    ) -> tuple[Leader, Array]:
+        """The closest vehicle in front now, and the stations (N,) [m] of the closest at 1 ... N.
+
+        Args:
+            poses: (N, m, 7) of all vehicles at steps 0 ... N-1.
+            own: the ego's own row.
+            front: the front bumper's station now [m].
+            speed: the ego's speed [m/s], held over the horizon.
+        """
+        path, ahead = self.path, self._vehicles_ahead
+        station, along = vehicles_in_front(
+            path.vertices,
+            path.stations,
+            path.headings,
+            poses,
+            own,
+            front,
+            speed * self.time_step,
+            self.time_step,
+            self.half_width,
+            self._straight,
+            ahead,
+        )
+        return Leader(station, along), ahead
+
+    def fill_poses(self, poses: Array, row: int, front: float, speed: float) -> None:
+        """Write the ego's poses at steps 0 ... N-1 under constant speed into ``poses[:, row]``.
+
+        Args:
+            poses: (N, m, 7) vehicles of the prediction.
+            row: the ego's.
+            front: the front bumper's station now [m].
+            speed: the ego's speed [m/s].
+        """
+        path = self.path
+        fill_ego_poses(
+            path.vertices,
+            path.stations,
+            path.headings,
+            front,
+            speed * self.time_step,
+            speed,
+            self.body_length,
+            row,
+            poses,
+        )
+
+
+@kernel
+def fill_ego_poses(
+    vertices: Array,
+    stations: Array,
+    headings: Array,
+    front: float,
+    advance: float,
+    speed: float,
+    length: float,
+    row: int,
+    poses: Array,
+) -> None:
+    """The body's centre, heading and speed at steps 0 ... N-1 of a prediction."""
+    for i in range(poses.shape[0]):
+        x, y, heading = body_pose(vertices, stations, headings, front + i * advance, length)
+        poses[i, row, 0] = x - 0.5 * length * np.cos(heading)
+        poses[i, row, 1] = y - 0.5 * length * np.sin(heading)
+        poses[i, row, 2] = heading
+        poses[i, row, 3] = speed

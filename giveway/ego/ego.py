@@ -1,0 +1,347 @@
+"""One vehicle that giveway drives: its FMU, its controller, its way."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from controller import Observation, PlanningRegulator, Situation
+from fmus import FmuError
+from giveway.crowd.perception import Perception
+from giveway.ego.corridor import NO_LEADER, Corridor, Leader
+from giveway.ego.foresight import CrowdForesight
+from giveway.ego.safety import Guard
+from giveway.errors import ControlError, VehicleError
+from giveway.records.rows import EgoRow
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from controller import Decision, Regulator, SafetyParameters
+    from fmus import Vehicle
+    from giveway.config import RunConfig
+    from giveway.ego.lights import Lights
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.path import EgoPath, Pose
+    from pedestrian_model import Crowd, Predictor, Surroundings
+
+    Array = NDArray[np.float64]
+
+_KEPT = 0.5  # [m] that the approach to a vehicle ends before the safe distance
+_BEYOND = 0.5  # [m] beyond the stopping place no plan may lead
+_RECOVERY = 2.0  # [s] in which a safe distance that is lost is to be regained
+_STRAIGHT = 1.0  # [s] of a long horizon in which others go straight on; then the road may bend
+_PREDICT_ALL = 150  # persons; of a larger crowd only who matters to the ego is predicted
+_INTERACTION = 8.0  # [m] the VCI model's radius of interaction
+
+
+@dataclass
+class Driver:
+    """A controller with its FMU, ready for its vehicle to depart.
+
+    Attributes:
+        config: of this ego alone.
+        description: of the FMU, for the manifest.
+        predictor: None: the controller looks at the present only.
+    """
+
+    config: RunConfig
+    vehicle: Vehicle
+    description: dict[str, object]
+    regulator: Regulator | PlanningRegulator
+    predictor: Predictor | None
+    walking_speed_limit: float  # [m/s]
+    safety: SafetyParameters | None  # None: nothing watches over the controller
+
+    @property
+    def id(self) -> str:
+        """SUMO's id of the vehicle."""
+        return self.config.ego_id
+
+    @property
+    def taken_over(self) -> bool:
+        """Whether the vehicle is the scenario's."""
+        return bool(self.config.ego.take_over)
+
+    def start(self, speed: float) -> None:
+        """Set the FMU to where it departs.
+
+        Raises:
+            VehicleError: it fails.
+        """
+        try:
+            self.vehicle.start(position=0.0, speed=speed)
+        except FmuError as error:
+            raise VehicleError(str(error)) from error
+
+    @property
+    def clearance(self) -> float:
+        """What the safety layer keeps to people's bodies [m]."""
+        return 0.0 if self.safety is None else self.safety.margin + self.safety.position_error
+
+    @property
+    def horizon(self) -> int:
+        """Steps that the controller looks ahead."""
+        if isinstance(self.regulator, PlanningRegulator):
+            return self.regulator.planner.horizon
+        return self.config.mpc.horizon if self.config.optimises else 1
+
+
+class Seen(NamedTuple):
+    """What the ego reacts to at one instant."""
+
+    person: float  # station [m] of the closest pedestrian in front; inf: nobody
+    leader: Leader
+    stop: float  # station [m] where a red light wants the front bumper; inf: none
+    ahead: Array  # (N,) stations [m] of the closest obstacle at steps 1 ... N
+    predicted: Array | None  # (N, n, 2) [m] of people at steps 1 ... N, until the next look
+    whom: NDArray[np.bool_] | None  # of the crowd has been predicted; None: everybody
+    closest: float  # station [m] of ``person`` in truth, however it is seen: for the tables
+    crowd: Crowd  # the pedestrians as they are seen
+    foresight: (
+        CrowdForesight | None
+    )  # of the planning controller, where somebody may get in the way
+
+
+class Ego:
+    """A vehicle on the road.
+
+    Args:
+        driver: who drives it; its FMU has been started.
+        path: its way.
+        departure: station [m] of the front bumper where the FMU's position is 0.
+        shape: its body.
+        lights: the traffic lights on its way.
+        goal: the FMU's position [m] at which it is done.
+        time_step: [s].
+    """
+
+    def __init__(
+        self,
+        driver: Driver,
+        path: EgoPath,
+        departure: float,
+        shape: VehicleShape,
+        lights: Lights,
+        goal: float,
+        time_step: float,
+    ) -> None:
+        config = driver.config
+        self.driver = driver
+        self.config = config
+        self.id = driver.id
+        self.path = path
+        self.departure = departure
+        self.shape = shape
+        self.lights = lights
+        self.goal = goal
+        self.vehicle = driver.vehicle
+        half_width = config.regulation.corridor_half_width
+        self.corridor = Corridor(
+            path,
+            half_width=shape.width / 2 + config.corridor_margin
+            if half_width is None
+            else half_width,
+            horizon=driver.horizon,
+            time_step=time_step,
+            walking_speed_limit=driver.walking_speed_limit,
+            body_length=shape.length,
+            straight=round(_STRAIGHT / time_step) if config.controller == "mpc" else None,
+        )
+        self._span = driver.horizon * time_step  # [s]
+        self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
+        self._perception = Perception(config)
+        safety = driver.safety
+        self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
+        self._foresight = self._foresee()
+        self._force = 0.0
+        self._pose: Pose | None = None  # asked for several times at each instant
+        self._heed_vehicles = config.regulation.vehicles
+        self._heed_lights = config.regulation.traffic_lights
+
+    def _foresee(self) -> CrowdForesight | None:
+        """What the planning controller asks how people would answer to a manoeuvre."""
+        driver, planner = self.driver, self.config.planner
+        if not isinstance(driver.regulator, PlanningRegulator) or driver.predictor is None:
+            return None
+        return CrowdForesight(
+            driver.predictor,
+            self.path,
+            self.shape,
+            half_width=self.corridor.half_width,
+            growth=planner.margin_growth,
+            conflict_time=driver.regulator.planner.parameters.manoeuvres.conflict_time,
+            planned_speed=planner.planned_speed,
+            clearance=self.driver.clearance,
+            braking=self.config.mpc.force_limit / self.config.vehicle.mass,
+            safety_layer=self.driver.safety is not None,
+        )
+
+    @property
+    def front(self) -> float:
+        """Station of the front bumper [m]."""
+        return self.departure + self.vehicle.position
+
+    @property
+    def pose(self) -> Pose:
+        """Where the front bumper's centre is, and the direction of the body."""
+        if self._pose is None:
+            self._pose = self.path.pose(self.front, self.shape.length)
+        return self._pose
+
+    @property
+    def arrived(self) -> bool:
+        """Whether it has driven its distance."""
+        return self.vehicle.position >= self.goal
+
+    def check_pose(self, step: int) -> Pose:
+        """The pose, which SUMO must not be given if it is not finite (it hangs).
+
+        Raises:
+            VehicleError: it is not finite.
+        """
+        pose = self.pose
+        if not all(map(math.isfinite, pose)):
+            msg = f"ego '{self.id}' at step {step}: pose {tuple(pose)}; expected finite numbers"
+            raise VehicleError(f"{msg} from the FMU")
+        return pose
+
+    def look(self, row: int, poses: Array, crowd: Crowd, surroundings: Surroundings) -> Seen:
+        """Find what is in front, now and over the horizon.
+
+        Args:
+            row: the ego's row among the vehicles.
+            poses: (N, m, 7) of all vehicles at steps 0 ... N-1.
+            crowd: the pedestrians now, as they are; the controller acts on how they are seen.
+            surroundings: the walls and lights that they heed.
+        """
+        front, speed, corridor = self.front, self.vehicle.speed, self.corridor
+        truth, crowd = crowd, self._perception.observe(crowd)
+        person, reachable = corridor.closest_now(crowd.position, front)
+        closest = person if crowd is truth else corridor.closest_now(truth.position, front)[0]
+        ahead = corridor.nobody
+        predictor, predicted, whom, foresight = self.driver.predictor, None, None, None
+        if reachable and predictor is not None:
+            whom = self._relevant(crowd, speed)
+            people = crowd if whom is None else crowd.select(whom)
+            horizon, foresight = poses[: predictor.horizon], self._foresight
+            if foresight is not None:
+                foresight.look(people, surroundings, horizon, row, front, speed)
+            else:
+                predicted = predictor.predict(people, horizon, surroundings)
+                ahead = corridor.closest_predicted(predicted, front, speed)
+        leader, stop = NO_LEADER, math.inf
+        if self._heed_vehicles and poses.shape[1] > 1:
+            leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
+            ahead = np.minimum(ahead, vehicles)
+        if self._heed_lights:
+            stop = self.lights.stop_at(front, speed)
+            if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
+                allowed = stop + _BEYOND + self._origin
+                ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
+        return Seen(person, leader, stop, ahead, predicted, whom, closest, crowd, foresight)
+
+    def _relevant(self, crowd: Crowd, speed: float) -> NDArray[np.bool_] | None:
+        """(n,) whom of a large crowd the plan, or somebody whom it depends on, may meet.
+
+        None is everybody. Who is left out acts on the plan only through others, and moves those
+        whom it may meet by less than a micrometre within the horizon.
+        """
+        if len(crowd) <= _PREDICT_ALL:
+            return None
+        config, span = self.config, self._span
+        x, y, _ = self.pose
+        strongest = config.mpc.force_limit / config.vehicle.mass
+        reach = (speed + strongest * span / 2.0) * span + config.regulation.safe_distance
+        reach += self.driver.walking_speed_limit * span + _INTERACTION
+        reach += self.shape.length + self.corridor.half_width
+        d_x, d_y = crowd.position[:, 0] - x, crowd.position[:, 1] - y
+        within: NDArray[np.bool_] = d_x * d_x + d_y * d_y <= reach * reach
+        return within
+
+    def decide(self, step: int, seen: Seen) -> Decision:
+        """The force for the step from t_k on; kept for :meth:`advance`.
+
+        Raises:
+            ControlError: the controller gave no finite force.
+        """
+        regulation = self.config.regulation
+        origin = self.front + self._origin
+        stop = seen.stop + self._origin + regulation.safe_distance
+        gap = min(seen.person, seen.leader.station, stop) - origin
+        free = seen.stop == math.inf == seen.leader.station
+        limit = math.inf if free else self._speed_limit(seen)
+        decision = self._ask(seen, gap, limit)
+        if not math.isfinite(decision.force):
+            msg = (
+                f"controller '{decision.acting}' of '{self.id}' at step {step}: force = "
+                f"{decision.force}; expected a finite number [N]; please report this with the "
+                "run's config.toml"
+            )
+            raise ControlError(msg)
+        if self._guard is not None:
+            allowed = self._guard.watch(decision, self.front, self.vehicle.speed, seen.crowd)
+            if allowed is not decision:
+                self.driver.regulator.applied(allowed.force)
+                decision = allowed
+        self._force = decision.force
+        return decision
+
+    def _ask(self, seen: Seen, gap: float, limit: float) -> Decision:
+        """The controller's own decision."""
+        regulator, speed = self.driver.regulator, self.vehicle.speed
+        origin = self.front + self._origin
+        if not isinstance(regulator, PlanningRegulator):
+            return regulator.control(Observation(origin, speed, gap, seen.ahead, limit))
+        allowed = None
+        if seen.ahead is not self.corridor.nobody:
+            allowed = seen.ahead - (origin + self.config.regulation.safe_distance)
+        return regulator.control(Situation(speed, gap, limit, allowed, seen.foresight))
+
+    def expected(self, seen: Seen) -> Array | None:
+        """(N, n, 2) [m] where the decision expects people at steps 1 ... N, until the next look."""
+        return seen.predicted if seen.foresight is None else seen.foresight.best
+
+    def _speed_limit(self, seen: Seen) -> float:
+        """From which speed the comfortable deceleration brings it to a light or behind a leader."""
+        regulation = self.config.regulation
+        b = regulation.comfortable_deceleration
+        limit = math.inf
+        if seen.stop < math.inf:
+            limit = math.sqrt(2.0 * b * max(0.0, seen.stop - self.front))
+        if seen.leader.station < math.inf:
+            v = seen.leader.speed
+            room = seen.leader.station - self.front - self._origin - regulation.safe_distance
+            room -= _KEPT
+            behind = math.sqrt(v * v + 2.0 * b * room) if room > 0.0 else v + room / _RECOVERY
+            limit = min(limit, max(0.0, behind))
+        return limit
+
+    def advance(self) -> None:
+        """Step the FMU with the force decided on."""
+        self._pose = None
+        self.vehicle.step(self._force)
+
+    def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
+        """What the tables keep of this instant."""
+        front = self.front
+        origin = front + self._origin
+        return EgoRow(
+            time,
+            self.vehicle.position,
+            self.pose,
+            self.vehicle.speed,
+            self.vehicle.acceleration,
+            decision.force,
+            seen.closest - origin,
+            decision.reference_speed,
+            seen.leader.station - origin,
+            seen.stop - front,
+            decision.acting,
+            decision.reason,
+            decision.status,
+            decision.iterations,
+        )

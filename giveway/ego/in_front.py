@@ -1,0 +1,179 @@
+"""The kernels that find who is in front, as :mod:`giveway.ego.corridor` defines it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.geometry.kernel import kernel
+from giveway.geometry.passage import SIGHT, look
+from giveway.geometry.path import body_pose, project, segment_at
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+_BEHIND = 10.0  # [m] so far back, or as far as people walk in the horizon, they are looked for
+_ONCOMING = -0.8  # cosine of the angle to the ego's way there
+_OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
+_FINEST_OUTLINE = 0.1  # [m] and at least
+
+
+@kernel
+def closest_in_front(
+    vertices: Array,
+    stations: Array,
+    first: int,
+    last: int,
+    positions: Array,
+    front: float,
+    half_width: float,
+    reach: float,
+) -> tuple[float, bool]:
+    """Station of the closest person in front; can anybody get there by walking ``reach``?"""
+    closest = np.inf
+    reachable = False
+    low_x, high_x = np.min(vertices[first : last + 2, 0]), np.max(vertices[first : last + 2, 0])
+    low_y, high_y = np.min(vertices[first : last + 2, 1]), np.max(vertices[first : last + 2, 1])
+    margin = half_width + reach
+    if first == 0 or last == len(vertices) - 2:
+        margin += SIGHT  # the path goes on straight beyond its ends
+    for j in range(positions.shape[0]):
+        x, y = positions[j, 0], positions[j, 1]
+        if x < low_x - margin or x > high_x + margin or y < low_y - margin or y > high_y + margin:
+            continue
+        station, near = look(vertices, stations, first, last, x, y, front, half_width, reach)
+        reachable |= near
+        closest = min(closest, station)
+    return closest, reachable
+
+
+@kernel
+def window(stations: Array, front: float, behind: float) -> tuple[int, int]:
+    """The first and last segment of the path that lie within sight, from ``behind`` [m] on."""
+    return segment_at(stations, front - behind), segment_at(stations, front + SIGHT)
+
+
+@kernel
+def closest_in_sight(
+    vertices: Array,
+    stations: Array,
+    positions: Array,
+    front: float,
+    half_width: float,
+    reach: float,
+) -> tuple[float, bool]:
+    """As :func:`closest_in_front`, on the path within sight."""
+    first, last = window(stations, front, max(_BEHIND, reach))
+    return closest_in_front(vertices, stations, first, last, positions, front, half_width, reach)
+
+
+@kernel
+def closest_ahead(
+    vertices: Array,
+    stations: Array,
+    positions: Array,
+    front: float,
+    advance: float,
+    half_width: float,
+    reach: float,
+    closest: Array,
+) -> None:
+    """Fill ``closest[i]`` for the predicted ``positions[i]`` at step i + 1."""
+    first, last = window(stations, front, max(_BEHIND, reach))
+    for i in range(positions.shape[0]):
+        at = front + (i + 1) * advance
+        closest[i], _ = closest_in_front(
+            vertices, stations, first, last, positions[i], at, half_width, 0.0
+        )
+
+
+@kernel
+def outline_in_front(
+    vertices: Array,
+    stations: Array,
+    first: int,
+    last: int,
+    vehicle: Array,
+    front: float,
+    half_width: float,
+) -> float:
+    """Station of the closest point of a vehicle's outline in front; inf: none is."""
+    cos, sin = np.cos(vehicle[2]), np.sin(vehicle[2])
+    rear, length, half = -vehicle[5], vehicle[4] + vehicle[5], vehicle[6] / 2.0
+    apart = max(_FINEST_OUTLINE, min(_OUTLINE, half_width))  # none slips through the corridor
+    along = max(1, int(np.ceil(length / apart)))
+    closest = np.inf
+    for i in range(along + 1):
+        to_x = rear + length * i / along
+        across = max(1, int(np.ceil(2.0 * half / apart))) if i in (0, along) else 1
+        for j in range(across + 1):
+            to_y = -half + 2.0 * half * j / across
+            x = vehicle[0] + cos * to_x - sin * to_y
+            y = vehicle[1] + sin * to_x + cos * to_y
+            station, _ = look(vertices, stations, first, last, x, y, front, half_width, 0.0)
+            closest = min(closest, station)
+    return closest
+
+
+@kernel
+def vehicles_in_front(
+    vertices: Array,
+    stations: Array,
+    headings: Array,
+    poses: Array,
+    own: int,
+    front: float,
+    advance: float,
+    time_step: float,
+    half_width: float,
+    straight: int,
+    ahead: Array,
+) -> tuple[float, float]:
+    """The closest vehicle now (station, speed along the path); fills ``ahead`` for 1 ... N.
+
+    One that is in the corridor now is taken to follow the path at its present speed, any other
+    one to go straight on, for ``straight`` steps: so a car ahead in a bend stays ahead, and one
+    from the side comes. Over a horizon longer than that, oncoming cars are taken to keep to the
+    lane beside. One that is in the corridor behind the front bumper stays behind: it does not
+    drive through us.
+    """
+    N = ahead.shape[0]
+    first, last = window(stations, front, _BEHIND)
+    ahead[:] = np.inf
+    nearest, its_speed = np.inf, 0.0
+    x_0, y_0, _ = body_pose(vertices, stations, headings, front, 0.0)
+    for j in range(poses.shape[1]):
+        vehicle = poses[0, j]
+        size = vehicle[4] + vehicle[5] + vehicle[6]
+        away = np.hypot(vehicle[0] - x_0, vehicle[1] - y_0)
+        if j == own or away > SIGHT + size:
+            continue
+        station = outline_in_front(vertices, stations, first, last, vehicle, front, half_width)
+        if station < np.inf:
+            i = segment_at(stations, station)
+            along = max(0.0, vehicle[3] * np.cos(vehicle[2] - headings[i]))
+            if station < nearest:
+                nearest, its_speed = station, along
+            for k in range(N):
+                ahead[k] = min(ahead[k], station + (k + 1) * time_step * along)
+            continue
+        if straight < N:
+            nearest_to_it, _ = project(vertices, stations, vehicle[0], vehicle[1])
+            i = segment_at(stations, nearest_to_it)
+            if np.cos(vehicle[2] - headings[i]) < _ONCOMING:
+                continue  # on the lane beside ours, which bends as ours does
+        reach = min(N, straight) * (advance + abs(vehicle[3]) * time_step) + size + half_width
+        if away > reach:
+            continue  # it cannot meet the ego within the horizon
+        rear = front - reach
+        begin = segment_at(stations, rear)
+        if outline_in_front(vertices, stations, begin, last, vehicle, rear, half_width) < np.inf:
+            continue
+        for k in range(1, min(N, straight, poses.shape[0] - 1) + 1):
+            at = front + k * advance
+            station = outline_in_front(vertices, stations, first, last, poses[k, j], at, half_width)
+            ahead[k - 1] = min(ahead[k - 1], station)
+    return nearest, its_speed

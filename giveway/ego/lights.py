@@ -1,0 +1,73 @@
+"""The traffic lights on the ego's way: where it has to stop, if anywhere."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from giveway.sumo.lanes import Light
+
+STOP_BEFORE = 1.0  # [m] before the line the front bumper is to stand
+_RED = frozenset("rRus")  # red, red with yellow, red with a green arrow (after a stop)
+_YELLOW = frozenset("yY")
+
+
+class Lights:
+    """Watches the lights of one ego's way.
+
+    At yellow the ego stops if it can with the comfortable deceleration, and goes on if not; at
+    red it stops if it can at all.
+
+    Args:
+        lights: in the order of the way.
+        comfortable: deceleration [m/s^2] that is demanded at yellow.
+        hardest: deceleration [m/s^2] that the vehicle is capable of.
+
+    Attributes:
+        systems: SUMO's ids of the traffic lights on the way.
+    """
+
+    def __init__(self, lights: Sequence[Light], *, comfortable: float, hardest: float) -> None:
+        self._lights = tuple(lights)
+        self._comfortable = comfortable
+        self._hardest = hardest
+        self._colours = ["g"] * len(lights)
+        self._passing = [False] * len(lights)  # decided at yellow
+        self._next = 0
+        self.systems = frozenset(light.system for light in self._lights)
+
+    def update(self, states: Mapping[str, str], front: float, speed: float) -> None:
+        """Take note of the lights' states.
+
+        Args:
+            states: of each system, one letter per movement (SUMO's).
+            front: station of the front bumper [m].
+            speed: [m/s].
+        """
+        for i in range(self._next, len(self._lights)):
+            light = self._lights[i]
+            state = states.get(light.system, "")
+            colour = state[light.link] if light.link < len(state) else "O"
+            if colour in _YELLOW and self._colours[i] not in _YELLOW:
+                self._passing[i] = self._needed(i, front, speed) > self._comfortable
+            elif colour not in _YELLOW:
+                self._passing[i] = False
+            self._colours[i] = colour
+
+    def stop_at(self, front: float, speed: float) -> float:
+        """Station [m] at which the front bumper has to stop; inf: nowhere."""
+        while self._next < len(self._lights) and self._lights[self._next].station <= front:
+            self._next += 1
+        for i in range(self._next, len(self._lights)):
+            colour = self._colours[i]
+            stops = colour in _RED or (colour in _YELLOW and not self._passing[i])
+            if stops and self._needed(i, front, speed) <= self._hardest:
+                return self._lights[i].station - STOP_BEFORE
+        return math.inf
+
+    def _needed(self, i: int, front: float, speed: float) -> float:
+        """Deceleration [m/s^2] that stops at the line itself."""
+        return speed * speed / (2.0 * max(self._lights[i].station - front, 1e-3))

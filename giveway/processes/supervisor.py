@@ -1,0 +1,301 @@
+"""A run in a process of its own, so that a crash of native code ends the run and not the report.
+
+SUMO, the FMU and the solvers are native code: they can end their process by a signal, by an
+``exit()`` in the middle of a step, or never return. The supervisor starts the run as a child that
+shares its terminal, waits, and tells what became of it; the rows are in the journal. It imports
+nothing heavy: it only waits.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from giveway.processes.causes import WINDOWS_CAUSES, cause_of_end, stood_still, text_in
+from giveway.processes.child import JOURNAL_VARIABLE, STDERR_FILE, TRACEBACK_FILE
+from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from types import FrameType, TracebackType
+
+HANG_LIMIT = 120.0  # [s] of wall clock without a sign of life from the loop
+_PREFIX = "giveway-journal-"
+_KEPT = 86400.0  # [s] that the journal of a killed supervisor stays for whoever wants its rows
+_PATIENCE = 10.0  # [s] a child gets to write its rows before a second signal kills it
+_TEARDOWN_LIMIT = 10.0  # [s] from "done" to the process's end; native destructors hang, too
+_DYING_WORDS = 2.0  # [s] for a hanging child to write its traceback
+_POLL = 1.0  # [s] between two looks at the heartbeat
+_SIGNALLED = 128  # a shell's exit code of a process that died of signal n is 128 + n
+_SHOW_CURSOR = "\r\x1b[2K\x1b[?25h"  # a progress bar that died has hidden it
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of a supervised process.
+
+    Attributes:
+        code: the exit code to pass on: the child's own, or a shell's 128 + n for a signal;
+            never 0 after a crash.
+        crashed: it ended without having said so; what it had recorded is in the journal.
+        interrupted: it ended by, or after, a signal that the user sent us.
+        cause: "SIGSEGV", "no progress for 120 s", ...; empty unless crashed.
+        pulse: where it stood.
+        traceback: where Python stood, if it could tell, as faulthandler prints it.
+        last_words: what native code had printed on the standard error of the child, if kept.
+    """
+
+    code: int
+    crashed: bool
+    interrupted: bool
+    cause: str
+    pulse: Pulse
+    traceback: str
+    last_words: str
+
+    @property
+    def message(self) -> str:
+        """Cause and place on one line: "SIGSEGV inside SUMO's step from 12.30 s (step 246)"."""
+        return f"{self.cause} {self.pulse.place}" if self.crashed else ""
+
+
+@contextlib.contextmanager
+def journal_folder() -> Iterator[Path]:
+    """A folder for a journal, gone afterwards.
+
+    It is a local temporary folder and not the results folder, which may be a network disk (the
+    journal is written at every control step), is not known before the configuration has been
+    read, and is no place for left-overs. ``/var/tmp`` comes before ``/tmp``, which often is
+    memory that the run itself needs; ``TMPDIR`` before both.
+    """
+    large = Path("/var/tmp")
+    named = os.environ.get("TMPDIR") or not os.access(large, os.W_OK)
+    place = Path(tempfile.gettempdir()) if named else large
+    _sweep(place)
+    with tempfile.TemporaryDirectory(
+        prefix=_PREFIX, dir=place, ignore_cleanup_errors=True
+    ) as folder:
+        yield Path(folder)
+
+
+def _sweep(place: Path) -> None:
+    """Remove the journals of supervisors that were killed; a living one is written all the time."""
+    with contextlib.suppress(OSError):
+        for folder in place.glob(f"{_PREFIX}*"):
+            written = max((file.stat().st_mtime for file in folder.iterdir()), default=math.inf)
+            if time.time() - written > _KEPT:
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def own_command() -> list[str]:
+    """How this very process was started, interpreter options included."""
+    return [sys.executable, *sys.orig_argv[1:]]
+
+
+def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG_LIMIT) -> Verdict:
+    """Run ``command`` as a child on our own terminal and wait for its end.
+
+    The child enters :class:`giveway.processes.child.Supervised`. Signals that ask us to end are
+    passed on; a second one 10 s later kills the child. Should we be killed, so is the child.
+
+    Args:
+        command: program and arguments; the child finds the journal in ``GIVEWAY_JOURNAL``.
+        journal: an existing folder for the journal.
+        hang_limit: wall clock [s] without a sign of life from the loop after which the child is
+            killed; infinity waits for ever.
+
+    Raises:
+        OSError: the child cannot be started, or the heartbeat not be made.
+    """
+    heartbeat = Heartbeat.supervised_by(os.getpid(), journal)
+    environment = os.environ | {JOURNAL_VARIABLE: str(journal), **_temporary(journal)}
+    with _Relay() as relay:
+        # Like any program on this terminal: same process group, same files (also <(...)).
+        with _held_back():
+            child = subprocess.Popen(command, env=environment, close_fds=False)
+        with _Watchdog(child, heartbeat, hang_limit) as watchdog:
+            relay.connect(child)
+            child.wait()
+    pulse = heartbeat.read()
+    verdict = _judge(child.returncode, pulse, watchdog, relay, journal)
+    if verdict.crashed and sys.stdout.isatty():
+        with contextlib.suppress(OSError):
+            sys.stdout.write(_SHOW_CURSOR)
+            sys.stdout.flush()
+    return verdict
+
+
+def _temporary(journal: Path) -> dict[str, str]:
+    """Where the child puts its temporary files: what a crash leaves goes with the journal."""
+    folder = journal / "tmp"
+    folder.mkdir(exist_ok=True)
+    return dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder))
+
+
+@contextlib.contextmanager
+def _held_back() -> Iterator[None]:
+    """A child started here inherits a Ctrl-C that waits until :meth:`Supervised.listen`.
+
+    While Python itself starts it would end in a traceback.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    previous = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, previous)
+
+
+class _Relay:
+    """Passes on the signals by which a user ends a run, so that the child decides when.
+
+    Attributes:
+        first: the first such signal.
+        killed: a second one had to kill the child.
+    """
+
+    def __init__(self) -> None:
+        self.first: int | None = None
+        self.killed = False
+        self._at = 0.0
+        self._child: subprocess.Popen[bytes] | None = None
+        self._previous: dict[int, Any] = {}
+
+    def __enter__(self) -> Self:
+        if threading.current_thread() is threading.main_thread():
+            for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+                number = getattr(signal, name, None)
+                # Whoever ignores a signal, like nohup, wants the child to ignore it, too.
+                if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+                    self._previous[number] = signal.signal(number, self._pass_on)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        for number, handler in self._previous.items():
+            signal.signal(number, handler)
+
+    def connect(self, child: subprocess.Popen[bytes]) -> None:
+        """Name the child; what came before there was one is passed on now."""
+        self._child = child
+        if self.first is not None:
+            self._send(self.first)
+
+    def _pass_on(self, number: int, _frame: FrameType | None) -> None:
+        if self.first is None:
+            self.first, self._at = number, time.monotonic()
+            self._send(number)
+        elif self._child is not None and time.monotonic() - self._at > _PATIENCE:
+            self.killed = True
+            self._child.kill()
+
+    def _send(self, number: int) -> None:
+        if self._child is not None and os.name != "nt":  # a Windows console tells everybody itself
+            self._child.send_signal(number)
+
+
+class _Watchdog:
+    """Looks at the heartbeat now and then, and kills a child whose loop stands still.
+
+    Attributes:
+        waited: how long [s] the child had stood still when it was killed; 0 if it was not.
+    """
+
+    def __init__(
+        self, child: subprocess.Popen[bytes], heartbeat: Heartbeat, hang_limit: float
+    ) -> None:
+        self.waited = 0.0
+        self._child = child
+        self._heartbeat = heartbeat
+        self._hang_limit = hang_limit
+        self._poll = min(_POLL, hang_limit / 4)
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def _limit(self, phase: Phase) -> float:
+        if phase in LOOP:
+            return self._hang_limit
+        return _TEARDOWN_LIMIT if phase is Phase.DONE else math.inf
+
+    def _watch(self) -> None:
+        stillness = Stillness(self._heartbeat)
+        while not self._over.wait(self._poll):
+            pulse, quiet = stillness.look(self._poll)
+            if quiet >= self._limit(pulse.phase):
+                self.waited = quiet
+                self._end()
+                return
+
+    def _end(self) -> None:
+        """Let the child say where it hangs, which takes a signal, then kill it."""
+        if os.name != "nt":
+            self._child.send_signal(signal.SIGABRT)
+            if self._over.wait(_DYING_WORDS):
+                return
+        self._child.kill()
+
+
+def _judge(
+    returncode: int, pulse: Pulse, watchdog: _Watchdog, relay: _Relay, journal: Path
+) -> Verdict:
+    interrupted = relay.first is not None
+    if pulse.phase is Phase.DONE:
+        return Verdict(pulse.code or max(returncode, 0), False, interrupted, "", pulse, "", "")
+    if pulse.phase is Phase.STARTING and 0 < returncode < min(WINDOWS_CAUSES):
+        # Python did not come as far as us, and has said why.
+        return Verdict(returncode, False, interrupted, "", pulse, "", "")
+    return Verdict(
+        code=_passed_on(returncode, relay),
+        crashed=True,
+        interrupted=interrupted and not watchdog.waited,
+        cause=_cause(returncode, watchdog, relay),
+        pulse=pulse,
+        traceback=text_in(journal / TRACEBACK_FILE),
+        last_words=text_in(journal / STDERR_FILE),
+    )
+
+
+def _passed_on(returncode: int, relay: _Relay) -> int:
+    if relay.first is not None:
+        return _SIGNALLED + relay.first
+    if returncode < 0:
+        return _SIGNALLED - returncode
+    return returncode if 0 < returncode < _SIGNALLED else 1
+
+
+def _cause(returncode: int, watchdog: _Watchdog, relay: _Relay) -> str:
+    if relay.killed:
+        return "killed by a second interrupt"
+    if watchdog.waited:
+        return stood_still(watchdog.waited)
+    return cause_of_end(returncode)

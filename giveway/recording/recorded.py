@@ -1,0 +1,117 @@
+"""The rows of a run, as a recorder or a journal hands them over, and as tracks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from giveway.geometry.bodies import VehicleShape
+from giveway.records.rows import LEDGER
+from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+
+class RecordedEgo(NamedTuple):
+    """One ego's rows."""
+
+    id: str
+    shape: VehicleShape
+    goal: float  # [m]
+    first: int  # the control instant at which it departed
+    track: EgoTrack
+    predictions: PredictionTrack
+
+
+class RecordedRows:
+    """Recorded rows, from a recorder or from the journal of a run that died.
+
+    Args:
+        rows: by table, as :class:`Recorder` lays them out.
+        names: what their indices mean.
+    """
+
+    def __init__(self, rows: dict[str, Array], names: dict[str, tuple[str, ...]]) -> None:
+        self._rows = rows
+        self._names = names
+        instants = len(rows["clock"])  # a journal may end within an instant: what it has counts
+        self.time = np.ascontiguousarray(rows["clock"][:, 0])  # (T,) [s]
+        self._ego = rows["ego"][rows["ego"][:, 0] < instants]
+
+    @property
+    def ledger(self) -> dict[str, int]:
+        """Where everybody was at the latest of SUMO's instants."""
+        rows = self._rows["ledger"]
+        return {name: int(rows[-1, i]) for i, name in enumerate(LEDGER)} if len(rows) else {}
+
+    def egos(self) -> Iterator[RecordedEgo]:
+        """Every ego that has rows, in the order of departure."""
+        for number, length, width, goal in self._rows["drives"]:
+            rows = self._ego[self._ego[:, 1] == number]
+            if len(rows):
+                name = self._names["egos"][int(number)]
+                shape = VehicleShape(float(length), float(width))
+                yield RecordedEgo(
+                    name,
+                    shape,
+                    float(goal),
+                    int(rows[0, 0]),
+                    self._track(rows),
+                    self._predictions_of(number),
+                )
+
+    def _track(self, rows: Array) -> EgoTrack:
+        columns = [np.ascontiguousarray(column) for column in rows.T]
+        word = self._words
+        acting, reason, status, iterations = columns[-4:]
+        words: Sequence[Any] = (word(acting), word(reason), word(status))
+        numbers: Sequence[Any] = columns[2:-4]  # in EgoTrack's order
+        return EgoTrack(*numbers, *words, iterations.astype(np.int64))  # type: ignore[call-arg]
+
+    def _predictions_of(self, number: float) -> PredictionTrack:
+        rows = self._rows["predictions"]
+        rows = rows[(rows[:, 0] < len(self.time)) & (rows[:, 1] == number)]
+        step, _, pedestrian, look_ahead, x, y = rows.T
+        return PredictionTrack(
+            time=self.time[step.astype(np.int64)],
+            pedestrian=pedestrian.astype(np.int64),
+            look_ahead=look_ahead,
+            x=x,
+            y=y,
+        )
+
+    def _words(self, indices: Array) -> NDArray[np.str_]:
+        return np.array(self._names["words"], dtype=np.str_)[indices.astype(np.int64)]
+
+    def crowd_track(self) -> CrowdTrack:
+        """The crowd's rows as arrays."""
+        rows = self._rows["crowd"]
+        rows = rows[: np.searchsorted(rows[:, 0], len(self.time))]  # no copy: it may be most of RAM
+        step, pedestrian, x, y, vx, vy = rows.T
+        return CrowdTrack(
+            step=step.astype(np.int64),
+            pedestrian=pedestrian.astype(np.int64),
+            x=np.ascontiguousarray(x),
+            y=np.ascontiguousarray(y),
+            vx=np.ascontiguousarray(vx),
+            vy=np.ascontiguousarray(vy),
+            ids=self._names["pedestrians"],
+        )
+
+    def background_track(self) -> BackgroundTrack:
+        """The background vehicles' rows as arrays."""
+        columns = [np.ascontiguousarray(column) for column in self._rows["background"].T]
+        names = np.array(self._names["vehicles"], dtype=np.str_)
+        time, vehicle, kind, *numbers = columns
+        who, what = names[vehicle.astype(np.int64)], names[kind.astype(np.int64)]
+        return BackgroundTrack(time, who, what, *numbers)
+
+    def timings(self) -> Timings:
+        """The computing times as an array."""
+        return Timings(self._rows["timing"].copy())

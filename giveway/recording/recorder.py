@@ -1,0 +1,193 @@
+"""The rows of a run, gathered step by step; our own state, not SUMO's mirror of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.kernel import kernel
+from giveway.recording.journal import Journal
+from giveway.recording.recorded import RecordedRows
+from giveway.records.rows import EGO_NUMBERS, LEDGER, EgoRow
+from giveway.records.tracks import Timings
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.sumo.background import BackgroundVehicles
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+class Recorder:
+    """Collects what the loop knows at each control instant.
+
+    Args:
+        journal: keeps the rows where a dying process cannot take them along.
+    """
+
+    def __init__(self, journal: Journal | None = None) -> None:
+        self.journal = journal or Journal(None)
+        rows, names = self.journal.rows, self.journal.names
+        self._clock = rows("clock", 1)  # time
+        self._ego = rows("ego", 2 + EGO_NUMBERS + 4)  # instant, ego, numbers, words, iterations
+        self._crowd = rows("crowd", 6)  # instant, pedestrian, x, y, vx, vy
+        self._background = rows("background", 9)  # time, vehicle, type, x, y, heading, ...
+        self._timings = rows("timing", len(Timings.NAMES))
+        self._drives = rows("drives", 4)  # ego, length, width, goal
+        self._ledger = rows("ledger", len(LEDGER))
+        self._predictions = rows("predictions", 6)  # instant, ego, pedestrian, look-ahead, x, y
+        self._words = names("words")
+        self._egos = names("egos")
+        self._pedestrians = names("pedestrians")
+        self._vehicles = names("vehicles")
+        self._steps = 0
+
+    @property
+    def steps(self) -> int:
+        """Control instants recorded so far."""
+        return self._steps
+
+    def instant(self, time: float) -> None:
+        """Begin the next control instant, at ``time`` [s]."""
+        self._clock.block(1)[0, 0] = time
+        self._steps += 1
+
+    def name_pedestrians(self, ids: Sequence[str]) -> None:
+        """Note the names of pedestrians, in the order of their indices."""
+        for name in ids:
+            self._pedestrians.index(name)
+
+    def drive(self, ego_id: str, shape: VehicleShape, goal: float) -> None:
+        """Note an ego that departs: its body and the distance [m] it is to drive."""
+        row = (self._egos.index(ego_id), shape.length, shape.width, goal)
+        self._drives.block(1)[0] = row
+
+    def ledger(self, counts: Mapping[str, int]) -> None:
+        """Note where everybody is, at one of SUMO's instants."""
+        self._ledger.block(1)[0] = [counts[name] for name in LEDGER]
+
+    def ego(self, ego_id: str, row: EgoRow) -> None:
+        """Record an ego at the present control instant."""
+        word = self._words.index
+        self._ego.block(1)[0] = (
+            self._steps - 1,
+            self._egos.index(ego_id),
+            row[0],
+            row[1],
+            *row[2],
+            *row[3:10],
+            word(row.acting),
+            word(row.reason),
+            word(row.status),
+            row.iterations,
+        )
+
+    def crowd(
+        self, present: Indices, position: Array, velocity: Array, egos: Array, within: float
+    ) -> None:
+        """Record the pedestrians ``present`` at the present control instant.
+
+        Args:
+            present: (n,) their indices.
+            position: (n, 2) [m].
+            velocity: (n, 2) [m/s].
+            egos: (e, 2) [m] where the egos are.
+            within: [m] of an ego, who is further away is left out; infinite: nobody is.
+        """
+        block = self._crowd.block(len(present))
+        filled = fill_near(self._steps - 1, present, position, velocity, egos, within, block)
+        self._crowd.give_back(len(present) - filled)
+
+    def predictions(
+        self, ego_id: str, people: Indices, look_ahead: Array, positions: Array
+    ) -> None:
+        """Record what an ego's controller expects of the crowd from the present instant on.
+
+        Args:
+            ego_id: whose controller.
+            people: (n,) the indices of the pedestrians predicted.
+            look_ahead: (m,) [s].
+            positions: (m, n, 2) [m] then.
+        """
+        block = self._predictions.block(look_ahead.size * people.size)
+        block[:, 0] = self._steps - 1
+        block[:, 1] = self._egos.index(ego_id)
+        block[:, 2] = np.tile(people, look_ahead.size)
+        block[:, 3] = np.repeat(look_ahead, people.size)
+        block[:, 4:] = positions.reshape(-1, 2)
+
+    def background(
+        self, time: float, vehicles: BackgroundVehicles, egos: Array, within: float
+    ) -> None:
+        """Record SUMO's own vehicles at ``time`` [s], ``egos`` and ``within`` as for the crowd."""
+        near = np.full(len(vehicles.ids), np.isinf(within))
+        for x, y in egos:
+            near |= np.hypot(vehicles.x - x, vehicles.y - y) <= within
+        wanted = np.flatnonzero(near)
+        if not len(wanted):
+            return
+        index = self._vehicles.index
+        block = self._background.block(len(wanted))
+        block[:, 0] = time
+        block[:, 1] = [index(vehicles.ids[i]) for i in wanted]
+        block[:, 2] = [index(vehicles.types[i]) for i in wanted]
+        for column, values in enumerate(vehicles.numbers, start=3):
+            block[:, column] = values[wanted]
+
+    def timing(self, *seconds: float) -> None:
+        """Record the computing times of one control step, in the order of ``Timings.NAMES``."""
+        self._timings.block(1)[0] = seconds
+
+    def rows(self) -> RecordedRows:
+        """Everything recorded so far."""
+        return RecordedRows(
+            {
+                "clock": self._clock.filled,
+                "ego": self._ego.filled,
+                "crowd": self._crowd.filled,
+                "background": self._background.filled,
+                "timing": self._timings.filled,
+                "drives": self._drives.filled,
+                "ledger": self._ledger.filled,
+                "predictions": self._predictions.filled,
+            },
+            {
+                "words": self._words.names,
+                "egos": self._egos.names,
+                "pedestrians": self._pedestrians.names,
+                "vehicles": self._vehicles.names,
+            },
+        )
+
+
+@kernel
+def fill_near(
+    step: int,
+    present: Indices,
+    position: Array,
+    velocity: Array,
+    egos: Array,
+    within: float,
+    block: Array,
+) -> int:
+    """Fill the crowd's rows of one step with those within reach of an ego; how many they are."""
+    count = 0
+    for i in range(len(present)):
+        near = np.isinf(within)
+        for j in range(len(egos)):
+            d_x, d_y = position[i, 0] - egos[j, 0], position[i, 1] - egos[j, 1]
+            near |= d_x * d_x + d_y * d_y <= within * within
+        if near:
+            block[count, 0] = step
+            block[count, 1] = present[i]
+            block[count, 2] = position[i, 0]
+            block[count, 3] = position[i, 1]
+            block[count, 4] = velocity[i, 0]
+            block[count, 5] = velocity[i, 1]
+            count += 1
+    return count

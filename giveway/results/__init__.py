@@ -1,0 +1,1 @@
+"""What a run leaves: the result object, its tables, folder, pictures and provenance."""

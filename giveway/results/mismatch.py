@@ -1,0 +1,76 @@
+"""Whether a vehicle answered as the controller's model of it said it would."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fmus.checking.fitting import fit, prepare
+from fmus.checking.manoeuvres import Trace
+from fmus.checking.prediction import position_errors
+
+if TYPE_CHECKING:
+    from giveway.records.tracks import EgoTrack
+    from giveway.results.run_result import EgoResult
+
+_TOLERATED = 0.05  # [m] over the horizon
+_SURE = 0.1  # half width of M's 95 % interval, relative, up to which a fit is worth telling
+
+
+def remark(ego: EgoResult, time_step: float, margin: float) -> str:
+    """What the user should know of a vehicle whose FMU is not ours; empty if all is well.
+
+    Args:
+        ego: how it drove.
+        time_step: of the co-simulation [s].
+        margin: the error that its controller allows for [m].
+    """
+    config = ego.config
+    if not config.optimises or not len(ego.track.time):
+        return ""  # the PID has no model
+    mass, friction = config.vehicle.mass, config.vehicle.friction
+    trace = _trace(ego.track, time_step)
+    errors = position_errors(trace, mass, friction, config.mpc.horizon)
+    error = float(np.percentile(errors, 95)) if errors.size else 0.0
+    if not error > max(_TOLERATED, 1.5 * margin):
+        return ""
+    fmu, profile = config.vehicle.fmu, config.vehicle.profile
+    named = f" --profile {profile}" if profile else ""
+    missed = (
+        f"ego '{ego.id}': the vehicle does not answer as the controller's M = {mass:g} kg, alpha = "
+        f"{friction:g} N.s/m predict: off by up to {error:.2g} m in "
+        f"{config.mpc.horizon * time_step:.3g} s"
+    )
+    if margin > 0.0:  # identified: once more would find the same
+        return (
+            f"{missed}, {margin:.2g} m as identified: at forces that do not arrive, or too late; "
+            f"see its limits with: giveway fmu check {fmu}{named}, and keep to them by "
+            "--mpc-force-limit"
+        )
+    return (
+        f"{missed}{_fitting(trace)}; match them with: giveway fmu identify {fmu}{named} "
+        f"-o {profile or 'car.toml'}"
+    )
+
+
+def _trace(track: EgoTrack, time_step: float) -> Trace:
+    """A run's drive, with the way that the speeds add up to in the model's manner.
+
+    Where an FMU adds them up in another one (the exact way of a step is half a change of speed
+    more than forward Euler's), M and alpha are right all the same.
+    """
+    steps = len(track.speed) - 1
+    way = np.concatenate(([0.0], np.cumsum(time_step * track.speed[:-1])))
+    nothing = np.zeros(steps)
+    return Trace(
+        time_step, track.force[:-1], way, track.speed, track.acceleration, cost=nothing, warnings=()
+    )
+
+
+def _fitting(trace: Trace) -> str:
+    """M and alpha that fit better, in brackets; empty where the drive does not tell."""
+    found = fit([prepare(trace)], actuator=False)
+    if found is None or not found.intervals[0] <= _SURE * found.mass:
+        return ""
+    return f" (M = {found.mass:.4g} kg and alpha = {found.friction:.4g} N.s/m fit better)"

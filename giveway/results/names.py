@@ -1,0 +1,26 @@
+"""The names of the files in a results folder."""
+
+from __future__ import annotations
+
+from giveway.records.scene import SCENE_FILE
+
+SUMO_FOLDER = "sumo"
+MARKS = ("", *(f"_{number}" for number in range(2, 100)))
+"""Ends of the names of pictures: of the first ego, the second one, ..."""
+TABLES = ("ego", "trajectories", "pedestrians", "summary", "timing", "predictions")
+"""All that there can be; which of them a run has, its ``schemas`` say."""
+FILES = frozenset(
+    {
+        *(f"{name}{suffix}" for name in TABLES for suffix in (".csv", ".parquet")),
+        "config.toml",
+        "summary.json",
+        "manifest.json",
+        "datapackage.json",
+        SCENE_FILE,
+        "replay.html",
+        "sumo.log",
+        *(f"{name}{mark}.png" for name in ("state", "top_view") for mark in MARKS),
+        SUMO_FOLDER,
+    }
+)
+"""Everything that giveway writes into a results folder."""

@@ -1,0 +1,111 @@
+"""The two pictures of a run, and the one of the vehicle's influence."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.figures import (
+    crowd_view_figure,
+    influence_figure,
+    save_figure,
+    state_figure,
+    top_view_figure,
+)
+from giveway.errors import ResultsError
+from giveway.results.names import MARKS
+from pedestrian_model import Vehicles, vehicle_influence
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.results.run_result import EgoResult, RunResult
+    from pedestrian_model import VciParameters
+
+    Array = NDArray[np.float64]
+
+_CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
+
+
+def write_pictures(result: RunResult, folder: Path) -> None:
+    """Write ``state.png`` and ``top_view.png`` of the first ego, ``state_2.png`` of the second ...
+
+    Without an ego there are only the trajectories.
+
+    Raises:
+        ResultsError: a file cannot be written.
+    """
+    try:
+        _write_pictures(result, folder)
+    except OSError as error:
+        msg = f"{folder}: a picture cannot be written ({error.strerror}); free the disk"
+        raise ResultsError(msg) from error
+
+
+def _write_pictures(result: RunResult, folder: Path) -> None:
+    for ego, mark in zip(result.egos, MARKS, strict=False):
+        save_figure(state_picture(result, ego), folder / f"state{mark}.png")
+        save_figure(top_view_picture(result, ego), folder / f"top_view{mark}.png")
+    if not result.egos and result.crowd_track.x.size:
+        save_figure(crowd_picture(result), folder / "top_view.png")
+
+
+def state_picture(result: RunResult, ego: EgoResult) -> Figure:
+    """Speed, force and gap over time, MPC and PID phases marked (the paper's state figure)."""
+    return state_figure(
+        ego.track,
+        safe_distance=ego.config.regulation.safe_distance,
+        buffer_distance=ego.config.buffer_distance,
+        title=_title(result, ego),
+    )
+
+
+def top_view_picture(result: RunResult, ego: EgoResult) -> Figure:
+    """Trajectories and snapshots from above (the paper's screenshots figure)."""
+    return top_view_figure(
+        ego.track,
+        ego.crowd,
+        ego.shape,
+        ego.body_radius,
+        background=result.background_track,
+        road=result.road,
+        title=_title(result, ego),
+    )
+
+
+def crowd_picture(result: RunResult) -> Figure:
+    """The trajectories of a run without an ego."""
+    people = len(result.crowd_track.ids)
+    return crowd_view_figure(
+        result.time,
+        result.crowd_track,
+        road=result.road,
+        title=f"{result.scenario.name}, {people} pedestrians, seed {result.config.seed}",
+    )
+
+
+def _title(result: RunResult, ego: EgoResult) -> str:
+    who = "" if ego.id == "ego" else f"ego {ego.id}, "
+    return (
+        f"{result.scenario.name}, {who}{ego.config.controller.upper()}, "
+        f"{len(result.crowd_track.ids)} pedestrians, seed {result.config.seed}"
+    )
+
+
+def influence_picture(
+    speeds: Sequence[float], shape: VehicleShape, parameters: VciParameters
+) -> Figure:
+    """The vehicle's influence on a standing pedestrian (the paper's figure 2)."""
+
+    def influence(points: Array, speed: float) -> Array:
+        half = shape.length / 2
+        vehicle = Vehicles.create(*_CENTRE, 0.0, speed, half, half, shape.width)
+        return vehicle_influence(points, np.zeros_like(points), vehicle, parameters)[0]
+
+    return influence_figure(influence, speeds=speeds, shape=shape, centre=_CENTRE)

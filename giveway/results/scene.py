@@ -1,0 +1,54 @@
+"""The scene that a run leaves for replays: the outlines near anybody, and all bodies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from giveway.records.scene import Scene
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.results.run_result import RunResult
+
+    Array = NDArray[np.float64]
+
+_AROUND = 60.0  # [m] of road kept beyond the places where somebody was
+_DECIMALS = 2  # centimetres
+
+
+def scene_of(result: RunResult) -> Scene:
+    """What of a run's surroundings a replay shows."""
+    background = result.background_track
+    _, first = np.unique(background.id, return_index=True)
+    bodies = {
+        str(background.id[i]): (float(background.length[i]), float(background.width[i]))
+        for i in first
+    }
+    bodies |= {ego.id: (ego.shape.length, ego.shape.width) for ego in result.egos}
+    low, high = _extent(result)
+    near = [
+        outline
+        for outline in result.road
+        if (outline.max(axis=0) >= low).all() and (outline.min(axis=0) <= high).all()
+    ]
+    return Scene(tuple(tuple((x, y) for x, y in _rounded(outline)) for outline in near), bodies)
+
+
+def _rounded(outline: Array) -> list[list[float]]:
+    points: list[list[float]] = (np.round(outline, _DECIMALS) + 0.0).tolist()
+    return points
+
+
+def _extent(result: RunResult) -> tuple[Array, Array]:
+    """The corners of where anybody was, and some room around."""
+    tracks = [(result.crowd_track.x, result.crowd_track.y)]
+    tracks += [(result.background_track.x, result.background_track.y)]
+    tracks += [(ego.track.front_x, ego.track.front_y) for ego in result.egos]
+    x = np.concatenate([x for x, _ in tracks])
+    y = np.concatenate([y for _, y in tracks])
+    if not x.size:
+        return np.full(2, -np.inf), np.full(2, np.inf)
+    return np.array((x.min(), y.min())) - _AROUND, np.array((x.max(), y.max())) + _AROUND

@@ -1,0 +1,134 @@
+"""The runs of one call, on a Dask cluster: handed out, handed out again, and fetched."""
+
+from __future__ import annotations
+
+import queue
+from collections import deque
+from typing import TYPE_CHECKING, Any, Final, Protocol
+
+from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.limits import ATTEMPTS
+from giveway.studies.record import CRASHED, Computing, RunRecord
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from giveway.studies.record import Task
+
+Future = Any  # Dask's, most of whose methods have no types
+
+_AHEAD: Final = 3  # runs per worker that are handed out: the network must not be waited for
+_LOOK: Final = 1.0  # [s] between two looks at the cluster, and at Ctrl-C
+_FETCH: Final = 30.0  # [s] for a result to arrive, or its worker has died meanwhile
+
+
+class Cluster(Protocol):
+    """What hands runs out to workers, and knows whether there are any."""
+
+    @property
+    def workers(self) -> int:
+        """How many runs are made at a time."""
+
+    def submit(self, task: Task, name: str) -> Future:
+        """Hand a run out; the future of its record."""
+
+    def is_there(self) -> bool:
+        """Whether somebody works; else, wait a little for them."""
+
+    def abandon(self, futures: Iterable[Future]) -> None:
+        """Take back runs, and end those that are being made."""
+
+
+class ClusterRuns:
+    """The runs of one call of :meth:`giveway.studies.execution.executor.Executor.run`.
+
+    Args:
+        cluster: makes them.
+        tasks: to be made.
+    """
+
+    def __init__(self, cluster: Cluster, tasks: Iterable[Task]) -> None:
+        self._cluster = cluster
+        self._source = iter(tasks)
+        self._again: deque[Task] = deque()
+        self._killed: dict[str, int] = {}  # run: Dask workers that died of it, or so it seems
+        self._under_way: dict[str, tuple[Task, Future]] = {}
+        self._finished: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._number = 0
+
+    def run(self) -> Iterator[RunRecord]:
+        """As :meth:`giveway.studies.execution.executor.Executor.run`."""
+        try:
+            while True:
+                there = self._cluster.is_there()
+                if there and not self._hand_out():
+                    return
+                try:
+                    name = self._finished.get(timeout=_LOOK)
+                except queue.Empty:
+                    continue
+                task, future = self._under_way.pop(name)
+                record = self._record(task, future)
+                if record is None:
+                    self._again.append(task)
+                else:
+                    yield record
+        finally:
+            if self._under_way:
+                self._cluster.abandon(future for _, future in self._under_way.values())
+
+    def _hand_out(self) -> bool:
+        """Fill the window; False: there is nothing more to do."""
+        while len(self._under_way) < _AHEAD * self._cluster.workers:
+            task = self._again.popleft() if self._again else next(self._source, None)
+            if task is None:
+                break
+            self._number += 1
+            name = f"{task.run}-{self._number}"
+            try:
+                future = self._cluster.submit(task, name)
+            except Exception:  # Dask has many; the next look at the cluster tells what is wrong
+                self._again.append(task)
+                return True
+            self._under_way[name] = (task, future)
+            future.add_done_callback(lambda _, name=name: self._finished.put(name))
+        return bool(self._under_way)
+
+    def _record(self, task: Task, future: Future) -> RunRecord | None:
+        """What became of it; None: to be handed out again.
+
+        Raises:
+            WorkerError: a worker refuses this study.
+        """
+        from distributed.scheduler import KilledWorker
+
+        from giveway.studies.execution.cluster_task import RECORD, REFUSED
+
+        if future.status not in {"finished", "error"}:
+            return None  # the connection was lost
+        try:
+            answer: dict[str, str] = future.result(timeout=_FETCH)
+        except KilledWorker as error:
+            return self._died(task, error)
+        except Exception as error:
+            if future.status != "error":  # its worker died before it could be fetched
+                return None
+            reason = " ".join(f"{type(error).__name__}: {error}".split())
+            msg = f"a worker cannot make runs ({reason}); install this giveway on every machine"
+            raise WorkerError(msg) from error
+        finally:
+            future.release()
+        if REFUSED in answer:
+            raise WorkerError(answer[REFUSED])
+        return RunRecord.from_json(answer[RECORD])
+
+    def _died(self, task: Task, error: Any) -> RunRecord | None:
+        count = self._killed[task.run] = self._killed.get(task.run, 0) + 1
+        if count < ATTEMPTS:
+            return None
+        deaths = (error.allowed_failures + 1) * count
+        failure = f"{deaths} Dask workers ended while they had this run, the last on "
+        failure += f"{error.last_worker.address}; look at their logs"
+        return RunRecord(
+            task.run, task.key, CRASHED, failure=failure, computing=Computing(attempts=count)
+        )

@@ -1,0 +1,99 @@
+"""One run of a study, in this process: from a task to its record."""
+
+from __future__ import annotations
+
+import math
+import os
+import socket
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fmus.text import printable
+from giveway.api import simulate
+from giveway.config import RunConfig
+from giveway.errors import GivewayError
+from giveway.processes.heartbeat import Phase
+from giveway.recording.journal import Journal
+from giveway.results.folder import rounded_row
+from giveway.studies.record import FAILED, Computing, RunRecord, Scalar, Task
+from sumo_scenarios import find
+
+if TYPE_CHECKING:
+    from giveway.records.tracks import Timings
+    from giveway.results.run_result import RunResult
+
+
+_LONGEST_FAILURE = 2000  # characters
+_STATM = Path("/proc/self/statm")
+
+
+def perform(
+    task: Task, journal: Journal | None = None, native_log: Path | None = None
+) -> RunRecord:
+    """Make the run and keep its summary; an error on the way is part of the record.
+
+    Args:
+        task: what to run.
+        journal: whose heartbeat tells another process where the run stands.
+        native_log: file for what SUMO prints, for whoever finds this process dead.
+    """
+    began = perf_counter()
+    journal = journal or Journal(None)
+    config = RunConfig.model_validate_json(task.config)
+    try:
+        result = simulate(config, find(config.scenario), journal=journal, native_log=native_log)
+        if result.error is not None:
+            raise result.error
+    except GivewayError as error:
+        failure = printable(error, _LONGEST_FAILURE)
+        return RunRecord(task.run, task.key, FAILED, failure=failure, computing=_since(began))
+    journal.heartbeat.beat(Phase.MEASURING)
+    rows = rows_of(result)
+    median, longest = control_times(result.timings)
+    return RunRecord(
+        run=task.run,
+        key=task.key,
+        ending=str(result.ending),
+        rows=rows,
+        remarks=tuple(result.remarks),
+        computing=replace(_since(began), control_median=median, control_max=longest),
+    )
+
+
+def control_times(timings: Timings) -> tuple[float, float]:
+    """Median and maximum [ms] of what one control step takes: prediction and controller.
+
+    The first step is left out, which fills caches; nan without a second one.
+    """
+    columns = [timings.NAMES.index(name) for name in ("prediction", "control")]
+    steps = 1000.0 * timings.seconds[1:, columns].sum(axis=1)
+    if not steps.size:
+        return math.nan, math.nan
+    return round(float(np.median(steps)), 6), round(float(steps.max()), 6)
+
+
+def rows_of(result: RunResult) -> tuple[dict[str, Scalar], ...]:
+    """The run's summary, one row per ego, rounded as ``summary.csv`` is."""
+    rows = result.summary_table.to_dict("records")
+    return tuple(rounded_row(row) for row in rows) or (rounded_row(result.head),)
+
+
+def _since(began: float) -> Computing:
+    return Computing(
+        seconds=round(perf_counter() - began, 6),
+        worker=f"{socket.gethostname()}:{os.getpid()}",
+        memory=resident_memory(),
+    )
+
+
+def resident_memory() -> float:
+    """The memory [MB] that this process holds; nan where the system does not tell."""
+    try:
+        pages = int(_STATM.read_text(encoding="ascii").split()[1])
+    except (OSError, ValueError, IndexError):
+        return math.nan
+    return round(pages * os.sysconf("SC_PAGE_SIZE") / 1e6, 1)

@@ -1,0 +1,127 @@
+"""A study's folder, claimed: nobody else works there, and nothing of anybody else's is lost."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import filelock
+
+from giveway.errors import ResultsError
+from giveway.studies.atomic_files import finished_name
+from giveway.studies.folder import DEFINITION, MANIFEST
+from giveway.studies.output import PACKAGE, TABLES
+from giveway.studies.store import RECORDS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from giveway.studies.options import StudyOptions
+
+LOCK = ".lock"
+REPORT = "report.html"
+_OF_THE_DATA = frozenset({*(f"{name}.csv" for name in TABLES), PACKAGE, REPORT})
+_OURS = frozenset({DEFINITION, MANIFEST, RECORDS, "figures", "replays", "reruns"}) | _OF_THE_DATA
+
+
+@contextmanager
+def claimed(out: Path, study: str, options: StudyOptions) -> Iterator[None]:
+    """Make sure that the study may go to ``out``, and keep others away; nothing in it is changed.
+
+    Args:
+        out: the folder; made if there is none.
+        study: name of the study.
+        options: whether it is to be resumed or replaced.
+
+    Raises:
+        ResultsError: it holds a study and neither resume nor force is given, or another study, or
+            something else; another process works there; it cannot be made.
+    """
+    _require_free(out, study, options)  # before anything of ours is put into a stranger's folder
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        lock = filelock.FileLock(out / LOCK, timeout=0)
+        lock.acquire()
+    except filelock.Timeout:
+        msg = f"{out}: another giveway study is at work there; wait for it, or name another --out"
+        raise ResultsError(msg) from None
+    except OSError as error:
+        msg = f"{out}: cannot be written ({error.strerror}); name another folder with --out"
+        raise ResultsError(msg) from error
+    try:
+        _require_free(out, study, options)  # another may have come, and gone, meanwhile
+        yield
+    finally:
+        lock.release()
+
+
+def _require_free(out: Path, study: str, options: StudyOptions) -> None:
+    if not out.exists():
+        return
+    if not out.is_dir():
+        msg = f"{out}: is a file; expected a folder for the study, name another with --out"
+        raise ResultsError(msg)
+    present = {path.name for path in out.iterdir()} - {LOCK}
+    foreign = sorted(name for name in present if finished_name(name) not in _OURS)
+    if foreign and not (options.resume and present & _OURS):  # a note beside a study does no harm
+        msg = (
+            f"{out}: holds '{foreign[0]}', which no study of giveway wrote; name another folder "
+            "with --out"
+        )
+        raise ResultsError(msg)
+    if present and not (options.resume or options.force):
+        msg = (
+            f"{out}: a study is there; go on with it by --resume, replace it by --force, or name "
+            "another folder with --out"
+        )
+        raise ResultsError(msg)
+    there = _name_of(out)
+    if options.resume and there not in {None, study}:
+        msg = (
+            f"{out}: holds the study '{there}'; expected '{study}' to go on with; replace it by "
+            "--force, or name another folder with --out"
+        )
+        raise ResultsError(msg)
+
+
+def _name_of(out: Path) -> str | None:
+    """The study that is there; None: none, or it does not say."""
+    try:
+        return str(json.loads((out / MANIFEST).read_text(encoding="utf-8"))["study"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def clear(out: Path) -> None:
+    """Remove a study: everything of ours.
+
+    Raises:
+        ResultsError: something cannot be removed.
+    """
+    _remove(out, _OURS)
+
+
+def forget_tables(out: Path) -> None:
+    """Remove what was made from the records, for there will be others.
+
+    Raises:
+        ResultsError: something cannot be removed.
+    """
+    _remove(out, _OF_THE_DATA)
+
+
+def _remove(out: Path, names: frozenset[str]) -> None:
+    for path in sorted(out.iterdir()):
+        if finished_name(path.name) not in names:
+            continue
+        try:
+            if path.is_dir() and not path.is_symlink():
+                shutil.rmtree(path)
+            else:
+                path.unlink(missing_ok=True)
+        except OSError as error:
+            msg = f"{path}: cannot be removed ({error.strerror}); name another folder with --out"
+            raise ResultsError(msg) from error

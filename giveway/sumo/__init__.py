@@ -1,0 +1,1 @@
+"""Everything that calls libsumo, and nothing else: sessions, vehicles, persons, lanes."""

@@ -1,0 +1,312 @@
+"""The one object that owns libsumo.
+
+SUMO is the mirror of our own state: the ego and the pedestrians are moved to where the vehicle
+FMU and the VCI model put them, and what is exported is our state. The ways of moving were found
+by experiment on SUMO 1.28:
+
+* a person follows ``moveToXY(..., keepRoute=2, matchThreshold=-1)`` exactly; other arguments kill
+  the process when the person is mapped onto a walkingarea (SUMO issue 17257);
+* only the striping pedestrian model obeys moveToXY;
+* a pending moveToXY at ``close`` crashes the next simulation, so nothing that can raise stands
+  between the moves and ``simulationStep``.
+"""
+
+from __future__ import annotations
+
+import collections
+import contextlib
+import itertools
+import math
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
+
+from giveway.errors import ScenarioError, SumoError
+from giveway.geometry.angles import heading_to_angle
+from giveway.scenario_files import prepare_start
+from giveway.sumo.footpaths import FootPaths
+from giveway.sumo.handover import NOWHERE
+from giveway.sumo.lanes import Lanes
+from giveway.sumo.library import direct, import_libsumo
+from giveway.sumo.persons import ScenarioPersons
+from giveway.sumo.stderr import NativeStderr
+from giveway.sumo.types import PEDESTRIAN_TYPE
+from giveway.sumo.vehicles import SumoVehicles
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Iterable, Sequence
+    from types import TracebackType
+
+    from giveway.geometry.path import Pose
+    from giveway.scenario_files import ScenarioFiles, StartOptions
+
+POSITION_TOLERANCE = 1e-6  # [m] between our state and SUMO's after each step
+_DEPART_NOW = -3  # libsumo's constant for "in the next step"
+_KEEP_ROUTE = 2  # move exactly to x, y, whatever lane is there
+_NO_EDGE = itertools.repeat("")
+_EXACTLY = itertools.repeat(_KEEP_ROUTE)
+_WITHOUT_MATCHING = itertools.repeat(-1.0)  # the "ghost" mode: no lane is sought (issue 17257)
+
+
+class SumoSession:
+    """A running simulation; one per process at a time, closed in every case.
+
+    Args:
+        scenario: the scenario's files; nothing is written beside them.
+        options: how SUMO is to be run.
+        types: an additional file's text with the types of whatever is going to be added.
+        native_log: file for what SUMO prints; None: a temporary one.
+
+    Raises:
+        ScenarioError: an input file is missing or cannot be read.
+        SumoError: SUMO does not load the scenario; the message carries SUMO's reason.
+        InstallationError: libsumo cannot be imported.
+    """
+
+    _running = False
+
+    def __init__(
+        self,
+        scenario: ScenarioFiles,
+        options: StartOptions,
+        types: str,
+        *,
+        native_log: Path | None = None,
+    ) -> None:
+        if SumoSession._running:
+            msg = "SUMO: a simulation is already running; libsumo holds one per process, close it"
+            raise SumoError(msg)
+        self._sumo = import_libsumo()
+        self._config_file = scenario.config_file
+        self._native_log = native_log
+        self._extra = options.extra
+        self._scratch = tempfile.TemporaryDirectory(prefix="giveway-")
+        try:
+            self.start = prepare_start(scenario, options, Path(self._scratch.name), types=types)
+            self._load()
+        except BaseException:
+            self._scratch.cleanup()
+            raise
+        SumoSession._running = True
+        self._move_person = direct(self._sumo, "person", "moveToXY")
+        self._person_position = direct(self._sumo, "person", "getPosition")
+        self._move_vehicle = direct(self._sumo, "vehicle", "moveToXY")
+        self._vehicle_position = direct(self._sumo, "vehicle", "getPosition")
+        self._light_state = direct(self._sumo, "trafficlight", "getRedYellowGreenState")
+        self._moves_pending = False
+        self.lanes = Lanes(self._sumo, self._config_file)
+        self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
+        self.step_length = float(self._sumo.simulation.getDeltaT())
+        self._on_the_kerb: dict[str, None] = {}  # added, and just departing
+        self._host_lane: str | None = None
+        self._added_at = 0.0
+
+    def _load(self) -> None:
+        self._stderr = NativeStderr(self._native_log)
+        try:
+            with self._stderr:
+                self._sumo.start(list(self.start.command))
+        except Exception as error:
+            reason = self._readable(self._stderr.errors() or str(error))
+            self._stderr.close()
+            msg = f"{self._config_file}: SUMO cannot load this scenario: {reason}"
+            if self._extra:
+                msg += f" (with --sumo-options '{' '.join(self._extra)}')"
+            raise SumoError(msg) from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    # --- reading ------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """SUMO's clock [s]."""
+        return float(self._sumo.simulation.getTime())
+
+    @property
+    def end(self) -> float:
+        """The scenario's end [s]; infinite where it names none."""
+        end = float(self._sumo.simulation.getEndTime())
+        return end if end >= 0.0 else math.inf
+
+    @property
+    def version(self) -> str:
+        """SUMO's version string."""
+        return str(self._sumo.simulation.getVersion()[1])
+
+    @property
+    def messages(self) -> str:
+        """What SUMO has printed on stderr so far: warnings, mostly."""
+        return self._stderr.text()
+
+    @property
+    def expects_more(self) -> bool:
+        """Whether anybody is on the way or yet to depart."""
+        return bool(self._sumo.simulation.getMinExpectedNumber() > 0)
+
+    def light_state(self, system: str) -> str:
+        """The state of a traffic light, one letter per movement."""
+        return str(self._light_state(system))
+
+    def light_states(self, systems: Iterable[str]) -> dict[str, str]:
+        """The state of each of these traffic lights, one letter per movement."""
+        return {system: self.light_state(system) for system in systems}
+
+    def persons(self, added: Container[str]) -> ScenarioPersons:
+        """The scenario's own persons, to take over and hand back.
+
+        Args:
+            added: ids of persons that giveway added, which are never touched.
+        """
+        return ScenarioPersons(self._sumo, added)
+
+    # --- adding and removing ------------------------------------------------------------------
+
+    def add_persons(self, ids: Sequence[str], host_edge: str) -> None:
+        """Add persons who live on ``host_edge``; they appear with the next :meth:`mirror`."""
+        if host_edge not in self._sumo.edge.getIDList():
+            msg = (
+                f"{self._config_file}: host edge '{host_edge}' for the pedestrians does not exist; "
+                "name an edge that allows pedestrians with [crowd] host_edge"
+            )
+            raise ScenarioError(msg)
+        taken = set(self._sumo.person.getIDList()).intersection(ids)
+        if taken:
+            msg = f"person id '{min(taken)}': the scenario already has this person"
+            raise ScenarioError(msg)
+        for name in ids:
+            self.call(self._sumo.person.add, name, host_edge, 0.0, _DEPART_NOW, PEDESTRIAN_TYPE)
+            self.call(self._sumo.person.appendWalkingStage, name, [host_edge], -1.0)
+        self._on_the_kerb = dict.fromkeys(ids)
+        self._added_at = self.time
+        self._host_lane = FootPaths(self._sumo).lane(host_edge)
+
+    def remove_persons(self, ids: Sequence[str]) -> None:
+        """Let persons arrive; they are gone with the next step."""
+        for name in ids:
+            self._on_the_kerb.pop(name, None)
+            self.call(self._sumo.person.removeStages, name)  # unlike remove: counts as arrival
+
+    def _clear_the_kerb(self) -> None:
+        """Those who have departed leave the host edge's beginning, where SUMO's books have them.
+
+        SUMO's own walkers would swerve round whoever seems to stand there.
+        """
+        for name in self._on_the_kerb if self._host_lane else ():
+            self.call(self._sumo.person.moveTo, name, self._host_lane, NOWHERE)
+        self._on_the_kerb = {}
+
+    # --- stepping -----------------------------------------------------------------------------
+
+    def mirror(
+        self,
+        egos: Sequence[tuple[str, Pose]],
+        ids: Sequence[str],
+        x: Sequence[float],
+        y: Sequence[float],
+        angles: Sequence[float],
+    ) -> None:
+        """Move egos and persons, make one SUMO step, and check that SUMO stands where we do.
+
+        Args:
+            egos: id and front bumper's pose after the step, of each ego.
+            ids: the persons' ids.
+            x: of each person [m], finite.
+            y: of each person [m], finite.
+            angles: of each person [deg, 0 = north, clockwise], finite.
+
+        Raises:
+            SumoError: SUMO failed, or disagrees by more than 1e-6 m.
+        """
+        if self._on_the_kerb and self._sumo.simulation.getTime() > self._added_at:
+            self._clear_the_kerb()
+        self._moves_pending = bool(egos or ids)
+        try:
+            with self._stderr:
+                for name, pose in egos:
+                    angle = heading_to_angle(pose.heading)
+                    self._move_vehicle(name, "", -1, pose.x, pose.y, angle, _KEEP_ROUTE)
+                moves = map(
+                    self._move_person, ids, _NO_EDGE, x, y, angles, _EXACTLY, _WITHOUT_MATCHING
+                )
+                collections.deque(moves, maxlen=0)  # the fastest loop that Python has
+                self._sumo.simulationStep()
+                self._moves_pending = False
+        except Exception as error:
+            raise self._failure(error) from error
+        self._check(egos, ids, list(zip(x, y, strict=True)))
+
+    def _check(
+        self,
+        egos: Sequence[tuple[str, Pose]],
+        ids: Sequence[str],
+        points: list[tuple[float, float]],
+    ) -> None:
+        try:
+            for name, pose in egos:
+                there = self._vehicle_position(name)
+                if there != pose[:2]:
+                    _compare("vehicle", name, there, pose, self.time)
+            mirrored = list(map(self._person_position, ids))
+        except self._sumo.TraCIException as error:
+            raise self._failure(error) from error
+        if mirrored != points:  # as a rule they are the same to the bit
+            for name, there, here in zip(ids, mirrored, points, strict=True):
+                _compare("person", name, there, here, self.time)
+
+    def step(self) -> None:
+        """Let the scenario go on by itself for one step."""
+        self.call(self._sumo.simulationStep)
+
+    def call(self, function: Any, *arguments: Any, **keywords: Any) -> Any:
+        """A libsumo call whose failure becomes a :class:`SumoError` with SUMO's own reason."""
+        try:
+            with self._stderr:
+                return function(*arguments, **keywords)
+        except Exception as error:
+            raise self._failure(error) from error
+
+    def _failure(self, error: Exception) -> SumoError:
+        reasons = [part for part in (str(error).strip(), self._stderr.errors()) if part]
+        reason = "; ".join(dict.fromkeys(reasons)) or type(error).__name__
+        reason = self._readable(reason)
+        return SumoError(f"{self._config_file}: SUMO failed at {self.time:.3f} s: {reason}")
+
+    def _readable(self, reason: str) -> str:
+        """SUMO's reason on one line, with the scenario's own files instead of our copies."""
+        return " ".join(self.start.with_original_names(reason).split())
+
+    def close(self) -> None:
+        """End the simulation; harmless when repeated."""
+        if not SumoSession._running:
+            return
+        SumoSession._running = False
+        with self._stderr:
+            if self._moves_pending:  # else a step more would be in SUMO's own outputs
+                with contextlib.suppress(Exception):  # the simulation is being given up anyway
+                    self._sumo.simulationStep()  # carries out the moves, which close() would leak
+            self._sumo.close()
+        self._stderr.close()
+        with contextlib.suppress(OSError):
+            self._scratch.cleanup()
+
+
+def _compare(
+    kind: str, name: str, there: tuple[float, float], here: Sequence[float], time: float
+) -> None:
+    deviation = math.hypot(there[0] - here[0], there[1] - here[1])
+    if deviation > POSITION_TOLERANCE:
+        msg = (
+            f"{kind} '{name}' at {time:.3f} s: SUMO has it {deviation:.3g} m away from our state; "
+            f"expected at most {POSITION_TOLERANCE:g} m; is it moved by somebody else?"
+        )
+        raise SumoError(msg)

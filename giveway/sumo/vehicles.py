@@ -1,0 +1,242 @@
+"""SUMO's vehicles: read, taken over, inserted, slowed down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from giveway.errors import ScenarioError, SumoError
+from giveway.geometry.angles import angle_to_heading, angles_to_headings
+from giveway.sumo.background import NO_VEHICLES, BackgroundVehicles
+from giveway.sumo.library import direct
+from giveway.sumo.types import ego_type, inserted_type
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from giveway.geometry.bodies import VehicleShape
+    from giveway.sumo.lanes import Lanes
+
+    Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class VehicleState:
+    """One of SUMO's vehicles at one instant."""
+
+    id: str
+    type: str
+    kind: str  # SUMO's vehicle class
+    edges: tuple[str, ...]  # its route from the present edge on
+    lane: int  # index on the present edge
+    lane_position: float  # [m]
+    x: float  # [m] front-bumper centre
+    y: float  # [m]
+    heading: float  # [rad]
+    speed: float  # [m/s]
+    length: float  # [m]
+    width: float  # [m]
+
+
+class SumoVehicles:
+    """What giveway asks and wants of SUMO's vehicles.
+
+    Args:
+        sumo: the libsumo module.
+        call: calls a function of it and explains its failure.
+        lanes: the network's lanes.
+    """
+
+    def __init__(self, sumo: Any, call: Callable[..., Any], lanes: Lanes) -> None:
+        self._vehicle = sumo.vehicle
+        self._sumo = sumo
+        self._call = call
+        self._lanes = lanes
+        self._shapes: dict[str, tuple[str, float, float]] = {}
+        self._id_list = direct(sumo, "vehicle", "getIDList")
+        self._position = direct(sumo, "vehicle", "getPosition")
+        self._angle = direct(sumo, "vehicle", "getAngle")
+        self._speed = direct(sumo, "vehicle", "getSpeed")
+        self._lane_id = direct(sumo, "vehicle", "getLaneID")
+        self._lane_position = direct(sumo, "vehicle", "getLanePosition")
+        self._route_id = direct(sumo, "vehicle", "getRouteID")
+        self.egos: set[str] = set()  # driven by giveway
+        self.dropped_stops: dict[str, int] = {}  # of egos that were taken over
+
+    # --- reading ------------------------------------------------------------------------------
+
+    def departed(self) -> frozenset[str]:
+        """Who has departed in SUMO's latest step."""
+        return frozenset(self._sumo.simulation.getDepartedIDList())
+
+    def present(self) -> tuple[str, ...]:
+        """Every vehicle on the road."""
+        return tuple(self._vehicle.getIDList())
+
+    def background(self) -> BackgroundVehicles:
+        """Every vehicle of the scenario except the egos, as of SUMO's clock."""
+        vehicle = self._vehicle
+        everybody = self._id_list()
+        if self.egos.issuperset(everybody):
+            return NO_VEHICLES
+        ids = tuple(sorted(name for name in everybody if name not in self.egos))
+        for name in ids:
+            if name not in self._shapes:
+                size = vehicle.getLength(name), vehicle.getWidth(name)
+                self._shapes[name] = (vehicle.getTypeID(name), *size)
+        types, lengths, widths = zip(*map(self._shapes.__getitem__, ids), strict=True)
+        places = np.array(list(map(self._position, ids)), dtype=np.float64)
+        return BackgroundVehicles(
+            ids=ids,
+            types=types,
+            x=np.ascontiguousarray(places[:, 0]),
+            y=np.ascontiguousarray(places[:, 1]),
+            heading=angles_to_headings(np.array(list(map(self._angle, ids)))),
+            speed=np.array(list(map(self._speed, ids))),
+            length=np.array(lengths),
+            width=np.array(widths),
+        )
+
+    def state(self, name: str) -> VehicleState:
+        """One vehicle as SUMO has it now."""
+        vehicle = self._vehicle
+        x, y = vehicle.getPosition(name)
+        return VehicleState(
+            id=name,
+            type=vehicle.getTypeID(name),
+            kind=vehicle.getVehicleClass(name),
+            edges=tuple(vehicle.getRoute(name))[max(0, vehicle.getRouteIndex(name)) :],
+            lane=int(vehicle.getLaneIndex(name)),
+            lane_position=float(vehicle.getLanePosition(name)),
+            x=float(x),
+            y=float(y),
+            heading=angle_to_heading(vehicle.getAngle(name)),
+            speed=float(vehicle.getSpeed(name)),
+            length=float(vehicle.getLength(name)),
+            width=float(vehicle.getWidth(name)),
+        )
+
+    def on_a_road(self, name: str) -> bool:
+        """Whether the vehicle is on a lane outside of junctions."""
+        road = self._vehicle.getRoadID(name)
+        return bool(road) and not road.startswith(":")
+
+    def whereabouts(self, name: str) -> tuple[str, str, float]:
+        """The vehicle's lane (empty: none), its route's id, and its position [m] on the lane."""
+        return self._lane_id(name), self._route_id(name), self._lane_position(name)
+
+    def lanes_ahead(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
+        """Its own ``lane`` and those that it comes to within at least ``distance`` [m]."""
+        return self._by_its_route(name, lane, distance) or self._by_its_plan(name, lane, distance)
+
+    def _by_its_route(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
+        """The lanes ahead where its route leaves no choice, else nothing: far cheaper to find."""
+        vehicle = self._vehicle
+        if vehicle.getStops(name, 1):
+            return ()  # SUMO's plans end at a stop
+        edges, at = vehicle.getRoute(name), vehicle.getRouteIndex(name)
+        lanes, known = [lane], 0.0
+        while known <= distance and at + 1 < len(edges):
+            onwards = self._lanes.onwards(lanes[-1], edges[at + 1])
+            if len(onwards) != 1:
+                return ()
+            lanes.append(onwards[0])
+            known += self._lanes.length(onwards[0])
+            at += not onwards[0].startswith(":")
+        return tuple(lanes)
+
+    def _by_its_plan(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
+        """The lanes ahead as SUMO's driver plans them, those inside junctions filled in."""
+        lanes = [lane, *self._lanes.out_of_junction(lane)]
+        known = sum(map(self._lanes.length, lanes[1:]))
+        for link in self._vehicle.getNextLinks(name):
+            if known > distance:
+                break
+            first = link[4] or link[0]
+            onwards = [first, *self._lanes.out_of_junction(first)]
+            known += sum(map(self._lanes.length, onwards))
+            lanes += onwards
+        return tuple(lanes)
+
+    def shape(self, lane: str) -> Array:
+        """(k, 2) [m] centre line of a lane."""
+        return self._lanes.shape(lane)
+
+    def lane_length(self, lane: str) -> float:
+        """SUMO's length of a lane [m], which need not be its centre line's."""
+        return float(self._sumo.lane.getLength(lane))
+
+    def deceleration(self, name: str) -> float:
+        """How hard the vehicle's driver brakes [m/s^2]."""
+        return float(self._vehicle.getDecel(name))
+
+    # --- doing --------------------------------------------------------------------------------
+
+    def insert(
+        self, ego_id: str, edges: Sequence[str], *, lane: int, position: float, speed: float
+    ) -> None:
+        """Insert an ego; it appears with the next mirrored step.
+
+        The speed is the FMU's business: SUMO only hears as much of it as the lane permits.
+        """
+        route = f"giveway_route_{ego_id}"
+        self._call(self._sumo.route.add, route, list(edges))
+        try:
+            self._call(
+                self._vehicle.add,
+                ego_id,
+                route,
+                typeID=inserted_type(ego_id),
+                depart="now",
+                departPos=f"{position:.3f}",
+                departSpeed=f"{min(speed, self._sumo.lane.getMaxSpeed(f'{edges[0]}_{lane}')):.3f}",
+            )
+        except SumoError as error:
+            if "already exists" not in str(error):
+                raise
+            msg = (
+                f"ego id '{ego_id}': the scenario already has this vehicle; choose another id, or "
+                f"take it over with --ego {ego_id}"
+            )
+            raise ScenarioError(msg) from error
+        self.egos.add(ego_id)
+
+    def adopt(self, state: VehicleState, shape: VehicleShape) -> None:
+        """Drive one of SUMO's own vehicles from now on, with the body ``shape``."""
+        name = state.id
+        try:
+            kind = ego_type(state.kind)
+        except ScenarioError as error:
+            raise ScenarioError(f"--ego {name}: {error}") from error
+        self._call(self._vehicle.setType, name, kind)
+        self._call(self._vehicle.setLength, name, shape.length)
+        self._call(self._vehicle.setWidth, name, shape.width)
+        self._drop_stops(name)
+        self.egos.add(name)
+
+    def _drop_stops(self, name: str) -> None:
+        """Its stops go: SUMO would park it beside the road while the FMU drives on."""
+        if self._vehicle.isStopped(name):
+            self._call(self._vehicle.resume, name)
+        stops = len(self._vehicle.getStops(name))
+        for _ in range(stops):
+            self._call(self._vehicle.replaceStop, name, 0, "")
+        if stops:
+            self.dropped_stops[name] = stops
+
+    def dismiss(self, name: str) -> None:
+        """Take an ego that has reached its goal off the road."""
+        self._call(self._vehicle.remove, name)
+        self.egos.discard(name)
+
+    def limit(self, name: str, speed: float) -> None:
+        """Let SUMO's driver go no faster than ``speed`` [m/s]."""
+        self._call(self._vehicle.setSpeed, name, speed)
+
+    def release(self, name: str) -> None:
+        """Let SUMO's driver go as it wants again."""
+        self._call(self._vehicle.setSpeed, name, -1.0)
