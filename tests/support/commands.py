@@ -21,7 +21,8 @@ def type_here(
 ) -> Callable[..., Typed]:
     """Type a command in ``tmp_path``, in this process; ``giveway run`` gets ``--no-isolate``.
 
-    What native code prints is captured, too.
+    Other commands that are supervised start their child as if they had been typed in a shell.
+    What native code and children print is captured, too.
     """
     monkeypatch.setenv("COLUMNS", "120")
     monkeypatch.setenv("NO_COLOR", "1")
@@ -35,6 +36,8 @@ def type_here(
         capfd.readouterr()
         with monkeypatch.context() as there:
             there.chdir(cwd)
+            command = [sys.executable, "-m", "giveway", *typed]
+            there.setattr("giveway.cli.isolated.own_command", lambda: command)
             with pytest.raises(SystemExit) as ended:
                 main(typed)
         out, err = capfd.readouterr()

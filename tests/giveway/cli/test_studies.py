@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import signal
 import subprocess
@@ -11,24 +10,6 @@ import sys
 import time
 
 import pytest
-
-
-@pytest.fixture
-def giveway(tmp_path):
-    """Types a command in an empty folder: (words) -> completed process."""
-
-    def type_(*words: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, "-m", "giveway", *words],
-            cwd=tmp_path,
-            capture_output=True,
-            text=True,
-            check=False,
-            env=os.environ | {"COLUMNS": "120", "NO_COLOR": "1"},
-            timeout=300,
-        )
-
-    return type_
 
 
 def one_line(done, code):
@@ -39,9 +20,9 @@ def one_line(done, code):
     return lines[0]
 
 
-def test_a_study_from_start_to_replay(giveway, small_study_text, tmp_path):
+def test_a_study_from_start_to_replay(type_here, small_study_text, tmp_path):
     (tmp_path / "small.toml").write_text(small_study_text, encoding="utf-8")
-    done = giveway("study", "small.toml", "--jobs", "2")
+    done = type_here("study", "small.toml", "--jobs", "2")
     assert done.returncode == 0, done.stderr
     assert "20 runs in" in done.stdout
     assert "controller: mpc minus pid" in done.stdout
@@ -52,50 +33,50 @@ def test_a_study_from_start_to_replay(giveway, small_study_text, tmp_path):
     assert all((study / link).is_file() for link in links)
     assert {path.suffix for path in (study / "figures").iterdir()} == {".png", ".svg"}
 
-    done = giveway("rerun", str(study), "c1-s2", "--no-pictures")
+    done = type_here("rerun", str(study), "c1-s2", "--no-pictures")
     assert done.returncode == 0, done.stderr
     assert "Its numbers are those of the study's row." in done.stdout
-    done = giveway("replay", str(study / "reruns" / "c1-s2"), "--no-rerun")
+    done = type_here("replay", str(study / "reruns" / "c1-s2"), "--no-rerun")
     assert done.returncode == 0, done.stderr
     assert (study / "reruns" / "c1-s2" / "replay.html").stat().st_size > 50_000
 
     before = (study / "report.html").read_bytes()
-    assert giveway("report", str(study), "--quiet").returncode == 0
+    assert type_here("report", str(study), "--quiet").returncode == 0
     assert (study / "report.html").read_bytes() == before
 
-    assert "a study is there" in one_line(giveway("study", "small.toml"), 2)
-    done = giveway("study", "small.toml", "--resume", "--no-report")
+    assert "a study is there" in one_line(type_here("study", "small.toml"), 2)
+    done = type_here("study", "small.toml", "--resume", "--no-report")
     assert done.returncode == 0, done.stderr
 
 
-def test_a_dry_run_tells_the_plan_and_leaves_nothing(giveway, small_study_text, tmp_path):
+def test_a_dry_run_tells_the_plan_and_leaves_nothing(type_here, small_study_text, tmp_path):
     (tmp_path / "small.toml").write_text(small_study_text, encoding="utf-8")
-    done = giveway("study", "small.toml", "--dry-run", "--runs", "700")
+    done = type_here("study", "small.toml", "--dry-run", "--runs", "700", "--jobs", "1")
     assert done.returncode == 0, done.stderr
     assert "2,800 runs: 4 cells with seeds 1 to 700" in " ".join(done.stdout.split())
     assert not (tmp_path / "results").exists()
 
 
-def test_a_dry_run_tells_which_cells_fail(giveway, tmp_path):
+def test_a_dry_run_tells_which_cells_fail(type_here, tmp_path):
     (tmp_path / "f.toml").write_text(
         'name = "f"\n[run]\ntime_limit = 0.5\n[factors.ego_of]\n'
         '"ours" = {}\n"nobody" = { ego = { take_over = ["nobody"] } }\n',
         encoding="utf-8",
     )
-    done = giveway("study", "f.toml", "--dry-run", "--jobs", "1")
+    done = type_here("study", "f.toml", "--dry-run", "--jobs", "1")
     assert done.returncode == 0, done.stderr
     assert re.search(r"nobody │ +failed", done.stdout)
     assert re.search(r"ours │ +0\.\d\d\d", done.stdout)
 
 
-def test_the_bundled_studies_are_listed(giveway):
-    done = giveway("studies")
+def test_the_bundled_studies_are_listed(type_here):
+    done = type_here("studies")
     names = [line.split()[0] for line in done.stdout.splitlines() if line and line[0].isalpha()]
     assert {"ablation", "controllers", "paper", "readings"} <= set(names)
 
 
-def test_the_papers_table_stands_beside_ours(giveway, tmp_path):
-    done = giveway("study", "paper", "--runs", "1", "--no-report", "--out", "p")
+def test_the_papers_table_stands_beside_ours(type_here, tmp_path):
+    done = type_here("study", "paper", "--runs", "1", "--no-report", "--jobs", "1", "--out", "p")
     assert done.returncode == 0, done.stderr
     assert "paper -1.27" in done.stdout
     assert json.loads((tmp_path / "p" / "manifest.json").read_text())["seeds"] == 1
@@ -115,23 +96,23 @@ def test_the_papers_table_stands_beside_ours(giveway, tmp_path):
         (("replay", "nowhere"), "nowhere"),
     ],
 )
-def test_what_cannot_be_done_is_said_in_one_line(giveway, words, said):
-    done = giveway(*words)
+def test_what_cannot_be_done_is_said_in_one_line(type_here, words, said):
+    done = type_here(*words)
     assert said in one_line(done, done.returncode)
     assert done.returncode in {1, 2}
 
 
-def test_runs_that_fail_make_the_exit_code_1(giveway, tmp_path):
+def test_runs_that_fail_make_the_exit_code_1(type_here, tmp_path):
     (tmp_path / "f.toml").write_text(
         'name = "f"\nreplications = 1\n[run]\ntime_limit = 0.5\n[factors.ego_of]\n'
         '"ours" = {}\n"nobody" = { ego = { take_over = ["nobody"] } }\n',
         encoding="utf-8",
     )
-    done = giveway("study", "f.toml", "--no-report")
+    done = type_here("study", "f.toml", "--no-report", "--jobs", "1")
     assert done.returncode == 1
     assert "1 of 2 runs has no result (cell 2), see failures.csv" in done.stdout
     assert "nobody" in done.stdout
-    again = giveway("rerun", "results/study_f", "c2-s1")
+    again = type_here("rerun", "results/study_f", "c2-s1")
     assert "nobody" in one_line(again, again.returncode)
 
 

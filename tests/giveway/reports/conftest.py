@@ -13,19 +13,17 @@ import pytest
 
 from giveway.studies.definition import parse_definition
 from giveway.studies.design import design
-from giveway.studies.execution.perform import perform
 from giveway.studies.folder import StudyFolder
 from giveway.studies.output import write_tables
 from giveway.studies.record import CRASHED
 from giveway.studies.rerun import rerun
 from giveway.studies.store import RecordStore
-from giveway.studies.study import StudyOptions, run_study
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable
     from pathlib import Path
 
-    from giveway.studies.record import RunRecord, Task
+    from giveway.studies.record import RunRecord
 
 SMALL = """
 name = "small"
@@ -45,36 +43,12 @@ minimum_pairs = 4
 """
 
 
-class InThisProcess:
-    """An executor without processes: what is drawn is tested here, not how it is computed."""
-
-    workers = 1
-
-    def __enter__(self) -> InThisProcess:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        pass
-
-    def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
-        for task in tasks:
-            yield perform(task)
-
-
-class Options(StudyOptions):
-    def executor(self) -> Any:
-        return InThisProcess()
-
-
-def make(text: str, folder: Path) -> StudyFolder:
-    """Run a study in this process."""
-    return run_study(parse_definition(text, "study.toml", folder), "study.toml", folder, Options())
-
-
 @pytest.fixture(scope="session")
-def study(tmp_path_factory: pytest.TempPathFactory) -> StudyFolder:
+def study(
+    study_of: Callable[..., StudyFolder], tmp_path_factory: pytest.TempPathFactory
+) -> StudyFolder:
     """Two densities, two controllers, nine crowds."""
-    return make(SMALL, tmp_path_factory.mktemp("studies") / "small")
+    return study_of(SMALL, tmp_path_factory.mktemp("studies") / "small")
 
 
 @pytest.fixture
