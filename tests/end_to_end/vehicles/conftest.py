@@ -68,8 +68,26 @@ def isolated(zoo: Any) -> Iterator[Callable[..., IsolatedVehicle]]:
 
 
 @pytest.fixture
-def giveway(tmp_path: Path, own_temp: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Run a command line in ``tmp_path``; nothing of it may be left afterwards."""
+def giveway(
+    type_here: Callable[..., subprocess.CompletedProcess[str]], own_temp: Path
+) -> Iterator[Callable[..., subprocess.CompletedProcess[str]]]:
+    """Type a command in this process; no process and no file of it may be left afterwards."""
+    before = set(psutil.Process().children(recursive=True))
+
+    def run(*words: object) -> subprocess.CompletedProcess[str]:
+        done = type_here(*words)
+        assert set(psutil.Process().children(recursive=True)) <= before
+        assert not list(own_temp.iterdir())
+        return done
+
+    return run
+
+
+@pytest.fixture
+def giveway_outside(
+    tmp_path: Path, own_temp: Path
+) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run a command line in a process of its own; nothing of it may be left afterwards."""
 
     def run(*words: object, cleans_up: bool = True) -> subprocess.CompletedProcess[str]:
         process = subprocess.Popen(

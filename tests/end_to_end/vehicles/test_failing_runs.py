@@ -13,7 +13,7 @@ import pytest
 
 SEED = 4
 AT = 4.0  # [s] later than anything that is driven before the run
-WORDS = ("run", "shared_space", "--seed", SEED, "--out", "r")
+WORDS = ("run", "shared_space", "--seed", SEED, "--out", "r", "--no-pictures")
 FAILURES = {
     "segfault": ("1.0", r"SIGSEGV"),
     "exit_0": ("3.0", r"exit\(0\)"),
@@ -36,12 +36,22 @@ def the_line(done, car) -> str:
     return line
 
 
-@pytest.mark.parametrize("fault", FAILURES)
-def test_a_run_ends_at_the_step_that_failed(zoo, giveway, profiled, tmp_path, fault):
+@pytest.fixture(params=["here", "outside"])
+def typed(request):
+    """Types a command in this process, or as a user does."""
+    return request.getfixturevalue("giveway" if request.param == "here" else "giveway_outside")
+
+
+@pytest.mark.parametrize(
+    ("fault", "typed"),
+    [*((fault, "here") for fault in FAILURES), ("segfault", "outside"), ("nan", "outside")],
+    indirect=["typed"],
+)
+def test_a_run_ends_at_the_step_that_failed(zoo, typed, profiled, tmp_path, fault):
     fmi, says = FAILURES[fault]
     car = zoo.car(fmi=fmi, behaviour=fault, at=AT)
     profile = profiled(car, fmu={"step_timeout": 1.0})
-    done = giveway(*WORDS, "--vehicle", car, "--profile", profile)
+    done = typed(*WORDS, "--vehicle", car, "--profile", profile)
     line = the_line(done, car)
     assert pytest.approx(AT, abs=0.051) in times_in(line)
     assert_says(line, says)
@@ -53,16 +63,18 @@ def test_a_run_ends_at_the_step_that_failed(zoo, giveway, profiled, tmp_path, fa
 
 
 def test_ten_megabytes_of_talk_change_nothing(zoo, giveway, tmp_path):
+    """5 MB a step to stdout, and messages."""
     car = zoo.car(behaviour=["flood_stdout", "message_control"], at=AT)
-    done = giveway(*WORDS, "--vehicle", car, "--profile", car.with_suffix(".toml"))
+    done = giveway(*WORDS, "--time-limit", AT + 0.3, "--vehicle", car, "--profile", car.with_suffix(".toml"))
     assert done.returncode == 0, done.stderr
     assert len(done.stdout) < 20_000
     assert "\x1b[2J" not in done.stdout + done.stderr
 
 
-def test_an_fmu_that_kills_its_parent_hits_no_run(zoo, giveway):
+def test_an_fmu_that_kills_its_parent_hits_no_run(zoo, giveway_outside):
     car = zoo.car(behaviour="kill_parent", at=AT)
-    done = giveway(*WORDS, "--vehicle", car, "--profile", car.with_suffix(".toml"))
+    words = ("--time-limit", AT + 1.0)
+    done = giveway_outside(*WORDS, *words, "--vehicle", car, "--profile", car.with_suffix(".toml"))
     assert done.returncode == 0, done.stderr
 
 
@@ -74,11 +86,11 @@ def test_in_our_own_process_an_error_is_as_clear(zoo, giveway, tmp_path):
     assert (tmp_path / "r" / "ego.csv").is_file()
 
 
-def test_a_segfault_in_our_own_process_keeps_the_rows(zoo, giveway, tmp_path):
+def test_a_segfault_in_our_own_process_keeps_the_rows(zoo, giveway_outside, tmp_path):
     """Nobody can go on then; giveway's supervisor still says what happened."""
     car = zoo.car(behaviour="segfault", at=AT)
     words = ("--profile", car.with_suffix(".toml"), "--vehicle-isolation", "none")
-    done = giveway(*WORDS, "--vehicle", car, *words, cleans_up=False)
+    done = giveway_outside(*WORDS, "--vehicle", car, *words, cleans_up=False)
     assert done.returncode not in (0, -signal.SIGSEGV)
     assert "error: " in done.stderr
     assert len(pd.read_csv(tmp_path / "r" / "ego.csv")) > 70
