@@ -55,9 +55,11 @@ def isolated(zoo: Any) -> Iterator[Callable[..., IsolatedVehicle]]:
     """Open a car of the zoo in a process of its own; all are closed at the end."""
     vehicles = []
 
-    def open_(path: Path, profile: dict[str, Any] | None = None) -> IsolatedVehicle:
+    def open_(
+        path: Path, profile: dict[str, Any] | None = None, *, start_timeout: float = 5.0
+    ) -> IsolatedVehicle:
         values = zoo.profile(path) if profile is None else profile
-        values["fmu"] |= {"start_timeout": 5.0, "step_timeout": 1.0}
+        values["fmu"] |= {"start_timeout": start_timeout, "step_timeout": 1.0}
         made = make_profile(values, "the test's profile")
         vehicles.append(IsolatedVehicle(path, step_size=0.05, profile=made))
         return vehicles[-1]

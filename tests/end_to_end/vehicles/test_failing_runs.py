@@ -65,7 +65,9 @@ def test_a_run_ends_at_the_step_that_failed(zoo, typed, profiled, tmp_path, faul
 def test_ten_megabytes_of_talk_change_nothing(zoo, giveway, tmp_path):
     """5 MB a step to stdout, and messages."""
     car = zoo.car(behaviour=["flood_stdout", "message_control"], at=AT)
-    done = giveway(*WORDS, "--time-limit", AT + 0.3, "--vehicle", car, "--profile", car.with_suffix(".toml"))
+    done = giveway(
+        *WORDS, "--time-limit", AT + 0.3, "--vehicle", car, "--profile", car.with_suffix(".toml")
+    )
     assert done.returncode == 0, done.stderr
     assert len(done.stdout) < 20_000
     assert "\x1b[2J" not in done.stdout + done.stderr

@@ -137,16 +137,28 @@ def test_nonsense_is_named_with_variable_and_time(zoo, isolated, fault, kind):
     assert_says(error, r"at 0\.25? s")
 
 
-@pytest.mark.parametrize("fault", HARMLESS)
-def test_what_does_no_harm_changes_no_digit(zoo, isolated, fault):
-    tracks = []
-    for behaviour in ((), fault):
+@pytest.fixture
+def driven(zoo, isolated):
+    """Where a car with a behaviour comes to."""
+
+    def come_to(behaviour):
         vehicle = isolated(zoo.car(behaviour=behaviour, at=AT))
         drive(vehicle)
-        tracks.append((vehicle.position, vehicle.speed, vehicle.acceleration))
         vehicle.close()
+        return vehicle.position, vehicle.speed, vehicle.acceleration
+
+    return come_to
+
+
+USUAL = []  # where the car without a fault comes to, driven once
+
+
+@pytest.mark.parametrize("fault", HARMLESS)
+def test_what_does_no_harm_changes_no_digit(driven, fault):
+    if not USUAL:
+        USUAL.append(driven(()))
     tolerance = 1e-12 if fault.startswith("discard") else 0.0  # other sub-steps round otherwise
-    assert tracks[1] == pytest.approx(tracks[0], rel=0, abs=tolerance)
+    assert driven(fault) == pytest.approx(USUAL[0], rel=0, abs=tolerance)
 
 
 @pytest.mark.parametrize("fmi", ["1.0", "2.0", "3.0"])
@@ -154,13 +166,13 @@ def test_what_does_no_harm_changes_no_digit(zoo, isolated, fault):
     ("fault", "phase", "says"),
     [
         ("segfault", "load", "SIGSEGV"),
-        ("hang", "load", "no answer within"),
+        ("hang", "load", r"no answer within 1\.5 s"),
         ("exit_0", "instantiate", r"exit\(0\)"),
-        ("hang", "instantiate", "no answer within"),
+        ("hang", "instantiate", r"no answer within 1\.5 s"),
         ("silent_null", "instantiate", "Instantiate"),
         ("error", "instantiate", "the axle broke"),
         ("abort", "initialise", "SIGABRT"),
-        ("hang", "initialise", "no answer within"),
+        ("hang", "initialise", r"no answer within 1\.5 s"),
         ("error", "initialise", "the axle broke"),
         ("fatal", "initialise", "engine is on fire"),
         ("refuse_start_value", "initialise", "I do not like this start value"),
@@ -168,7 +180,7 @@ def test_what_does_no_harm_changes_no_digit(zoo, isolated, fault):
 )
 def test_an_fmu_that_fails_at_the_start_says_so(zoo, isolated, fmi, fault, phase, says):
     path = zoo.car(fmi=fmi, behaviour=fault, phase=phase, at=0.0)
-    error = failure(isolated(path), path)
+    error = failure(isolated(path, start_timeout=1.5 if fault == "hang" else 5.0), path)
     assert isinstance(error, FmuStartError | FmuCrashError)
     assert_says(error, says)
 
