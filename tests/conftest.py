@@ -52,10 +52,18 @@ _load_support()
 pytest_plugins = [
     "support.clips",
     "support.commands",
+    "support.programs",
     "support.runs",
     "support.scenarios",
     "support.studies",
 ]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """With several workers (``-n``), keep neighbours together: they share expensive fixtures."""
+    if getattr(config.option, "numprocesses", None) and config.option.dist == "no":
+        config.option.dist = "worksteal"
 
 
 @pytest.fixture(scope="session")

@@ -97,21 +97,14 @@ def small_scenario(tmp_path: Path, small_city: Path) -> Callable[..., Path]:
 
 
 @pytest.fixture
-def run_started(tmp_path: Path) -> Callable[..., dict[str, Any]]:
+def run_started(tmp_path: Path, run_program: Callable[..., Any]) -> Callable[..., dict[str, Any]]:
     """Prepare and run a scenario in a process whose working folder is ``tmp_path / "cwd"``."""
 
     def run(config: Path, *, until: float | None = None, **options: Any) -> dict[str, Any]:
         cwd = tmp_path / "cwd"
         cwd.mkdir(exist_ok=True)
         request = {"config": str(config), "until": until, "options": options}
-        result = subprocess.run(
-            [sys.executable, RUN, json.dumps(request, default=str)],
-            capture_output=True,
-            text=True,
-            timeout=120,
-            check=False,
-            cwd=cwd,
-        )
+        result = run_program(RUN, json.dumps(request, default=str), cwd=cwd)
         assert result.returncode == 0, f"exit code {result.returncode}: {result.stderr}"
         seen: dict[str, Any] = json.loads(result.stdout.splitlines()[-1])
         return seen | {"stderr": result.stderr}

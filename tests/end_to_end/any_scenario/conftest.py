@@ -12,8 +12,6 @@ from __future__ import annotations
 
 import gzip
 import math
-import subprocess
-import sys
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -41,23 +39,6 @@ BEGIN, END = 90, 400  # [s] of the city
 def demonstration() -> Path:
     """The pedestrian scenario that ships with SUMO: a junction in Braunschweig, from 15:00:00."""
     return HOME / "tools" / "game" / "fokr_bs_demo.sumocfg"
-
-
-@pytest.fixture(scope="session")
-def give() -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Type a giveway command."""
-
-    def run(*words: object, cwd: Path) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, "-m", "giveway", *map(str, words)],
-            cwd=cwd,
-            capture_output=True,
-            text=True,
-            timeout=120,
-            check=False,
-        )
-
-    return run
 
 
 # --- scenarios -----------------------------------------------------------------------------------

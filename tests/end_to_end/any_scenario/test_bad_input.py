@@ -36,13 +36,13 @@ def ego(name: str) -> dict[str, Any]:
 
 
 def test_on_the_command_line_it_is_one_line_too(
-    scenario: Scenario, give: Callable[..., Any], tmp_path: Path
+    scenario: Scenario, type_here: Callable[..., Any], tmp_path: Path
 ) -> None:
     config = scenario(CAR)
     (config.parent / "all.rou.xml").unlink()
     here = tmp_path / "here"
     here.mkdir()
-    done = give("run", config, "--ego", "car", "--out", "out", cwd=here)
+    done = type_here("run", config, "--ego", "car", "--out", "out", cwd=here)
     assert done.returncode == 2
     (line,) = done.stderr.strip().splitlines()
     assert line.startswith("error: ")
@@ -130,19 +130,19 @@ def test_a_vehicle_that_drives_where_nobody_walks(scenario: Scenario, refused: R
 
 @pytest.mark.parametrize("model", ["jupedsim", "nonInteracting"])
 def test_another_pedestrian_model_is_replaced_with_a_note(
-    scenario: Scenario, give: Callable[..., Any], tmp_path: Path, model: str
+    scenario: Scenario, type_here: Callable[..., Any], tmp_path: Path, model: str
 ) -> None:
     person = '<person id="p" depart="0"><walk edges="A0B0" arrivalPos="60"/></person>'
     config = scenario(CAR + person, f'<pedestrian.model value="{model}"/>')
     words = ("--ego", "car", "--zone", "everywhere", "--time-limit", 5, "--no-pictures")
-    done = give("run", config, *words, "--out", tmp_path / "out", cwd=tmp_path)
+    done = type_here("run", config, *words, "--out", tmp_path / "out", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert model in done.stdout
     assert "striping" in done.stdout
 
 
 def test_a_scenario_without_anything_for_pedestrians(
-    give: Callable[..., Any],
+    type_here: Callable[..., Any],
     scenario: Scenario,
     call_sumo: Callable[..., str],
     tmp_path: Path,
@@ -153,20 +153,20 @@ def test_a_scenario_without_anything_for_pedestrians(
     person = f'<person id="p" depart="0">{walk}</person>'
     config = scenario('<trip id="car" depart="0" from="A0B0" to="B0C0"/>' + person, net=net)
     words = ("--ego", "car", "--zone", "everywhere", "--time-limit", 100, "--no-pictures")
-    done = give("run", config, *words, "--out", tmp_path / "out", cwd=tmp_path)
+    done = type_here("run", config, *words, "--out", tmp_path / "out", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "neither sidewalks nor walkingareas" in " ".join(done.stdout.split())
 
 
 def test_a_disconnected_walk_is_walked_all_the_same_with_a_note(
-    give: Callable[..., Any], scenario: Scenario, tmp_path: Path
+    type_here: Callable[..., Any], scenario: Scenario, tmp_path: Path
 ) -> None:
     # SUMO's own walkers jump over the gap; ours go straight.
     walk = '<walk edges="A0B0 A1B1" departPos="70" arrivalPos="70"/>'
     config = scenario(f'<person id="p" depart="0">{walk}</person>', end=150, step=1)
     out = tmp_path / "out"
     words = ("--no-ego", "--zone", "everywhere", "--no-pictures", "--out", out)
-    done = give("run", config, *words, cwd=tmp_path)
+    done = type_here("run", config, *words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "where the network has no walkway" in " ".join(done.stdout.split())
     ledger = json.loads((out / "manifest.json").read_text())["pedestrians"]
@@ -174,14 +174,14 @@ def test_a_disconnected_walk_is_walked_all_the_same_with_a_note(
 
 
 def test_a_disconnected_route_in_the_middle_of_the_run_keeps_the_rows(
-    give: Callable[..., Any], scenario: Scenario, tmp_path: Path
+    type_here: Callable[..., Any], scenario: Scenario, tmp_path: Path
 ) -> None:
     late = '<vehicle id="late" depart="220"><route edges="A0B0 C2C3"/></vehicle>'
     cars = '<flow id="f" begin="0" end="300" period="5" from="A0B0" to="C0D0"/>'
     config = scenario(cars + late, end=400, step=1)
     out = tmp_path / "out"
     words = ("--no-ego", "--zone", "none", "--no-pictures", "-q", "--out", out)
-    done = give("run", config, *words, cwd=tmp_path)
+    done = type_here("run", config, *words, cwd=tmp_path)
     (line,) = done.stderr.strip().splitlines()
     assert done.returncode == 1
     assert "small.sumocfg" in line

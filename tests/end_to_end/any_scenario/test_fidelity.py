@@ -35,7 +35,7 @@ def content(file: Path) -> bytes:
     ("name", "until"), [("city", 150), ("demonstration", 54_150), ("street", 60), ("junction", 60)]
 )
 def test_with_nothing_controlled_the_traffic_is_sumos_own_to_the_byte(
-    give: Give,
+    type_here: Give,
     call_sumo: Callable[..., str],
     city: Callable[[float], Path],
     demonstration: Path,
@@ -46,7 +46,7 @@ def test_with_nothing_controlled_the_traffic_is_sumos_own_to_the_byte(
     made = {"city": city(0.1), "demonstration": demonstration}
     config = made[name] if name in made else find(name).config_file
     end = ("--sumo-end", until)
-    done = give("run", config, *ALONE, *end, "--out", "ours", cwd=tmp_path)
+    done = type_here("run", config, *ALONE, *end, "--out", "ours", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     fcd = tmp_path / "plain.xml"
     plain = ("sumo", "-c", config, "--end", until, "--fcd-output", fcd, "--no-step-log")
@@ -66,7 +66,7 @@ def test_with_nothing_controlled_the_traffic_is_sumos_own_to_the_byte(
 
 
 def test_a_scenario_in_a_read_only_folder_runs_and_stays_as_it_is(
-    town: Path, tmp_path: Path, unchanged: Callable[[Path], None], give: Give
+    town: Path, tmp_path: Path, unchanged: Callable[[Path], None], type_here: Give
 ) -> None:
     folder = tmp_path / "read only"
     shutil.copytree(town, folder)
@@ -75,7 +75,7 @@ def test_a_scenario_in_a_read_only_folder_runs_and_stays_as_it_is(
     out = tmp_path / "out"
     words = ("--ego", "car10", "--zone", "everywhere", "--walls", "--time-limit", 5, "--fcd")
     try:
-        done = give("run", folder / "city_1.sumocfg", *words, "--out", out, cwd=tmp_path)
+        done = type_here("run", folder / "city_1.sumocfg", *words, "--out", out, cwd=tmp_path)
     finally:
         folder.chmod(0o755)
     assert done.returncode == 0, done.stderr

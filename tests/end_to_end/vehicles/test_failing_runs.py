@@ -152,7 +152,8 @@ def test_the_diverging_fmu_of_a_real_tool_is_no_success(giveway, tmp_path):
 )
 def test_a_run_that_goes_on_notes_what_is_odd(zoo, giveway, options, note):
     car = zoo.car(**options)
-    done = giveway(*WORDS, "--vehicle", car, "--profile", car.with_suffix(".toml"))
+    words = ("--time-limit", 12, "--profile", car.with_suffix(".toml"))
+    done = giveway(*WORDS, "--vehicle", car, *words)
     assert done.returncode == 0, done.stderr
     assert note in " ".join(done.stdout.split())
 

@@ -114,7 +114,7 @@ def require_physics(rows: pd.DataFrame, options: dict, tolerance: float) -> None
 @pytest.mark.parametrize("name", CARS)
 def test_the_ego_moves_as_the_fmus_physics_says(zoo, own_temp, name):
     car = zoo.car(**CARS[name])
-    vehicle = {"fmu": str(car), "profile": str(car.with_suffix(".toml"))}
+    vehicle = {"fmu": str(car), "profile": str(car.with_suffix(".toml")), "isolation": "none"}
     result = library.run(
         {"controller": "mpc-paper", "seed": SEED, "ego": {"initial_speed": 2.0}, "vehicle": vehicle}
     )
@@ -128,7 +128,11 @@ def test_units_make_no_difference(zoo):
     """The same car in SI and in kN, km/h and km: the same run, but for rounding."""
     si, other = (
         library.run(
-            {"seed": SEED, "vehicle": {"fmu": str(car), "profile": str(car.with_suffix(".toml"))}}
+            {
+                "seed": SEED,
+                "time_limit": 10.0,
+                "vehicle": {"fmu": str(car), "profile": str(car.with_suffix(".toml"))},
+            }
         ).ego
         for car in (zoo.car(), zoo.car(**CARS["force in kN, speed in km/h, position in km"]))
     )

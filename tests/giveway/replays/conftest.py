@@ -140,9 +140,12 @@ def chromium() -> Iterator[Any]:
         browser.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def watch(chromium: Any) -> Iterator[Callable[..., Watched]]:
-    """Opens a page from the disk; no request to anywhere else gets through."""
+    """Opens a page from the disk; no request to anywhere else gets through.
+
+    It is closed after the test: what is open goes on drawing.
+    """
     contexts: list[Any] = []
 
     def watch(page: Path, *, at: str = "", **options: Any) -> Watched:

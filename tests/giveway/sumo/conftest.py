@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,7 +40,9 @@ def city(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 
 @pytest.fixture
-def look(tmp_path: Path, city: Callable[[str], Path]) -> Callable[..., Any]:
+def look(
+    tmp_path: Path, city: Callable[[str], Path], run_program: Callable[..., Any]
+) -> Callable[..., Any]:
     """Run one look of sumo_persons.py at ``plans`` in a city, in a process of its own.
 
     libsumo holds one simulation per process, and a crash of SUMO's must be a test that fails.
@@ -54,14 +55,7 @@ def look(tmp_path: Path, city: Callable[[str], Path]) -> Callable[..., Any]:
             "command": ["-n", str(city(network)), "-a", str(routes), "--seed", "1"]
             + ["--step-length", str(step_length), "--tripinfo-output", str(tmp_path / "trips.xml")]
         } | arguments
-        result = subprocess.run(
-            [sys.executable, LOOKS, name, json.dumps(request)],
-            capture_output=True,
-            text=True,
-            timeout=120,
-            check=False,
-            cwd=tmp_path,
-        )
+        result = run_program(LOOKS, name, json.dumps(request), cwd=tmp_path)
         assert result.returncode == 0, f"exit code {result.returncode}: {result.stderr}"
         return json.loads(result.stdout)
 

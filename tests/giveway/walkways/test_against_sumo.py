@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from giveway.walkways import WalkRoute
 
-EVERY = 7  # steps: besides their beginning, walks are also looked at on the way
+EVERY = 15  # steps: besides their beginning, walks are also looked at on the way
 NAMES = ["grid", "spider", "random", "bundled city"]
 
 
