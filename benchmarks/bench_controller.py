@@ -1,7 +1,7 @@
 """What a decision of the exported controller costs: python benchmarks/bench_controller.py.
 
 A car among walkers who step into its way and leave it, driven by the controller FMU through FMPy's
-own wrappers: set the inputs, read the force, do a step. Next to it giveway's own regulator decides
+own wrappers: set the inputs, read the force, do a step. Next to it giveway's own controller decides
 the same, in Python with OSQP; the two forces are compared.
 """
 
@@ -19,10 +19,10 @@ from fmpy import extract, read_model_description
 from fmpy.fmi3 import FMU3Slave
 
 from controller import Observation
-from fmus.controller_fmu.export import export_controller
-from fmus.controller_fmu.parameters import ControllerParameters
-from giveway.config import RunConfig
-from giveway.ego.controllers import make_regulator
+from fmus.sources.export import export_controller
+from fmus.sources.parameters import ControllerParameters
+from giveway.config import EgoRunConfig
+from giveway.ego.controllers import make_controller
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -63,11 +63,11 @@ def exported(p: ControllerParameters) -> Iterator[Callable[[Observation, int], f
 
 
 def compare(horizon: int, decisions: int, seed: int) -> tuple[np.ndarray, float]:
-    """(n, 2) seconds of the FMU and of the regulator, and how far their forces differ [N]."""
+    """(n, 2) seconds of the FMU and of our controller, and how far their forces differ [N]."""
     p, random = ControllerParameters(horizon=horizon), np.random.default_rng(seed)
     h = p.time_step
     settings = {"controller": "mpc-paper", "mpc": {"horizon": horizon}}
-    own = make_regulator(RunConfig.model_validate(settings), h)
+    own = make_controller(EgoRunConfig.model_validate(settings), h)
     ahead = h * np.arange(1, horizon + 1)
     position, speed, apart = 0.0, 4.0, 0.0
     walker, walks, present = 30.0, 0.0, True
@@ -98,9 +98,7 @@ def main() -> None:
     parser.add_argument("--horizons", type=int, nargs="+", default=[15, 50, 200])
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    title = (
-        f"{'a decision [us]':>16}{'FMU: median':>14}{'99 %':>9}{'regulator: median':>20}{'99 %':>9}"
-    )
+    title = f"{'a decision [us]':>16}{'FMU: median':>14}{'99 %':>9}{'ours: median':>20}{'99 %':>9}"
     print(f"{title}{'apart [N]':>12}")
     for horizon in options.horizons:
         costs, apart = compare(horizon, options.decisions, options.seed)

@@ -29,7 +29,6 @@ from pedestrian_model import (
     Surroundings,
     Vehicles,
     Walls,
-    constant_speed,
 )
 
 if TYPE_CHECKING:
@@ -180,6 +179,15 @@ def city(n: int) -> tuple[Crowd, Vehicles, Surroundings]:
         np.where(np.arange(count) % 2 == 0, 0.0, 8.0),
     )
     return crowd, vehicles, Surroundings(sidewalk_walls(streets, length), np.arange(8) % 2 == 0)
+
+
+def constant_speed(vehicles: Vehicles, time_step: float, horizon: int) -> NDArray[Any]:
+    """The poses (N, m, 7) at 0 ... N - 1 steps ahead, straight on at constant speed."""
+    poses = np.repeat(vehicles.array[None], horizon, axis=0)
+    driven = time_step * np.arange(horizon)[:, None] * vehicles.speed
+    poses[:, :, 0] += driven * np.cos(vehicles.heading)
+    poses[:, :, 1] += driven * np.sin(vehicles.heading)
+    return poses
 
 
 def streets() -> None:

@@ -19,6 +19,7 @@ from giveway.api import RunResult, simulate
 from giveway.config.layers import Layer
 from giveway.config.loading import load
 from giveway.cosimulation.assembly import assemble
+from giveway.cosimulation.preflight import preflight
 from giveway.geometry.angles import headings_to_angles
 from giveway.records.tracks import Timings
 
@@ -41,7 +42,7 @@ def baseline(result: RunResult) -> float:
         for k in range(1, len(ego.time))
     ]
     with ExitStack() as stack:
-        parts = assemble(result.config, result.scenario, stack)
+        parts = assemble(preflight(result.config, result.scenario), stack)
         vehicle = parts.drivers[0].vehicle
         parts.departures.due()  # inserts the ego and starts its FMU
         move_ego, move_person = libsumo.vehicle.moveToXY, libsumo.person.moveToXY
@@ -61,11 +62,11 @@ def main() -> None:
     parser.add_argument("--pairs", type=int, default=15, help="loop and baseline, in turn")
     options = parser.parse_args()
     for controller in ("mpc", "pid-tuned", "mpc-paper", "pid-paper"):
-        config, scenario = load([Layer("", {"controller": controller, "seed": options.seed})])
-        simulate(config, scenario)  # compiles, and warms the file cache
+        checked = preflight(*load([Layer("", {"controller": controller, "seed": options.seed})]))
+        simulate(checked)  # compiles, and warms the file cache
         results, ratios = [], []
         for _ in range(options.pairs):
-            result = simulate(config, scenario)
+            result = simulate(checked)
             results.append(result)
             ratios.append(result.elapsed / baseline(result))
         elapsed = statistics.median(r.elapsed for r in results)

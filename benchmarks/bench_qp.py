@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import daqp
 import numpy as np
 import osqp
+from paper_qp import prediction_matrices, quadratic_program
 from scipy import sparse
 
 from controller import (
@@ -27,8 +28,7 @@ from controller import (
     MpcParameters,
     Observation,
     Pid,
-    Regulator,
-    quadratic_program,
+    SpeedController,
 )
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def closed_loop(
     N, dt = parameters.horizon, model.time_step
     problems: list[Problem] = []
     while len(problems) < count:
-        regulator = Regulator(Mpc(model, parameters), Pid(time_step=dt))
+        driver = SpeedController(Mpc(model, parameters), Pid(time_step=dt))
         x = generator.uniform(15.0, 45.0, size=round(30 * SPACING))
         y = -generator.uniform(0.0, START, size=len(x))
         position, speed, previous = 0.0, 4.0, 0.0
@@ -79,7 +79,7 @@ def closed_loop(
             seen = np.where(inside & (x > position), x, np.inf).min(axis=1)
             problems.append(Problem(position, speed, previous if speed > 0 else 0.0, seen[1:]))
             observation = Observation(position, speed, seen[0] - position, seen[1:])
-            previous = regulator.control(observation).force
+            previous = driver.control(observation).force
             position += dt * speed
             speed = max(0.0, model.decay * speed + model.speed_per_force * previous)
     return problems[:count]
@@ -126,14 +126,15 @@ def exact(
 class FromThePlanBefore(Mpc):
     """Without the exact start: the solver continues from where the step before ended."""
 
-    def _start(self) -> bool:
-        return True
+    def __init__(self, model: LongitudinalModel, parameters: MpcParameters) -> None:
+        super().__init__(model, parameters)
+        self._solver._start = lambda: True
 
 
 def by_mpc(
     model: LongitudinalModel, parameters: MpcParameters, kind: type[Mpc] = Mpc
 ) -> Callable[[Problem], Answer]:
-    """Ours, as the regulator calls it."""
+    """Ours, as the speed controller calls it."""
     mpc = kind(model, parameters)
 
     def solve(problem: Problem) -> Answer:
@@ -160,9 +161,9 @@ def by_plain_osqp(
         np.full(4 * N, 1e30),
         verbose=False,
     )
-    S_x = model.S_x(N)
-    q_per_speed = 2e3 * (model.S_u(N)[1::2].T @ S_x[1::2])
-    q_constant = -2e3 * parameters.reference_speed * model.S_u(N)[1::2].sum(axis=0)
+    S_x, S_u = prediction_matrices(model, N)
+    q_per_speed = 2e3 * (S_u[1::2].T @ S_x[1::2])
+    q_constant = -2e3 * parameters.reference_speed * S_u[1::2].sum(axis=0)
     lower, upper = qp.lower.copy(), qp.upper.copy()
     lower[: 2 * N] /= 1e3
     upper[: 2 * N] /= 1e3

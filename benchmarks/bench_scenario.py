@@ -33,6 +33,7 @@ from giveway.api import RunResult, simulate
 from giveway.config.layers import Layer
 from giveway.config.loading import load
 from giveway.cosimulation.mirror import Mirror
+from giveway.cosimulation.preflight import preflight
 from giveway.cosimulation.yielding import Yielding
 from giveway.crowd.exchange import Exchange
 from giveway.records.tracks import Timings
@@ -123,7 +124,7 @@ def run(city: City, case: Case, window: float, profile: cProfile.Profile | None 
         "ego": {"route": city.ego_route.split(","), "depart_position": 6.0},
         "crowd": {"zone": "everywhere", "walls": case.walls},
     }
-    config, scenario = load([Layer("", settings)])
+    checked = preflight(*load([Layer("", settings)]))
     clock: list[float] = []
     with ExitStack() as stack:
         watch = Stopwatch(stack)
@@ -136,7 +137,7 @@ def run(city: City, case: Case, window: float, profile: cProfile.Profile | None 
                         profile.enable()
                 clock.append(perf_counter())
 
-        result = simulate(config, scenario, watcher)
+        result = simulate(checked, watcher)
     if profile is not None:
         profile.disable()
     if result.error is not None:
@@ -200,14 +201,14 @@ def hour(folder: Path) -> None:
         "ego": {"none": True},
         "crowd": {"zone": "everywhere"},
     }
-    config, scenario = load([Layer("", settings)])
+    checked = preflight(*load([Layer("", settings)]))
 
     def watcher(progress: Any) -> None:
         if len(used) <= progress.time / 300.0:
             used.append(resident())
 
     began = perf_counter()
-    result = simulate(config, scenario, watcher)
+    result = simulate(checked, watcher)
     spent = perf_counter() - began
     if result.error is not None:
         raise result.error

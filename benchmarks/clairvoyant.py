@@ -26,6 +26,7 @@ from clairvoyant_search import (
 from matplotlib.figure import Figure
 
 import giveway
+from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.figures.style import BLUE, GREEN, GREY, ORANGE, VERMILION, quiet_grid, save_figure
 from giveway.figures.style import styled as in_house_style
 from giveway.studies.statistics.bootstrap import mean_interval, seed_of
@@ -112,7 +113,7 @@ def _rules(run: RunResult) -> Rules:
     half = regulation.corridor_half_width
     return Rules(
         safe_distance=regulation.safe_distance,
-        half_corridor=shape.width / 2 + run.config.corridor_margin if half is None else half,
+        half_corridor=shape.width / 2 + CORRIDOR_MARGIN if half is None else half,
         half_width=shape.width / 2,
         body_radius=run.body_radius,
     )

@@ -11,10 +11,10 @@ import argparse
 import multiprocessing
 
 import numpy as np
+from pid_tuning import table, tune
 
 import giveway
 from controller import LongitudinalModel, ReferenceParameters, TunedPid, TunedPidParameters
-from controller.tuning import table, tune
 
 CROWDS = {
     "shared_space": {"crowd": {"pedestrians": 30}},

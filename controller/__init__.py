@@ -1,4 +1,4 @@
-"""Longitudinal speed regulation: MPC, PID, and the regulator that falls back from one to the other.
+"""Controllers of the ego's speed: two model predictive ones, two PIDs, and the safety layer below.
 
 Yang & Özgüner 2019, "Combining Social Force Model with Model Predictive Control for Vehicle's
 Longitudinal Speed Regulation in Pedestrian-Dense Scenarios" (arXiv 1907.05178).
@@ -10,37 +10,33 @@ from controller.errors import (
     SolverMissingError,
     SolverSetupError,
 )
+from controller.foresight import Foresight, Manoeuvre, Prospect
+from controller.least_squares import Outcome
 from controller.model import LongitudinalModel
 from controller.mpc import Mpc
-from controller.parameters import (
-    CONSISTENT_PID,
-    PAPER_MPC,
-    PRINTED_PID,
-    MpcParameters,
-    PidParameters,
-)
+from controller.parameters import PRINTED_PID, MpcParameters, PidParameters
 from controller.pid import Pid
 from controller.planning import (
     ManoeuvreParameters,
     Planner,
     PlannerParameters,
-    PlanningRegulator,
-    Situation,
+    PlanningController,
 )
-from controller.quadratic_program import QuadraticProgram, quadratic_program
-from controller.regulator import Decision, Observation, Regulator
+from controller.protocol import Controller, Decision, Observation, PathAhead, People
 from controller.safety import SafeForce, SafetyLayer, SafetyParameters
-from controller.solution import MpcSolution, Outcome
+from controller.solution import MpcSolution
+from controller.speed_controller import SpeedController
 from controller.speed_reference import ReferenceParameters, SpeedReference
 from controller.tuned_pid import TunedPid, TunedPidParameters
 
 __all__ = [
-    "CONSISTENT_PID",
-    "PAPER_MPC",
     "PRINTED_PID",
+    "Controller",
     "ControllerError",
     "Decision",
+    "Foresight",
     "LongitudinalModel",
+    "Manoeuvre",
     "ManoeuvreParameters",
     "Mpc",
     "MpcParameters",
@@ -48,22 +44,22 @@ __all__ = [
     "Observation",
     "Outcome",
     "ParameterError",
+    "PathAhead",
+    "People",
     "Pid",
     "PidParameters",
     "Planner",
     "PlannerParameters",
-    "PlanningRegulator",
-    "QuadraticProgram",
+    "PlanningController",
+    "Prospect",
     "ReferenceParameters",
-    "Regulator",
     "SafeForce",
     "SafetyLayer",
     "SafetyParameters",
-    "Situation",
     "SolverMissingError",
     "SolverSetupError",
+    "SpeedController",
     "SpeedReference",
     "TunedPid",
     "TunedPidParameters",
-    "quadratic_program",
 ]

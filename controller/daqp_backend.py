@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from controller.errors import SolverMissingError
-from controller.solution import Outcome
+from controller.least_squares import Outcome
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from controller.osqp_backend import LeastSquares
+    from controller.least_squares import LeastSquares
 
     Array = NDArray[np.float64]
 
@@ -27,8 +27,6 @@ class DaqpBackend:
         SolverMissingError: daqp is not installed.
     """
 
-    name = "daqp"
-
     def __init__(self, problem: LeastSquares, iteration_limit: int) -> None:
         try:
             import daqp
@@ -42,8 +40,8 @@ class DaqpBackend:
         self._P = 2.0 * np.eye(N)
         self._sense = np.zeros(len(problem.rows), dtype=np.int32)
 
-    def solve(self, speeds: Array, multipliers: Array) -> tuple[Outcome, int]:
-        """Solve within the problem's present bounds; as ``OsqpBackend.solve``."""
+    def solve(self, solution: Array, multipliers: Array) -> tuple[Outcome, int]:
+        """Solve within the problem's present bounds, as :class:`controller.backends.Backend`."""
         problem = self._problem
         x, _, flag, info = self._daqp.solve(
             self._P,
@@ -56,7 +54,7 @@ class DaqpBackend:
         )
         iterations = int(info["iterations"])
         if flag == _SOLVED:
-            speeds[:] = x
+            solution[:] = x
             multipliers[:] = info["lam"]
             return Outcome.SOLVED, iterations
         if flag == _INFEASIBLE:

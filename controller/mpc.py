@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from controller._jit import kernel
-from controller.active_set import INFEASIBLE, solve_exactly
-from controller.daqp_backend import DaqpBackend
 from controller.errors import ParameterError
-from controller.osqp_backend import OsqpBackend
+from controller.exact_solver import ExactSolver
+from controller.least_squares import Outcome
 from controller.parameters import MpcParameters, require
-from controller.solution import MpcSolution, Outcome
+from controller.solution import MpcSolution
 from controller.speed_problem import (
     CANNOT_HOLD_SPEED,
     CANNOT_STOP,
@@ -24,7 +23,6 @@ from controller.speed_problem import (
     UNDECIDED,
     SpeedProblem,
 )
-from controller.verification import certifies_infeasibility, refine
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,17 +38,14 @@ _PROOFS = {
     CANNOT_HOLD_SPEED: "infeasible: cannot hold speed",
 }
 _STABLE = "at most 1, or forward Euler is unstable; lower friction [N.s/m] or time_step [s]"
-_CERTIFIED = "infeasible: certified"
-_UNVERIFIED = "not verified"
 
 
 class Mpc:
     """Finds the forces that keep the reference speed best, behind everybody in front.
 
-    A solve goes: proofs of infeasibility that take no solve; a start from the active set of the
-    step before, made exact; the solver; the refinement of its active set to rounding; the check
-    of the plan against every constraint in physical units. A fresh instance, or one after
-    :meth:`reset`, gives the same bytes for the same sequence of problems.
+    A solve goes: proofs of infeasibility that take no solve; the exact solver; the check of the
+    plan against every constraint in physical units. A fresh instance, or one after :meth:`reset`,
+    gives the same bytes for the same sequence of problems.
 
     Args:
         model: the vehicle.
@@ -66,9 +61,12 @@ class Mpc:
         self.parameters = parameters = parameters or MpcParameters()
         require(model.decay >= 0.0, "friction * time_step / mass", 1 - model.decay, _STABLE)
         self._problem = SpeedProblem(model, parameters)
-        count, N = self._problem.rows.shape
-        self._speeds = np.empty(N)
-        self._multipliers = np.zeros(count)
+        self._solver = ExactSolver(
+            self._problem,
+            parameters.solver,
+            parameters.iteration_limit,
+            box=(parameters.speed_min - 1.0, parameters.speed_max + 1.0),
+        )
         self._tolerances = np.array(
             [
                 parameters.position_tolerance,
@@ -76,17 +74,10 @@ class Mpc:
                 max(parameters.force_tolerance, 2.0 * SLACK / model.speed_per_force),
             ]
         )
-        self.reset()
 
     def reset(self) -> None:
         """Forget earlier problems."""
-        limit = self.parameters.iteration_limit
-        self._backend: OsqpBackend | DaqpBackend
-        if self.parameters.solver == "osqp":
-            self._backend = OsqpBackend(self._problem, limit)
-        else:
-            self._backend = DaqpBackend(self._problem, limit)
-        self._multipliers[:] = 0.0
+        self._solver.reset()
 
     def solve(
         self,
@@ -130,44 +121,12 @@ class Mpc:
             raise ParameterError(msg)
         if code != UNDECIDED:
             return _no_plan(_PROOFS[code], 0)
-        if not self._start():
-            return _no_plan(_CERTIFIED, 0)
-        outcome, iterations = self._backend.solve(self._speeds, self._multipliers)
-        if outcome is Outcome.INFEASIBLE:
-            status = _CERTIFIED if self._certified() else "infeasible: by the solver"
-            self._multipliers[:] = 0.0
-            return _no_plan(status, iterations)
+        outcome, iterations = self._solver.solve()
         if outcome is not Outcome.SOLVED:
-            self._multipliers[:] = 0.0
             return _no_plan(str(outcome), iterations)
-        return self._accept(position, speed, previous_force, obstacle_positions, iterations)
+        return self._checked(position, speed, previous_force, obstacle_positions, iterations)
 
-    def _start(self) -> bool:
-        """Start the solver at the optimum; False if it is proved that there is none."""
-        problem = self._problem
-        bounds = (problem.rows, problem.lower, problem.upper, problem.target)
-        if refine(*bounds, self._multipliers, self._speeds) >= 0:
-            return True
-        if solve_exactly(*bounds, self._multipliers, self._speeds) == INFEASIBLE:
-            certified = self._certified()
-            self._multipliers[:] = 0.0
-            if certified:
-                return False
-            self._speeds[:] = problem.target  # leave it to the solver
-        return True
-
-    def _certified(self) -> bool:
-        problem, parameters = self._problem, self.parameters
-        return certifies_infeasibility(
-            problem.rows,
-            problem.lower,
-            problem.upper,
-            parameters.speed_min - 1.0,
-            parameters.speed_max + 1.0,
-            self._multipliers,
-        )
-
-    def _accept(
+    def _checked(
         self,
         position: float,
         speed: float,
@@ -175,14 +134,8 @@ class Mpc:
         obstacle_positions: Array,
         iterations: int,
     ) -> MpcSolution:
-        """The refined plan, if it keeps every constraint."""
-        problem = self._problem
-        bounds = (problem.rows, problem.lower, problem.upper, problem.target)
-        exact = refine(*bounds, self._multipliers, self._speeds) >= 0
-        if not exact and solve_exactly(*bounds, self._multipliers, self._speeds) < 0:
-            self._multipliers[:] = 0.0
-            return _no_plan(_UNVERIFIED, iterations)
-        speeds = self._speeds.copy()
+        """The plan, if it keeps every constraint."""
+        speeds = self._solver.solution.copy()
         forces = np.empty_like(speeds)
         residual = check_plan(
             position,
@@ -191,11 +144,11 @@ class Mpc:
             obstacle_positions,
             speeds,
             forces,
-            problem.limits,
+            self._problem.limits,
             self._tolerances,
         )
         if not residual <= 1.0:
-            return _no_plan(_UNVERIFIED, iterations)
+            return _no_plan(str(Outcome.UNVERIFIED), iterations)
         return MpcSolution(
             True, float(forces[0]), forces, speeds, str(Outcome.SOLVED), iterations, residual
         )

@@ -7,37 +7,21 @@ a seventh of the iterations that the speeds themselves cost it, and they would o
 from __future__ import annotations
 
 import signal
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 import osqp
 from scipy import sparse
 
 from controller.errors import SolverSetupError
-from controller.solution import Outcome
+from controller.least_squares import Outcome
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from controller.least_squares import LeastSquares
+
     Array = NDArray[np.float64]
-
-
-class LeastSquares(Protocol):
-    """min |x - target|^2 subject to lower <= rows x <= upper.
-
-    Attributes:
-        rows: (m, n), constant.
-        target: (n,); changes from step to step, as the bounds do.
-        lower, upper: (m,); infinite where there is none.
-        increments: whether the solver is to get x_1, x_2 - x_1, ... instead of x.
-    """
-
-    rows: Array
-    target: Array
-    lower: Array
-    upper: Array
-    increments: bool
-
 
 _INFINITY = 1e30  # OSQP's
 _STATUS = {
@@ -57,8 +41,6 @@ class OsqpBackend:
     Raises:
         SolverSetupError: OSQP refuses the problem.
     """
-
-    name = "osqp"
 
     def __init__(self, problem: LeastSquares, iteration_limit: int) -> None:
         self._problem = problem
@@ -94,16 +76,8 @@ class OsqpBackend:
         """The linear cost of |x - target|^2 in the solver's unknowns."""
         return np.asarray(-2.0 * self._sums.T @ target)
 
-    def solve(self, speeds: Array, multipliers: Array) -> tuple[Outcome, int]:
-        """Solve within the problem's present bounds.
-
-        Args:
-            speeds: (N,) start; receives the solution.
-            multipliers: (m,) start; receives the solution's, or the certificate of infeasibility.
-
-        Returns:
-            The outcome and the number of iterations.
-        """
+    def solve(self, solution: Array, multipliers: Array) -> tuple[Outcome, int]:
+        """Solve within the problem's present bounds, as :class:`controller.backends.Backend`."""
         solver = self._solver
         np.maximum(self._problem.lower, -_INFINITY, out=self._lower)
         np.minimum(self._problem.upper, _INFINITY, out=self._upper)
@@ -112,9 +86,9 @@ class OsqpBackend:
             self._aimed_at[:] = self._problem.target
             q = self._gradient(self._problem.target)
         solver.update_data_vec(q=q, l=self._lower, u=self._upper)
-        self._start[:] = speeds
+        self._start[:] = solution
         if self._problem.increments:
-            np.subtract(speeds[1:], speeds[:-1], out=self._start[1:])
+            np.subtract(solution[1:], solution[:-1], out=self._start[1:])
         solver.warm_start(self._start, multipliers)
         solver.solve()
         if solver.info.status_val == osqp.SolverStatus.OSQP_SIGINT:
@@ -125,8 +99,8 @@ class OsqpBackend:
             multipliers[:] = solver.solution.prim_inf_cert
         else:
             if self._problem.increments:
-                np.cumsum(solver.solution.x, out=speeds)
+                np.cumsum(solver.solution.x, out=solution)
             else:
-                speeds[:] = solver.solution.x
+                solution[:] = solver.solution.x
             multipliers[:] = solver.solution.y
         return outcome, int(solver.info.iter)

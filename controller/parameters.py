@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
 
+from controller.defaults import (
+    BUFFER_DISTANCE,
+    FORCE_LIMIT,
+    FORCE_RATE_LIMIT,
+    ITERATION_LIMIT,
+    REFERENCE_SPEED,
+    SAFE_DISTANCE,
+    SOLVER,
+    SPEED_MAX,
+    SolverName,
+)
 from controller.errors import ParameterError
-
-SolverName = Literal["osqp", "daqp"]
 
 
 def require(condition: bool, name: str, value: object, expected: str) -> None:
@@ -37,15 +45,15 @@ class MpcParameters:
     """The model predictive controller (Yang & Özgüner 2019, table 1)."""
 
     horizon: int = 15  # N [steps]
-    reference_speed: float = 4.0  # v_r [m/s]
-    safe_distance: float = 8.0  # d_safe [m]
+    reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
+    safe_distance: float = SAFE_DISTANCE  # d_safe [m]
     speed_min: float = 0.0  # v_min [m/s]
-    speed_max: float = 20.0  # v_max [m/s]
-    force_limit: float = 8000.0  # u_max [N]
-    force_rate_limit: float = 1000.0  # du_max [N per step]
+    speed_max: float = SPEED_MAX  # v_max [m/s]
+    force_limit: float = FORCE_LIMIT  # u_max [N]
+    force_rate_limit: float = FORCE_RATE_LIMIT  # du_max [N per step]
     speed_weight: float = 1.0  # Q = speed_weight * I
-    solver: SolverName = "osqp"
-    iteration_limit: int = 4000  # of the QP solver
+    solver: SolverName = SOLVER
+    iteration_limit: int = ITERATION_LIMIT  # of the QP solver
     position_tolerance: float = 1e-6  # [m] by which an accepted plan may miss a constraint
     speed_tolerance: float = 1e-6  # [m/s]
     force_tolerance: float = 1e-2  # [N]
@@ -83,16 +91,16 @@ class PidParameters:
     """The PID controller (Yang & Özgüner 2019, section 3.4 and table 1).
 
     The default K_p = 2400 is not the printed 300: the paper's own "steady-state error of about
-    0.16 m/s at 4 m/s", alpha v_r / (K_p + alpha), needs 2400. See ``PRINTED_PID``.
+    0.16 m/s at 4 m/s", alpha v_r / (K_p + alpha), needs 2400. The printed one is ``PRINTED_PID``.
     """
 
     K_p: float = 2400.0  # [N s/m]
     K_i: float = 10.0  # [N/m]
     K_d: float = 100.0  # [N s^2/m]
-    reference_speed: float = 4.0  # v_r [m/s]
-    safe_distance: float = 8.0  # d_safe [m]
-    buffer_distance: float = 10.0  # d_buffer [m]
-    force_limit: float = 8000.0  # u_max [N]
+    reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
+    safe_distance: float = SAFE_DISTANCE  # d_safe [m]
+    buffer_distance: float = BUFFER_DISTANCE  # d_buffer [m]
+    force_limit: float = FORCE_LIMIT  # u_max [N]
 
     def __post_init__(self) -> None:
         require_not_negative("K_p", self.K_p, "N s/m")
@@ -104,6 +112,4 @@ class PidParameters:
         require_positive("force_limit", self.force_limit, "N")
 
 
-PAPER_MPC = MpcParameters()
-CONSISTENT_PID = PidParameters()
 PRINTED_PID = PidParameters(K_p=300.0)

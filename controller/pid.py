@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import inf, isfinite
 
+from controller.defaults import TIME_STEP
 from controller.errors import ParameterError
 from controller.parameters import PidParameters, require_positive
 
@@ -23,7 +24,9 @@ class Pid:
         ParameterError: the time step is not positive.
     """
 
-    def __init__(self, parameters: PidParameters | None = None, time_step: float = 0.05) -> None:
+    def __init__(
+        self, parameters: PidParameters | None = None, time_step: float = TIME_STEP
+    ) -> None:
         require_positive("time_step", time_step, "s")
         self.parameters = parameters or PidParameters()
         self.time_step = time_step

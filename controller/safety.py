@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from controller._stopping import ACTS, UNAVOIDABLE, Limits, largest_safe_force
+from controller.defaults import FORCE_LIMIT
 from controller.parameters import require, require_not_negative, require_positive
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ class SafetyParameters:
     width: float = 2.0  # of the ego [m] (Yang & Özgüner 2019)
     margin: float = 0.05  # [m] kept between the front and a body (ours)
     position_error: float = 0.0  # [m] that a perceived position is off at most
-    force_limit: float = 8000.0  # u_max [N] (Yang & Özgüner 2019, table 1)
+    force_limit: float = FORCE_LIMIT  # u_max [N] (Yang & Özgüner 2019, table 1)
     force_rate_limit: float = inf  # [N per step] of the layer's own braking (ours: none)
     reaction_time: float = 0.0  # [s] within which the vehicle does what it is told
 
@@ -100,6 +101,7 @@ class SafetyLayer:
             margin=p.margin,
             position_error=p.position_error,
         )
+        self._plain_limits = tuple(self._limits)
         self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
         delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
         self._commands = np.zeros(1 + max(delay, 0))
@@ -146,7 +148,7 @@ class SafetyLayer:
             spacing,
             position,
             velocity,
-            self._limits,
+            self._plain_limits,
             self._commands,
             self._boxes,
         )

@@ -1,24 +1,13 @@
-"""What a solve gives back."""
+"""What a solve of the paper's controller gives back."""
 
 from __future__ import annotations
 
-import enum
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-
-
-class Outcome(enum.StrEnum):
-    """What a solver says of a problem; only SOLVED is ever accepted."""
-
-    SOLVED = "solved"
-    INFEASIBLE = "infeasible"
-    INACCURATE = "inaccurate"
-    ITERATION_LIMIT = "iteration limit"
-    FAILED = "failed"
 
 
 @dataclass(frozen=True, slots=True)

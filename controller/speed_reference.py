@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import copysign, inf, sqrt
 from typing import Literal
 
+from controller.defaults import BUFFER_DISTANCE, REFERENCE_SPEED, SAFE_DISTANCE
 from controller.parameters import require, require_not_negative, require_positive
 
 ProfileName = Literal["braking-curve", "linear"]
@@ -18,10 +19,10 @@ _STANDS = 0.005  # [m/s] a reference that falls this low ends: the brake holds
 class ReferenceParameters:
     """Where to stop and how hard to brake; chosen by the study in docs/pid.md."""
 
-    reference_speed: float = 4.0  # v_r [m/s]
-    safe_distance: float = 8.0  # d_safe [m]
+    reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
+    safe_distance: float = SAFE_DISTANCE  # d_safe [m]
     profile: ProfileName = "braking-curve"
-    buffer_distance: float = 10.0  # d_buffer [m] of the linear profile
+    buffer_distance: float = BUFFER_DISTANCE  # d_buffer [m] of the linear profile
     deceleration: float = 1.0  # b [m/s^2] of the braking curve, and of braking in comfort
     approach_lag: float = 0.5  # tau [s]: near d_safe the braking curve is the line (gap-d_safe)/tau
     acceleration: float = 3.0  # a [m/s^2] of driving off

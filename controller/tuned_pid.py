@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from math import inf, isfinite
 
+from controller.defaults import FORCE_LIMIT, FORCE_RATE_LIMIT, STANDSTILL
 from controller.errors import ParameterError
 from controller.model import LongitudinalModel
 from controller.parameters import require_not_negative, require_positive
 from controller.speed_reference import ReferenceParameters, SpeedReference
 
-_STANDSTILL = 1e-9  # [m/s] below it the car stands
 _TRANSIENT = 0.5  # [m/s^2] of the reference, from which on errors are not integrated
 
 
@@ -19,14 +19,14 @@ class TunedPidParameters:
     """The loop's gains, given by what they make of the plant, and the actuator's limits.
 
     The gains place both poles of M v' + alpha v = u at bandwidth and damping, so they scale with
-    the vehicle. controller/tuning.py finds the defaults.
+    the vehicle. benchmarks/tune_pid.py finds the defaults.
     """
 
     bandwidth: float = 2.5  # omega_0 [rad/s] of the closed loop s^2 + 2 zeta omega_0 s + omega_0^2
     damping: float = 0.85  # zeta [-]
     acceleration_feed_forward: bool = True  # M dv_ref/dt beside alpha v_ref
-    force_limit: float = 8000.0  # u_max [N]
-    force_rate_limit: float = 1000.0  # du_max [N per step]
+    force_limit: float = FORCE_LIMIT  # u_max [N]
+    force_rate_limit: float = FORCE_RATE_LIMIT  # du_max [N per step]
     reference: ReferenceParameters = field(default_factory=ReferenceParameters)
 
     def __post_init__(self) -> None:
@@ -105,7 +105,7 @@ class TunedPid:
             self._begin(speed, self.model.friction * speed)
             self._force = 0.0
         self._speed = speed
-        if speed <= _STANDSTILL:
+        if speed <= STANDSTILL:
             self._stand()
         v_ref, a_ref = self.reference.advance(speed, gap, limit)
         e = v_ref - speed

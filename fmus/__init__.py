@@ -1,8 +1,8 @@
-"""FMUs: the shipped vehicle, what runs anybody's, and the controller as one."""
+"""Vehicle FMUs, shipped and foreign, whatever runs them, and the controller as an FMU."""
 
-from fmus.bundled import bundled_fmu, is_bundled
-from fmus.controller_fmu.export import bundled_controller, export_controller
-from fmus.controller_fmu.parameters import ControllerParameters
+from fmus.description.model import FmuDescription
+from fmus.description.reading import describe
+from fmus.driving.vehicle import VehicleFmu
 from fmus.errors import (
     FmuArchiveError,
     FmuBuildError,
@@ -19,13 +19,13 @@ from fmus.errors import (
     FmuStepError,
     FmuVariableError,
 )
-from fmus.fmi.reading import describe
+from fmus.interfaces.vehicle import Vehicle
 from fmus.isolation import IsolatedVehicle, open_vehicle
-from fmus.model import FmuDescription
-from fmus.preparation import choose_profile, prepare
-from fmus.profile import VehicleProfile, make_profile, read_profile
-from fmus.vehicle import SavedState, VehicleFmu
-from fmus.vehicle_protocol import Vehicle
+from fmus.profile.bundled import bundled_fmu, is_bundled
+from fmus.profile.preparation import choose_profile, prepare
+from fmus.profile.vehicle_profile import VehicleProfile, make_profile, read_profile
+from fmus.sources.export import bundled_controller, export_controller
+from fmus.sources.parameters import ControllerParameters
 
 __all__ = [
     "ControllerParameters",
@@ -45,7 +45,6 @@ __all__ = [
     "FmuStepError",
     "FmuVariableError",
     "IsolatedVehicle",
-    "SavedState",
     "Vehicle",
     "VehicleFmu",
     "VehicleProfile",

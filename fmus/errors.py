@@ -10,7 +10,7 @@ class FmuFileError(FmuError):
 
 
 class FmuArchiveError(FmuFileError):
-    """The archive is malicious, damaged or beyond all measure; nothing of it was unpacked."""
+    """The archive is malicious, damaged or too large; nothing of it was unpacked."""
 
 
 class FmuProfileError(FmuError):
@@ -46,7 +46,7 @@ class FmuCrashError(FmuStepError):
 
 
 class FmuStartCrashError(FmuCrashError):
-    """That happened before its first step."""
+    """The FMU's process died or hung before its first step."""
 
 
 class FmuStateError(FmuError):

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import unicodedata
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 LIMIT = 200  # characters of one message
 _SPACES = frozenset({"Zl", "Zp", "Zs"})
@@ -22,6 +26,12 @@ def printable(text: object, limit: int = LIMIT) -> str:
 def clean(text: str, limit: int) -> str:
     """As :func:`printable`; quick where nothing is to be done."""
     return text if len(text) <= limit and text.isprintable() else printable(text, limit)
+
+
+def listed(names: Sequence[str], shown: int = 6) -> str:
+    """The first names and how many more there are; empty without any."""
+    more = f" and {len(names) - shown} more" if len(names) > shown else ""
+    return f"{', '.join(names[:shown])}{more}"
 
 
 def _visible(character: str) -> str:

@@ -12,6 +12,7 @@ from giveway.config.layers import dump_toml
 from giveway.config.loading import as_layer, load
 from giveway.cosimulation.assembly import Parts, assemble
 from giveway.cosimulation.loop import Loop
+from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.ego.vehicle import model_margin
 from giveway.errors import GivewayError
 from giveway.processes.child import STDERR_FILE
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from giveway.results.run_result import EgoResult
     from sumo_scenarios import Scenario
 
-__all__ = ["RunResult", "run", "run_layers", "simulate"]
+__all__ = ["RunResult", "run", "run_checked", "simulate"]
 
 
 def run(
@@ -72,8 +73,8 @@ def run(
         GivewayError: one line that says what to do. If the run had begun, its rows are written
             all the same and the partial result is the error's ``result`` attribute.
     """
-    return run_layers(
-        [as_layer(config)],
+    return run_checked(
+        preflight(*load([as_layer(config)])),
         results=results,
         force=force,
         parquet=parquet,
@@ -82,8 +83,8 @@ def run(
     )
 
 
-def run_layers(
-    layers: list[Any],
+def run_checked(
+    checked: CheckedRun,
     *,
     results: str | Path | None,
     force: bool = False,
@@ -92,10 +93,10 @@ def run_layers(
     watcher: Watcher | None = None,
     journal: Path | None = None,
 ) -> RunResult:
-    """As :func:`run`, from layers of settings with their origins.
+    """As :func:`run`, after the preflight.
 
     Args:
-        layers: of settings.
+        checked: what is to be run.
         results: as for :func:`run`.
         force: as for :func:`run`.
         parquet: as for :func:`run`.
@@ -103,7 +104,6 @@ def run_layers(
         watcher: as for :func:`run`.
         journal: an empty folder for the rows, to be read should this process die.
     """
-    config, scenario = load(layers)
     folder = None if results is None else Path(results)
     if parquet:
         require_parquet()
@@ -111,14 +111,13 @@ def run_layers(
     rows = Journal(journal)
     where = None if folder is None else str(folder.absolute())
     wanted = {"results": where, "taken": taken, "parquet": parquet, "pictures": pictures}
-    rows.write_meta({"config": dump_toml(config), **wanted})
+    rows.write_meta({"config": dump_toml(checked.config), **wanted})
     native_log = None if journal is None or rows.failure else journal / STDERR_FILE
     with DeferredInterrupt() as interrupt:  # writing is not to be torn either
         try:
             outputs = None if folder is None else sumo_folder(folder)
             result = simulate(
-                config,
-                scenario,
+                checked,
                 watcher,
                 interrupt,
                 outputs=outputs,
@@ -156,8 +155,7 @@ def keep(result: RunResult, folder: Path, *, parquet: bool, pictures: bool, take
 
 
 def simulate(
-    config: RunConfig,
-    scenario: Scenario,
+    checked: CheckedRun,
     watcher: Watcher | None = None,
     interrupt: DeferredInterrupt | None = None,
     *,
@@ -168,8 +166,7 @@ def simulate(
     """Run one configuration; an error on the way becomes the result's ``error``.
 
     Args:
-        config: the effective configuration.
-        scenario: its scenario.
+        checked: what is to be run.
         watcher: called at every control step.
         interrupt: looked at between two steps.
         outputs: folder for SUMO's own outputs; None drops them.
@@ -179,29 +176,25 @@ def simulate(
     Raises:
         GivewayError: the run could not begin.
     """
-
-    def interrupted() -> bool:
-        return interrupt is not None and interrupt.requested
+    interrupt = interrupt or DeferredInterrupt()  # one that is not entered requests nothing
 
     def goes_on(clock: float) -> bool:
         if watcher is not None:
             watcher(Progress(0.0, clock, math.nan, math.nan, math.nan, "", 0))
-        return not interrupted()
+        return not interrupt.requested
 
     with ExitStack() as stack:
-        parts = assemble(
-            config, scenario, stack, outputs=outputs, native_log=native_log, goes_on=goes_on
-        )
+        parts = assemble(checked, stack, outputs=outputs, native_log=native_log, goes_on=goes_on)
         recorder = Recorder(journal)
         loop = Loop(parts, recorder)
         began = perf_counter()
         error: Exception | None = None
         try:
-            ending = loop.run(watcher, interrupted)
+            ending = loop.run(watcher, interrupt)
         except Exception as failure:  # whatever it is, the rows so far are the user's
             error, ending = failure, Ending.FAILED
         elapsed = perf_counter() - began
-        return _result(parts, scenario, recorder, loop, ending, error, elapsed)
+        return _result(parts, checked.scenario, recorder, loop, ending, error, elapsed)
 
 
 def _result(

@@ -10,11 +10,11 @@ from pedestrian_model.errors import (
     VehicleError,
 )
 from pedestrian_model.influence import vehicle_influence
-from pedestrian_model.model import CrowdModel, Forces
+from pedestrian_model.model import CrowdModel
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
 from pedestrian_model.prediction import Predictor
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
-from pedestrian_model.vehicles import Vehicles, constant_speed
+from pedestrian_model.vehicles import Vehicles
 
 __all__ = [
     "OPEN_GROUND",
@@ -25,7 +25,6 @@ __all__ = [
     "CrowdError",
     "CrowdModel",
     "DivergenceError",
-    "Forces",
     "ParameterError",
     "PedestrianModelError",
     "Predictor",
@@ -36,6 +35,5 @@ __all__ = [
     "Vehicles",
     "Walls",
     "arrived",
-    "constant_speed",
     "vehicle_influence",
 ]

@@ -120,18 +120,14 @@ def fill_arrived(
 
 @kernel
 def select_routes(
-    old_waypoints: NDArray[np.float64],
-    old_passage: NDArray[np.float64],
-    old_signal: NDArray[np.int64],
-    old_start: NDArray[np.int64],
-    mask: NDArray[np.bool_],
-    start: NDArray[np.int64],
-    waypoints: NDArray[np.float64],
-    passage: NDArray[np.float64],
-    signal: NDArray[np.int64],
+    old: tuple[NDArray[Any], ...], mask: NDArray[np.bool_], new: tuple[NDArray[Any], ...]
 ) -> None:
-    """Copy the routes of those in ``mask`` to the last three, one after the other as ``start``."""
-    routes = Routes(old_waypoints, old_passage, old_signal, old_start)
+    """Copy the routes of those in ``mask`` from ``old`` to ``new``, one after the other.
+
+    Both are the arrays of :class:`Routes`; the offsets of the new ones are known.
+    """
+    routes = Routes(*old)
+    waypoints, passage, signal, start = new
     kept = 0
     for i in range(len(mask)):
         if not mask[i]:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pedestrian_model._cells import add_near_pairs
 from pedestrian_model._detour import detour
 from pedestrian_model._jit import fma, inlined, kernel
-from pedestrian_model._mathematics import cosine_sine
 from pedestrian_model._ring import add_all_pairs
 from pedestrian_model._routes import Routes, set_targets
 from pedestrian_model._rows import (
@@ -29,13 +28,16 @@ from pedestrian_model._rows import (
     VFY,
     VX,
     VY,
+    Scratch,
 )
-from pedestrian_model._vehicles import HEADING, SPEED, X, Y, add_near_vehicles, add_vehicles
+from pedestrian_model._vehicles import add_near_vehicles, add_vehicles
 from pedestrian_model._walls import add_walls
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from pedestrian_model._rows import Arrays
 
 #: The result of a step that went well; otherwise the index of the offending pedestrian.
 FINE = -1
@@ -52,21 +54,37 @@ def first_insane(position: NDArray[np.float64], velocity: NDArray[np.float64]) -
     return FINE
 
 
+class State(NamedTuple):
+    """What a step changes, as in ``Crowd``."""
+
+    position: NDArray[np.float64]  # (n, 2) [m]
+    velocity: NDArray[np.float64]  # (n, 2) [m/s]
+    waypoint_index: NDArray[np.int64]  # (n,)
+
+
+class Scene(NamedTuple):
+    """What a crowd walks among and what it wants: no step changes it."""
+
+    desired_speed: NDArray[np.float64]  # (n,) [m/s]
+    routes: Routes
+    closed: NDArray[np.bool_]  # (signals,)
+    walls: NDArray[np.float64]  # the lines of ``Walls``
+    wall_cells: NDArray[np.int64]  # and their cells
+
+
 @inlined
 def gather_forces(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     vehicles: NDArray[np.float64],
     travelled: float,
-    rows: NDArray[np.float64],
-    index: NDArray[np.int64],
-    buffer: NDArray[np.float64],
-    back: NDArray[np.float64],
+    scratch: Scratch,
     constants: NDArray[Any],
     cell_list_from: int,
 ) -> None:
     """Fill the rows and their pair and vehicle forces from the state."""
     n = position.shape[0]
+    rows, index, buffer, back = scratch
     if n >= cell_list_from or n > LARGEST_RING:
         grid = add_near_pairs(rows, index, buffer, position, velocity, constants)
         add_near_vehicles(rows, index[2], grid, n, vehicles, travelled, constants)
@@ -110,24 +128,12 @@ def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
         nvx[k], nvy[k] = end_x, end_y
 
 
-@kernel
-def advance(
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    desired_speed: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    passage: NDArray[np.float64],
-    signal: NDArray[np.int64],
-    waypoint_start: NDArray[np.int64],
-    waypoint_index: NDArray[np.int64],
+@inlined
+def _march(
+    state: State,
+    scene: Scene,
     vehicles: NDArray[np.float64],
-    closed: NDArray[np.bool_],
-    walls: NDArray[np.float64],
-    wall_cells: NDArray[np.int64],
-    rows: NDArray[np.float64],
-    index: NDArray[np.int64],
-    buffer: NDArray[np.float64],
-    back: NDArray[np.float64],
+    scratch: Scratch,
     constants: NDArray[Any],
     dt: float,
     substeps: int,
@@ -135,24 +141,15 @@ def advance(
 ) -> int:
     """Advance the state in place by ``substeps`` steps of dt; ``FINE`` or the first bad index."""
     c = constants[0]
+    position, velocity, waypoint_index = state
+    desired_speed, routes, closed, walls, wall_cells = scene
+    rows, index = scratch.rows, scratch.sorting
     n = position.shape[0]
     insane = first_insane(position, velocity)
     if n == 0 or insane != FINE:
         return insane
-    routes = Routes(waypoints, passage, signal, waypoint_start)
     for step in range(substeps):
-        gather_forces(
-            position,
-            velocity,
-            vehicles,
-            step * dt,
-            rows,
-            index,
-            buffer,
-            back,
-            constants,
-            cell_list_from,
-        )
+        gather_forces(position, velocity, vehicles, step * dt, scratch, constants, cell_list_from)
         order = index[0]
         add_walls(rows, n, FX, FY, walls, wall_cells, c)
         set_targets(rows, order, desired_speed, routes, waypoint_index, closed, c)
@@ -165,80 +162,62 @@ def advance(
     return first_insane(position, velocity)
 
 
+@inlined
+def _parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
+    """What Python has handed over as one plain tuple, by name."""
+    scene = Scene(arrays[3], Routes(*arrays[4:8]), *arrays[8:11])
+    return State(*arrays[:3]), scene, Scratch(*arrays[11:])
+
+
 @kernel
-def predict(
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    desired_speed: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    passage: NDArray[np.float64],
-    signal: NDArray[np.int64],
-    waypoint_start: NDArray[np.int64],
-    waypoint_index: NDArray[np.int64],
+def advance(
+    arrays: Arrays,
     vehicles: NDArray[np.float64],
-    closed: NDArray[np.bool_],
-    walls: NDArray[np.float64],
-    wall_cells: NDArray[np.int64],
-    state: NDArray[np.float64],
-    reached: NDArray[np.int64],
-    rows: NDArray[np.float64],
-    index: NDArray[np.int64],
-    buffer: NDArray[np.float64],
-    back: NDArray[np.float64],
     constants: NDArray[Any],
     dt: float,
     substeps: int,
     cell_list_from: int,
+) -> int:
+    """Advance the state in place by ``substeps`` steps of dt; ``FINE`` or the first bad index.
+
+    Args:
+        arrays: those of State, Scene (its routes too) and Scratch, one after the other.
+        vehicles: (m, 7).
+        constants: of the model.
+        dt: [s].
+        substeps: how many steps.
+        cell_list_from: the crowd size from which neighbours are found by a cell list.
+    """
+    state, scene, scratch = _parts(arrays)
+    return _march(state, scene, vehicles, scratch, constants, dt, substeps, cell_list_from)
+
+
+@kernel
+def predict(
+    arrays: Arrays,
+    vehicles: NDArray[np.float64],
+    constants: NDArray[Any],
+    dt: float,
+    substeps: int,
+    cell_list_from: int,
+    own: Arrays,
     out: NDArray[np.float64],
 ) -> int:
     """Fill ``out`` (N, n, 2) with the positions of the next N steps; the state stays as it is.
 
-    ``vehicles`` is (N, m, 7); ``state`` (2, n, 2) and ``reached`` (n,) are scratch.
+    As :func:`advance`, with ``vehicles`` (N, m, 7), and in ``own`` other State arrays to fill.
     """
-    n = position.shape[0]
-    x, v = state[0], state[1]
+    state, scene, scratch = _parts(arrays)
+    ahead = State(*own)
+    n, x, v = state.position.shape[0], ahead.position, ahead.velocity
     for i in range(n):
-        x[i, 0], x[i, 1] = position[i, 0], position[i, 1]
-        v[i, 0], v[i, 1] = velocity[i, 0], velocity[i, 1]
-        reached[i] = waypoint_index[i]
+        x[i, 0], x[i, 1] = state.position[i, 0], state.position[i, 1]
+        v[i, 0], v[i, 1] = state.velocity[i, 0], state.velocity[i, 1]
+        ahead.waypoint_index[i] = state.waypoint_index[i]
     for k in range(out.shape[0]):
-        insane = advance(
-            x,
-            v,
-            desired_speed,
-            waypoints,
-            passage,
-            signal,
-            waypoint_start,
-            reached,
-            vehicles[k],
-            closed,
-            walls,
-            wall_cells,
-            rows,
-            index,
-            buffer,
-            back,
-            constants,
-            dt,
-            substeps,
-            cell_list_from,
-        )
+        insane = _march(ahead, scene, vehicles[k], scratch, constants, dt, substeps, cell_list_from)
         if insane != FINE:
             return insane
         for i in range(n):
             out[k, i, 0], out[k, i, 1] = x[i, 0], x[i, 1]
     return FINE
-
-
-@kernel
-def extrapolate(vehicles: NDArray[np.float64], time_step: float, out: NDArray[np.float64]) -> None:
-    """Fill ``out`` (N, m, 7) with the poses at 0 ... N - 1 steps of straight, constant speed."""
-    for v in range(vehicles.shape[0]):
-        cos, sin = cosine_sine(vehicles[v, HEADING])
-        u = vehicles[v, SPEED]
-        for k in range(out.shape[0]):
-            for column in range(7):
-                out[k, v, column] = vehicles[v, column]
-            out[k, v, X] += k * time_step * (u * cos)
-            out[k, v, Y] += k * time_step * (u * sin)

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from pedestrian_model._rows import Arrays
+
 _UNIT = 1e-6  # a direction's length may differ from one by this
 
 
@@ -166,26 +168,22 @@ class Crowd:
         """A crowd of nobody."""
         return cls.create(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), [])
 
-    @property
-    def target(self) -> NDArray[np.float64]:
-        """(n, 2) [m] the current way-point of each pedestrian."""
-        targets: NDArray[np.float64] = self.waypoints[
-            self.waypoint_start[:-1] + self.waypoint_index
-        ]
-        return targets
-
-    @property
-    def destination(self) -> NDArray[np.float64]:
-        """(n, 2) [m] the last way-point of each pedestrian."""
-        last: NDArray[np.float64] = self.waypoints[self.waypoint_start[1:] - 1]
-        return last
+    @cached_property
+    def routes(self) -> Arrays:
+        """All about the routes that a step never changes: the arrays of ``Routes``."""
+        return tuple(
+            Routes(self.waypoints, self.waypoint_passage, self.waypoint_signal, self.waypoint_start)
+        )
 
     @cached_property
-    def routes(self) -> Routes:
-        """All about the routes that a step never changes, as the kernels take it."""
-        return Routes(
-            self.waypoints, self.waypoint_passage, self.waypoint_signal, self.waypoint_start
-        )
+    def wishes(self) -> Arrays:
+        """What the crowd brings to a ``Scene``: the desired speeds and the routes."""
+        return (self.desired_speed, *self.routes)
+
+    @property
+    def state(self) -> Arrays:
+        """What a step changes: position, velocity, current way-point."""
+        return self.position, self.velocity, self.waypoint_index
 
     @cached_property
     def signals(self) -> int:
@@ -219,7 +217,7 @@ class Crowd:
         total = int(start[-1])
         waypoints, passage = np.empty((total, 2)), np.empty((total, 3))
         signal = np.empty(total, dtype=np.int64)
-        select_routes(*self.routes, mask, start, waypoints, passage, signal)
+        select_routes(self.routes, mask, (waypoints, passage, signal, start))
         return _unchecked(
             {
                 "position": self.position[chosen],

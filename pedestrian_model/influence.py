@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pedestrian_model import _inspect
 from pedestrian_model._check import as_floats, check_shape, check_values
 from pedestrian_model._constants import pack
-from pedestrian_model._rows import Workspace
+from pedestrian_model._jit import kernel
+from pedestrian_model._rows import PX, PY, VFX, VFY, VX, VY, S, Workspace
+from pedestrian_model._vehicles import add_vehicle
 from pedestrian_model.errors import CrowdError
 from pedestrian_model.parameters import SIM
 
@@ -51,5 +52,26 @@ def vehicle_influence(
     if x.shape[0] > 0:
         work = Workspace()
         work.reserve(x.shape[0])
-        _inspect.influence(x, v, vehicles.array, pack(parameters), work.rows, out)
+        _fill_influence(x, v, vehicles.array, pack(parameters), work.arrays[0], out)
     return out[:, :2].copy(), out[:, 2].copy()
+
+
+@kernel
+def _fill_influence(
+    points: NDArray[np.float64],
+    velocities: NDArray[np.float64],
+    vehicles: NDArray[np.float64],
+    constants: NDArray[Any],
+    rows: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> None:
+    """Fill ``out`` (k, 3) with the vehicles' force x, y and the signed distance at each point."""
+    n = points.shape[0]
+    for i in range(rows.shape[1]):
+        rows[PX, i], rows[PY, i] = points[min(i, n - 1), 0], points[min(i, n - 1), 1]
+        rows[VX, i], rows[VY, i] = velocities[min(i, n - 1), 0], velocities[min(i, n - 1), 1]
+        rows[VFX, i], rows[VFY, i], rows[S, i] = 0.0, 0.0, np.inf
+    for v in range(vehicles.shape[0]):
+        add_vehicle(rows, 0, n, vehicles[v], 0.0, constants[0])
+    for i in range(n):
+        out[i, 0], out[i, 1], out[i, 2] = rows[VFX, i], rows[VFY, i], rows[S, i]

@@ -66,8 +66,7 @@ class Predictor:
             self._memory = np.empty((2 + self.horizon) * self._capacity * 2)
             self._all_reached = np.empty(self._capacity, dtype=np.int64)
         both = self._memory[: (2 + self.horizon) * n * 2].reshape(2 + self.horizon, n, 2)
-        self._state, self._out = both[:2], both[2:]
-        self._reached = self._all_reached[:n]
+        self._state, self._out = (both[0], both[1], self._all_reached[:n]), both[2:]
 
     def predict(
         self,
@@ -79,8 +78,7 @@ class Predictor:
 
         Args:
             crowd: the present state.
-            vehicles_trajectory: (N, m, 7) the vehicles at 0 ... N - 1 steps, see ``Vehicles`` and
-                ``constant_speed``.
+            vehicles_trajectory: (N, m, 7) the vehicles at 0 ... N - 1 steps, see ``Vehicles``.
             surroundings: walls and signals; those closed now stay closed over the horizon.
 
         Returns:
@@ -92,8 +90,7 @@ class Predictor:
             DivergenceError: if a pedestrian's state is or becomes not finite.
             SurroundingsError: if a way-point's signal is not one of the surroundings.
         """
-        closed, walls, wall_cells = surroundings.arrays
-        if crowd.signals > closed.shape[0]:
+        if crowd.signals > surroundings.closed.shape[0]:
             raise unknown_signal(crowd, surroundings)
         shape, flags = vehicles_trajectory.shape, vehicles_trajectory.flags
         if len(shape) != 3 or shape[0] != self.horizon or shape[2] != 7:
@@ -104,30 +101,14 @@ class Predictor:
             raise VehicleError("vehicles_trajectory is expected to be C-contiguous float64")
         if crowd.position.shape[0] != self._out.shape[1]:
             self._reserve(crowd.position.shape[0])
-        work = self._workspace
         bad = _step.predict(
-            crowd.position,
-            crowd.velocity,
-            crowd.desired_speed,
-            crowd.waypoints,
-            crowd.waypoint_passage,
-            crowd.waypoint_signal,
-            crowd.waypoint_start,
-            crowd.waypoint_index,
+            (*crowd.state, *crowd.wishes, *surroundings.arrays, *self._workspace.arrays),
             vehicles_trajectory,
-            closed,
-            walls,
-            wall_cells,
-            self._state,
-            self._reached,
-            work.rows,
-            work.index,
-            work.buffer,
-            work.back,
             self._constants,
             self._dt,
             self._substeps,
             self.cell_list_from,
+            self._state,
             self._out,
         )
         if bad != _step.FINE:

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pedestrian_model import _step
 from pedestrian_model._check import as_floats, check_shape, check_values
 from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
-from pedestrian_model.errors import ParameterError, VehicleError
+from pedestrian_model.errors import VehicleError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -105,20 +104,3 @@ class Vehicles:
     def speed(self) -> NDArray[np.float64]:
         """(m,) [m/s] along the heading."""
         return self.array[:, SPEED]
-
-
-def constant_speed(vehicles: Vehicles, time_step: float, horizon: int) -> NDArray[np.float64]:
-    """The poses (N, m, 7) at 0 ... N - 1 steps ahead, straight on at constant speed.
-
-    This is the prediction of Yang & Özgüner 2019, "Motion Prediction".
-
-    Raises:
-        ParameterError: if the time step or the horizon is not positive.
-    """
-    if not 0.0 < time_step < np.inf or horizon < 1:
-        raise ParameterError(
-            f"time_step = {time_step} s and horizon = {horizon} steps, expected both > 0"
-        )
-    out = np.empty((horizon, len(vehicles), 7))
-    _step.extrapolate(vehicles.array, float(time_step), out)
-    return out

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 SUPPORT = Path(__file__).parent / "support"
-ZOO = Path(__file__).parent / "fmu_zoo"
+ZOO = SUPPORT / "fmus"
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell without job control starts what is in its background deaf to Ctrl-C, which tests send.
@@ -23,7 +23,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 
 
 def _load_zoo() -> ModuleType:
-    """The package tests/fmu_zoo, which is on no path, under the name ``fmu_zoo``."""
+    """The package tests/support/fmus, which is on no path, under the name ``fmu_zoo``."""
     if "fmu_zoo" not in sys.modules:
         spec = importlib.util.spec_from_file_location(
             "fmu_zoo", ZOO / "__init__.py", submodule_search_locations=[str(ZOO)]
@@ -68,7 +68,7 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
 
 @pytest.fixture(scope="session")
 def zoo(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> Any:
-    """FMUs of every kind, built on demand (tests/fmu_zoo/README.md is the menu)."""
+    """FMUs of every kind, built on demand (tests/support/fmus/README.md is the menu)."""
     if importlib.util.find_spec("ziglang") is None:
         pytest.skip("ziglang is not installed: pip install giveway[build]")
     assert pytestconfig.cache is not None

@@ -9,14 +9,12 @@ crowd would move under it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from controller._jit import kernel
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from controller.planning.parameters import ManoeuvreParameters, PlannerParameters
@@ -26,49 +24,12 @@ if TYPE_CHECKING:
 _EASING = 0.4  # [s] in which an acceleration is taken back before standstill or the wanted speed
 
 
-@dataclass(frozen=True, slots=True)
-class Manoeuvre:
-    """The ego's motion at steps 0 ... N under forward Euler, as the vehicle's model has it.
-
-    Attributes:
-        distance: (N + 1,) [m] driven from now on.
-        speed: (N + 1,) [m/s].
-        acceleration: (N + 1,) [m/s^2]; from each step to the next.
-    """
-
-    distance: Array
-    speed: Array
-    acceleration: Array
-
-    @classmethod
-    def empty(cls, horizon: int) -> Manoeuvre:
-        """Room for a manoeuvre of N steps."""
-        return cls(np.zeros(horizon + 1), np.zeros(horizon + 1), np.zeros(horizon + 1))
-
-    def copy_from(self, other: Manoeuvre) -> None:
-        """Become another one of the same length."""
-        self.distance[:] = other.distance
-        self.speed[:] = other.speed
-        self.acceleration[:] = other.acceleration
-
-
-class Prospect(NamedTuple):
-    """What a manoeuvre would lead to: arrays over steps 1 ... N, overwritten by the next one.
-
-    Attributes:
-        gap: (N,) [m] to the closest person in front; inf: nobody.
-        conflicts: (N,) persons who would be less than the conflict time from a collision.
-        calm: (N,) [m/s] the speed up to which nobody could force an emergency stop, whatever
-            people did that they can; inf: the manoeuvre's is calm.
-    """
-
-    gap: Array
-    conflicts: Array
-    calm: Array
-
-
 class Weights(NamedTuple):
-    """The numbers of the cost, as the kernel takes them."""
+    """The numbers of the cost.
+
+    What is called from outside gets them as a plain tuple: numba looks the class of a named one up
+    in each call, which takes 2 us.
+    """
 
     reference_speed: float
     safe_distance: float
@@ -201,7 +162,7 @@ def cost(
     calm: Array,
     allowed: Array,
     time_step: float,
-    w: Weights,
+    weights: tuple[Any, ...],
 ) -> tuple[float, float, float]:
     """What a manoeuvre costs [s].
 
@@ -214,13 +175,13 @@ def cost(
         calm: (N,) [m/s].
         allowed: (N,) [m] that may be driven until then: vehicles, lights.
         time_step: [s].
-        w: the weights.
+        weights: the numbers of :class:`Weights`.
 
     Returns:
         The whole cost; the part of it that other people and vehicles cause; the longest missing
         stopping distance [m].
     """
-    N = len(gap)
+    w, N = Weights(*weights), len(gap)
     own, others, missing = 0.0, 0.0, 0.0
     for i in range(N):
         v = speeds[i + 1]
@@ -249,7 +210,7 @@ def corridor(
     gap: Array,
     allowed: Array,
     chosen: bool,
-    w: Weights,
+    weights: tuple[Any, ...],
     room: Array,
 ) -> None:
     """Fill ``room`` (N,) [m]: how far a plan may have driven at steps 1 ... N.
@@ -257,6 +218,7 @@ def corridor(
     Behind everybody who is in front of the manoeuvre then: with the stopping distance of its own
     speed where it was chosen by what it leads to, and never less than itself; else with d_safe.
     """
+    w = Weights(*weights)
     for i in range(len(gap)):
         station = distance[i + 1] + gap[i]
         if chosen:

@@ -5,12 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from controller.parameters import (
+from controller.defaults import (
+    FORCE_LIMIT,
+    FORCE_RATE_LIMIT,
+    ITERATION_LIMIT,
+    REFERENCE_SPEED,
+    SAFE_DISTANCE,
+    SOLVER,
+    SPEED_MAX,
     SolverName,
-    require,
-    require_not_negative,
-    require_positive,
 )
+from controller.parameters import require, require_not_negative, require_positive
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +36,11 @@ class ManoeuvreParameters:
     acceleration_weight: float = 0.05  # of (m/s^2)^2
     nearness_weight: float = 0.3  # of the share of d_safe that is missing, times v / v_r
     closeness_weight: float = 20.0  # of a metre too little to stop in, times v / v_r
-    conflict_weight: float = 0.6  # of a person with less than conflict_time to a collision
+    conflict_weight: float = 0.6  # of a person on a collision course (``Prospect.conflicts``)
     threat_weight: float = 1.0  # of the speed beyond the calm one, over v_r
     final_weight: float = 1.0  # [s] of the missing speed at the horizon's end
     persistence: float = 0.02  # [s] that another manoeuvre must be better than the last plan
     calm_time: float = 0.5  # [s] of the plan in which the calm speed is kept to
-    conflict_time: float = 1.5  # [s] time to collision of a conflict (FHWA-HRT-08-051)
 
     def __post_init__(self) -> None:
         known = all(math.isfinite(a) for a in self.accelerations)
@@ -56,7 +60,6 @@ class ManoeuvreParameters:
         for name in _WEIGHTS:
             require_not_negative(name, getattr(self, name), "-")
         require_not_negative("calm_time", self.calm_time, "s")
-        require_positive("conflict_time", self.conflict_time, "s")
 
 
 _WEIGHTS = (
@@ -80,19 +83,19 @@ class PlannerParameters:
     """
 
     horizon: int = 60  # N [steps]
-    reference_speed: float = 4.0  # v_r [m/s]
-    safe_distance: float = 8.0  # d_safe [m]
-    speed_max: float = 20.0  # v_max [m/s]
-    force_limit: float = 8000.0  # u_max [N]
-    force_rate_limit: float = 1000.0  # du_max [N per step]
+    reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
+    safe_distance: float = SAFE_DISTANCE  # d_safe [m]
+    speed_max: float = SPEED_MAX  # v_max [m/s]
+    force_limit: float = FORCE_LIMIT  # u_max [N]
+    force_rate_limit: float = FORCE_RATE_LIMIT  # du_max [N per step]
     effort_weight: float = 0.02  # of (m/s^2)^2 s, beside (m/s)^2 s of the speed error
     jerk_weight: float = 0.02  # of (m/s^3)^2 s
     block_growth: float = 0.25  # of the plan's intervals from one to the next; 0: all of one step
     gap_choice: bool = True  # search manoeuvres; else the plan just keeps d_safe
     soft: bool = True  # exact penalty; else a plan that cannot keep its distance is none
     terminal: bool = True  # a stop stays possible also where the horizon ends
-    solver: SolverName = "osqp"
-    iteration_limit: int = 4000  # of the QP solver
+    solver: SolverName = SOLVER
+    iteration_limit: int = ITERATION_LIMIT  # of the QP solver
     manoeuvres: ManoeuvreParameters = ManoeuvreParameters()
 
     def __post_init__(self) -> None:

@@ -7,23 +7,21 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from controller.active_set import solve_exactly
-from controller.daqp_backend import DaqpBackend
+from controller.defaults import STANDSTILL
 from controller.errors import ParameterError
-from controller.osqp_backend import OsqpBackend
-from controller.planning.manoeuvre import Manoeuvre, corridor
+from controller.exact_solver import ExactSolver
+from controller.foresight import Manoeuvre
+from controller.least_squares import Outcome
+from controller.planning.manoeuvre import corridor
 from controller.planning.parameters import PlannerParameters
 from controller.planning.search import Search
 from controller.planning.smoothing import SmoothingProblem, unfold
-from controller.regulator import STANDSTILL
-from controller.solution import Outcome
-from controller.verification import refine
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from controller.foresight import Foresight
     from controller.model import LongitudinalModel
-    from controller.planning.search import Foresight
 
     Array = NDArray[np.float64]
 
@@ -59,35 +57,23 @@ class Planner:
         N = parameters.horizon
         self._search = Search(model, parameters)
         self._problem = SmoothingProblem(model, parameters)
-        count, n = self._problem.rows.shape
-        self._z = np.empty(n)
-        self._multipliers = np.zeros(count)
+        self._solver = ExactSolver(
+            self._problem, parameters.solver, parameters.iteration_limit, box=None
+        )
         self._plan = Manoeuvre.empty(N)
-        self._corridor, self._free = np.empty(N), np.full(N, inf)
-        self.reset()
+        self._corridor = np.empty(N)
 
     def reset(self) -> None:
         """Forget what was planned."""
-        limit = self.parameters.iteration_limit
-        self._backend: OsqpBackend | DaqpBackend
-        if self.parameters.solver == "osqp":
-            self._backend = OsqpBackend(self._problem, limit)
-        else:
-            self._backend = DaqpBackend(self._problem, limit)
-        self._multipliers[:] = 0.0
+        self._solver.reset()
         self._search.reset()
-
-    @property
-    def horizon(self) -> int:
-        """N [steps]."""
-        return self.parameters.horizon
 
     def plan(
         self,
         speed: float,
         previous_force: float,
         fastest: float,
-        allowed: Array | None,
+        allowed: Array,
         foresight: Foresight | None,
     ) -> Plan:
         """The force at t_k.
@@ -96,7 +82,7 @@ class Planner:
             speed: x_2(k) [m/s].
             previous_force: u(k-1) [N]; 0 at standstill, where the brake holds without work.
             fastest: [m/s] wanted where nobody is in the way.
-            allowed: (N,) [m] that may be driven until steps 1 ... N: vehicles, lights; None: all.
+            allowed: (N,) [m] that may be driven until steps 1 ... N: vehicles, lights; inf: any.
             foresight: of the crowd; None: nobody can get in the way.
 
         Raises:
@@ -108,7 +94,6 @@ class Planner:
                 "m/s: expected numbers"
             )
             raise ParameterError(msg)
-        allowed = self._free if allowed is None else allowed
         before = self._acceleration(speed, previous_force)
         search = self._search
         seek = search.choose if self.parameters.gap_choice else search.follow
@@ -151,11 +136,13 @@ class Planner:
         if not problem.bound(speed, previous_force, fastest, self._corridor, calm, soft=p.soft):
             search.forget()
             return Plan(0.0, False, "infeasible: cannot keep the distance", 0, chosen, search.tried)
-        status, iterations = self._solve()
-        if status:
+        outcome, iterations = self._solver.solve()
+        status = str(outcome)
+        if outcome is Outcome.SOLVED:
             plan = self._plan
             to = (plan.distance, plan.speed, plan.acceleration)
-            unfold(speed, problem.speeds(self._z), problem.nodes, self.model.time_step, *to)
+            at_nodes = problem.speeds(self._solver.solution)
+            unfold(speed, at_nodes, problem.nodes, self.model.time_step, *to)
             if p.gap_choice and search.comes_closer(plan, allowed):
                 plan.copy_from(best)
                 status = "manoeuvre"
@@ -174,19 +161,3 @@ class Planner:
             low, high = previous_force - p.force_rate_limit, previous_force + p.force_rate_limit
             force = min(max(force, low), high)
         return float(min(max(force, -p.force_limit), p.force_limit))
-
-    def _solve(self) -> tuple[str, int]:
-        """Solve the QP exactly; an empty status if there is no verified optimum."""
-        problem = self._problem
-        bounds = (problem.rows, problem.lower, problem.upper, problem.target)
-        started = refine(*bounds, self._multipliers, self._z) >= 0
-        if not started and solve_exactly(*bounds, self._multipliers, self._z) < 0:
-            self._multipliers[:] = 0.0
-            self._z[:] = problem.target
-        outcome, iterations = self._backend.solve(self._z, self._multipliers)
-        if outcome is Outcome.SOLVED and refine(*bounds, self._multipliers, self._z) >= 0:
-            return str(Outcome.SOLVED), iterations
-        if solve_exactly(*bounds, self._multipliers, self._z) >= 0:
-            return str(Outcome.SOLVED), iterations
-        self._multipliers[:] = 0.0
-        return "", iterations

@@ -3,39 +3,23 @@
 from __future__ import annotations
 
 from math import inf
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from controller.planning.manoeuvre import (
-    Manoeuvre,
-    Weights,
-    aim,
-    cost,
-    shift,
-    stopping_need,
-)
+from controller.foresight import Manoeuvre
+from controller.planning.manoeuvre import Weights, aim, cost, shift, stopping_need
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from controller.foresight import Foresight
     from controller.model import LongitudinalModel
-    from controller.planning.manoeuvre import Prospect
     from controller.planning.parameters import PlannerParameters
 
     Array = NDArray[np.float64]
 
 _WORSE = 1e-6  # [m] by which a smoothed plan may come closer than the manoeuvre it follows
-
-
-class Foresight(Protocol):
-    """Who knows what the crowd would do."""
-
-    def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
-        """What a manoeuvre would lead to; valid until the next call."""
-
-    def prefer(self) -> None:
-        """The latest manoeuvre is the best so far: remember what it would lead to."""
 
 
 class Search:
@@ -46,7 +30,7 @@ class Search:
         parameters: the horizon, the manoeuvres and their weights.
 
     Attributes:
-        weights: of the cost.
+        weights: of the cost, a plain tuple of :class:`Weights`.
         best: the manoeuvre of least cost.
         gap: (N,) [m] what it would lead to, as in :class:`Prospect`.
         conflicts: (N,) persons, likewise.
@@ -57,7 +41,8 @@ class Search:
     def __init__(self, model: LongitudinalModel, parameters: PlannerParameters) -> None:
         N, m, v_r = parameters.horizon, parameters.manoeuvres, parameters.reference_speed
         self._manoeuvres, self._time_step = m, model.time_step
-        self.weights = Weights.of(parameters, m)
+        self._weights = Weights.of(parameters, m)
+        self.weights = tuple(self._weights)
         self._kinds = [
             (a, share * v_r) for a, share in zip(m.accelerations, m.slowest, strict=True)
         ]
@@ -202,4 +187,4 @@ class Search:
         """Whether a stop stays possible if the plan's last speed is kept on."""
         v = plan.speed[-1]
         gap = self.gap[-1] + self.best.distance[-1] - plan.distance[-1]
-        return bool(gap - self._time_step * v >= stopping_need(v, self.weights))
+        return bool(gap - self._time_step * v >= stopping_need(v, self._weights))

@@ -49,7 +49,7 @@ def nodes_of(horizon: int, growth: float) -> Indices:
 
 
 class Limits(NamedTuple):
-    """The vehicle and its actuator, as the kernels take them."""
+    """The vehicle and its actuator."""
 
     time_step: float
     decay: float
@@ -76,13 +76,15 @@ class SmoothingProblem:
         p = parameters
         self.nodes = nodes = nodes_of(p.horizon, p.block_growth)
         n, dt = len(nodes), model.time_step
-        self.limits = Limits(
-            dt,
-            model.decay,
-            model.speed_per_force,
-            p.force_limit,
-            p.force_rate_limit,
-            p.speed_max,
+        self._limits = tuple(
+            Limits(
+                dt,
+                model.decay,
+                model.speed_per_force,
+                p.force_limit,
+                p.force_rate_limit,
+                p.speed_max,
+            )
         )
         h = np.diff(nodes, prepend=0) * dt
         self.intervals = h
@@ -157,7 +159,7 @@ class SmoothingProblem:
             calm,
             self.nodes,
             self.intervals,
-            self.limits,
+            self._limits,
             soft,
             self.lower,
             self.upper,
@@ -174,13 +176,13 @@ def fill(
     calm: Array,
     nodes: Indices,
     intervals: Array,
-    c: Limits,
+    limits: tuple[float, ...],
     soft: bool,
     lower: Array,
     upper: Array,
 ) -> bool:
     """Bounds of all rows; False if, not being soft, the corridor cannot be kept."""
-    n = len(nodes)
+    c, n = Limits(*limits), len(nodes)
     dt = c.time_step
     weakest = max(-c.force, previous_force - c.force_rate)
     strongest = min(c.force, previous_force + c.force_rate)

@@ -1,10 +1,16 @@
-"""Does an FMU behave like a vehicle? Dry runs, the step-halving self-check, identification."""
+"""Whether an FMU behaves like a vehicle: dry runs, the step-halving check, identification."""
 
 from fmus.checking.check import CheckReport, check
 from fmus.checking.findings import Finding, Verdict
 from fmus.checking.identification import Identification, identify
-from fmus.checking.manoeuvres import Opener, Phase, Trace, drive
-from fmus.checking.opening import opener_of, without_guards
+from fmus.checking.manoeuvres import (
+    Opener,
+    Phase,
+    Trace,
+    drive,
+    opener_of,
+    without_guards,
+)
 from fmus.checking.self_check import (
     Convergence,
     convergence,

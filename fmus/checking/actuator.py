@@ -1,4 +1,4 @@
-"""What becomes of a force between the command and the wheels: dead time, then a first-order lag.
+"""From the force commanded to the force at the wheels: dead time, then a first-order lag.
 
     tau F'(t) + F(t) = u(t - d)
 
@@ -16,7 +16,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-NEGLIGIBLE = 1e-6  # of a step: a shorter lag is none
+NEGLIGIBLE = 1e-6  # share of a step: a shorter lag is ignored
 
 
 def mean_force(

@@ -1,4 +1,4 @@
-"""The dry run of a vehicle FMU: a handful of drives, and what each of them shows."""
+"""The dry run of a vehicle FMU: a few drives, and a finding for each property they test."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from fmus.checking.manoeuvres import Attempt, Opener, Trace
     from fmus.checking.self_check import Convergence
-    from fmus.profile import VehicleProfile
+    from fmus.profile.vehicle_profile import VehicleProfile
 
 GENTLE = 3.0  # [m/s2] of the manoeuvres, by the controller's model
 FASTEST_START = 4.0  # [m/s] of the rolling start where the run's own is 0
@@ -36,13 +36,13 @@ _NAMES = {  # of the finding of a drive that failed
 
 @dataclass
 class CheckReport:
-    """What a check found.
+    """The result of a check.
 
     Attributes:
         findings: in the order of the tests.
-        traces: by the name of the drive, as far as they ran.
+        traces: of the drives that ran, by name.
         expected: what was checked against.
-        convergence: of the step-halving test; None: it was not reached.
+        convergence: of the step-halving test; None: it was not run.
     """
 
     expected: Expected
@@ -70,13 +70,13 @@ def check(
     start_speed: float = FASTEST_START,
     progress: Callable[[str], None] | None = None,
 ) -> CheckReport:
-    """Dry-run a vehicle; nothing that the FMU does raises.
+    """Dry-run a vehicle; errors of the FMU become findings.
 
     Args:
         opener: makes the vehicle.
         step_size: of the run [s].
         fmu_step: of the FMU itself [s]; None: ``step_size``.
-        unguarded: makes the vehicle without guards, to see what is wrong where they stop it.
+        unguarded: makes the vehicle without guards, to see what is wrong if they stop it.
         profile: of the vehicle, for what to change in it.
         mass: M of the controller's model [kg].
         friction: alpha of it [N.s/m].
@@ -107,7 +107,7 @@ def check(
 def _drive_all(
     report: CheckReport, opener: Opener, unguarded: Opener | None, tell: Callable[[str], None]
 ) -> bool:
-    """Drive what can be driven; False: no use in going on."""
+    """Do the drives in turn; False: after what happened the step-halving test is of no use."""
     for name in _DRIVES:
         tell(name)
         attempt = _attempt(name, report.expected, opener)
@@ -123,7 +123,7 @@ def _drive_all(
         if name == "response" and unguarded is not None and isinstance(error, FmuOutputError):
             _look_closer(report, unguarded)
         if name != "rolling" or isinstance(error, FmuCrashError):
-            # Steps that are too coarse show as an output or a step that fails: halving tells.
+            # Too coarse steps may show as a failing output or step: halving them tells.
             may_diverge = isinstance(error, FmuOutputError | FmuStepError)
             return may_diverge and not isinstance(error, FmuCrashError)
     return True
@@ -135,7 +135,7 @@ def _attempt(name: str, expected: Expected, opener: Opener) -> Attempt:
 
 
 def _look_closer(report: CheckReport, unguarded: Opener) -> None:
-    """The response that a guard stopped, without the guard: what is it that is wrong?
+    """Repeat the response that a guard stopped without guards, to see what is wrong.
 
     Units in which a force is a thousand times too strong need a thousandth of it.
     """
@@ -166,12 +166,11 @@ def _phases(name: str, expected: Expected) -> list[Phase]:
 
 def _halve(report: CheckReport, opener: Opener, fmu_step: float) -> None:
     expected, name = report.expected, "step halving"
+    start_speed = expected.start_speed if "rolling" in report.traces else 0.0
     try:
-        result = convergence(
-            opener, fmu_step, force=expected.force, start_speed=_rolling_speed(report)
-        )
+        result = convergence(opener, fmu_step, force=expected.force, start_speed=start_speed)
     except FmuError as error:
-        if report.passed:  # else it has been said
+        if report.passed:  # otherwise a finding says so already
             report.findings.append(Finding(name, "fail", plain(error)))
         return
     report.convergence = result
@@ -185,12 +184,8 @@ def _halve(report: CheckReport, opener: Opener, fmu_step: float) -> None:
     report.findings.append(found)
 
 
-def _rolling_speed(report: CheckReport) -> float:
-    return report.expected.start_speed if "rolling" in report.traces else 0.0
-
-
 def _observe(report: CheckReport) -> None:
-    """Every test whose drives there are."""
+    """Run every test whose drives have succeeded."""
     traces, expected, add = report.traces, report.expected, report.findings.append
     idle, response = traces.get("idle"), traces.get("response")
     rolling, full = traces.get("rolling"), traces.get("full")

@@ -1,4 +1,4 @@
-"""Do the outputs agree with each other? A factor between them betrays a wrong unit."""
+"""Whether the outputs agree with each other; a constant factor between them is a wrong unit."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ACCELERATION_UNITS = (("g", 1 / 9.80665), ("km/h/s", 3.6), ("cm/s2", 1e2), ("ft
 
 
 def position_follows_speed(response: Trace, expected: Expected) -> Finding:
-    """Is the speed what the position does per second?"""
+    """Is the speed the rate of change of the position?"""
     name = "speed and position"
     if expected.profile and expected.profile.outputs.position is None:
         return Finding(name, "skip", "no position among the outputs: the speed is integrated")
@@ -40,10 +40,10 @@ def position_follows_speed(response: Trace, expected: Expected) -> Finding:
     text = f"the position moves {ratio:.4g} m per metre that the speed accounts for"
     if abs(ratio - 1.0) <= RATIO_TOLERANCE:
         return Finding(name, "pass", text)
-    return Finding(name, "fail", *_way_remedy(text, ratio))
+    return Finding(name, "fail", *_position_remedy(text, ratio))
 
 
-def _way_remedy(text: str, ratio: float) -> tuple[str, str]:
+def _position_remedy(text: str, ratio: float) -> tuple[str, str]:
     if abs(ratio + 1.0) <= RATIO_TOLERANCE:
         return text, "set `gain = -1.0` in [outputs.position]"
     for unit, factor in SPEED_UNITS:
@@ -67,7 +67,7 @@ def _way_remedy(text: str, ratio: float) -> tuple[str, str]:
 
 
 def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
-    """Is the acceleration what the speed does per second?"""
+    """Is the acceleration the rate of change of the speed?"""
     name = "acceleration"
     if expected.profile and expected.profile.outputs.acceleration is None:
         return Finding(name, "skip", "not among the outputs: the speed's difference is taken")

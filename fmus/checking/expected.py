@@ -1,14 +1,14 @@
-"""What a run will assume of the vehicle that is checked."""
+"""What a run will assume of the checked vehicle."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fmus.profile import Axis
+from fmus.profile.vehicle_profile import Axis
 
 if TYPE_CHECKING:
-    from fmus.profile import FittedModel, VehicleProfile
+    from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What a check found: one finding per test."""
+"""The outcome of a check: one finding per test."""
 
 from __future__ import annotations
 

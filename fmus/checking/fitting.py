@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
     from fmus.checking.manoeuvres import Trace
 
-STANDSTILL = 0.05  # [m/s] below it brakes may hold the vehicle: not in the fit
-SETTLING = 1.0  # [s] at the begin: what acted before the start is unknown
+STANDSTILL = 0.05  # [m/s] slower steps are not fitted: brakes may hold the vehicle
+SETTLING = 1.0  # [s] at the start are not fitted: earlier forces are unknown
 LONGEST_LAG = 2.0  # [s] of the search
 LONGEST_DELAY = 1.0  # [s] of the search
 FINENESS = 1e-3  # of a step, to which lag and dead time are found
-NOTICEABLE = 0.02  # a lag or a dead time must better the residual by this share
-EXACT = 1e-9  # [m/s2] a residual of mere rounding
+NOTICEABLE = 0.02  # share by which a lag or dead time must improve the residual
+EXACT = 1e-9  # [m/s2] a residual that is mere rounding
 NORMAL_95 = 1.96  # half width of the interval of 95 %, in standard errors
 
 
@@ -55,7 +55,7 @@ class Drive:
 
 
 def prepare(trace: Trace, limits: tuple[float, float] = (np.inf, np.inf)) -> Drive:
-    """What of a trace the fit may use: neither its begin, nor standstill, nor saturation.
+    """Mark the steps that the fit may use: not the first ones, no standstill, no saturation.
 
     Args:
         trace: of a drive.
@@ -72,7 +72,7 @@ def prepare(trace: Trace, limits: tuple[float, float] = (np.inf, np.inf)) -> Dri
 
 @dataclass(frozen=True)
 class Fit:
-    """M v' + alpha v = F and how the force comes to act.
+    """M v' + alpha v = F, and the lag and dead time of the force.
 
     Attributes:
         intervals: half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
@@ -97,7 +97,7 @@ class Fit:
 def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
     """The model that leaves the least of the accelerations; None where nothing can be fitted.
 
-    A lag or dead time is only reported where it betters the fit noticeably.
+    A lag or dead time is reported only if it improves the fit noticeably.
 
     Args:
         drives: what was measured.
@@ -120,6 +120,29 @@ def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
     return solution if np.isfinite(solution.mass) else None
 
 
+def least_squares(
+    X: NDArray[np.float64], y: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The coefficients of X that come closest to y, times the scale of X's columns; the scale."""
+    scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
+    scaled, *_ = np.linalg.lstsq(X / scale, y, rcond=None)
+    return scaled, scale
+
+
+def resistance_rows(
+    drives: Sequence[Drive], lag: float, delay: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The equations M v' + alpha v + c_0 + c_2 v |v| = F, one for each step that counts.
+
+    Returns:
+        (m, 4) what 1 / M, alpha / M, c_0 / M and c_2 / M are multiplied with, and (m,) v' [m/s2].
+    """
+    acting = [mean_force(d.force, d.step, lag, delay)[d.used] for d in drives]
+    v = np.concatenate([d.speed[:-1][d.used] for d in drives])
+    y = np.concatenate([d.acceleration[d.used] for d in drives])
+    return np.column_stack((np.concatenate(acting), -v, -np.ones_like(v), -v * np.abs(v))), y
+
+
 def _solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
     """Linear least squares in theta = (1 / M, alpha / M)."""
     rows, targets, groups = [], [], []
@@ -129,16 +152,15 @@ def _solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
         targets.append(drive.acceleration[drive.used])
         groups.append(np.full(acting.size, number))
     X, y, group = np.concatenate(rows), np.concatenate(targets), np.concatenate(groups)
-    scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
-    theta, *_ = np.linalg.lstsq(X / scale, y, rcond=None)
-    if theta[1] < 0.0:  # no friction that drives: the model has none
+    theta, scale = least_squares(X, y)
+    if theta[1] < 0.0:  # a negative friction would drive: fit without friction
         theta = np.array(
             [(X[:, 0] / scale[0]) @ y / max(((X[:, 0] / scale[0]) ** 2).sum(), 1e-300), 0.0]
         )
     left = y - X / scale @ theta
     inverse, ratio = theta / scale
     residual = float(np.sqrt(np.mean(left**2)))
-    if inverse <= 0.0:  # no force moves it
+    if inverse <= 0.0:  # forces do not move the vehicle
         return Fit(np.inf, 0.0, lag, delay, (np.inf, np.inf), residual, 0.0)
     mass = 1.0 / inverse
     spread = float(np.sqrt(np.mean((y - y.mean()) ** 2)))
@@ -160,7 +182,7 @@ def _intervals(
     mass: float,
     friction: float,
 ) -> tuple[float, float]:
-    """95 % half widths of M and alpha; errors may hang together within a drive, not between them.
+    """95 % half widths of M and alpha; errors may be correlated within a drive, not between drives.
 
     The covariance is that of clusters (Liang & Zeger 1986), carried to M and alpha to first order.
     """
@@ -200,7 +222,7 @@ def _search(cost: Callable[[float, float], float], step: float) -> tuple[float, 
 
 
 def _line_search(cost: Callable[[float, float], float], axis: int) -> tuple[float, float]:
-    """As the search, with only the lag (axis 0) or only the dead time (axis 1)."""
+    """The same search with only the lag (axis 0) or only the dead time (axis 1)."""
 
     def pair(value: float) -> tuple[float, float]:
         return (value, 0.0) if axis == 0 else (0.0, value)

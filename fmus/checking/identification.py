@@ -1,12 +1,13 @@
 """M and alpha of a vehicle from step tests, so that the MPC's model is the vehicle's.
 
-The vehicle is what the controller sees: force in, position and speed out. Of a vehicle that is
-driven by an acceleration, a speed or pedals it is the whole chain from the force on.
+The vehicle is taken as the controller sees it: force in, position and speed out. For a vehicle
+driven by an acceleration, a speed or pedals, this includes the inverse map.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import count
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,7 @@ from fmus.checking.prediction import position_errors, speed_errors
 from fmus.checking.remarks import fit_remarks, saturation_remarks
 from fmus.checking.saturation import force_limits
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
-from fmus.profile import FittedModel
+from fmus.profile.vehicle_profile import FittedModel
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -39,17 +40,17 @@ HELD = 0.6  # [s]
 
 @dataclass(frozen=True)
 class Identification:
-    """A vehicle's model, how sure it is, and what it was validated with.
+    """A vehicle's model, its accuracy, and the drives behind it.
 
     Attributes:
         model: for the profile.
         intervals: half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
         drive_limit: largest drive force that the vehicle carries out [N]; None: not reached.
-        brake_limit: of the brakes [N], likewise.
+        brake_limit: largest brake force that arrives [N]; None: not reached.
         largest_force: of the tests [N].
         fit: M and alpha with lag and dead time.
-        tests: what was fitted.
-        validation: what was not.
+        tests: the drives that were fitted.
+        validation: the drive that was not fitted.
         remarks: what the user should know, one line each.
     """
 
@@ -97,18 +98,24 @@ def identify(
         FmuOutputError: the vehicle does not respond to forces like a vehicle.
         FmuError: the FMU fails in a test.
     """
-    count = _Count(progress, len(speeds) * len(LEVELS) + 2)
+    done, total = count(), len(speeds) * len(LEVELS) + 2
+
+    def one_more() -> None:
+        if progress is not None:
+            progress(next(done), total)
+
+    one_more()
     largest = _largest_force(opener, path, force_limit, step_size)
-    count.one_more()
-    begin = _Beginning(opener, 0.5 * largest, max(speeds))
-    tests = _drive_tests(begin, largest, speeds, count)
+    one_more()
+    starter = _Starter(opener, 0.5 * largest, max(speeds))
+    tests = _drive_tests(starter, largest, speeds, one_more)
     limits = force_limits(tests)
     traces = tuple(trace for group in tests for trace in group)
     found = fit([prepare(trace, limits) for trace in traces])
-    validation = begin.drive(
+    validation = starter.drive(
         _validation(0.9 * min(largest, *limits), max(speeds)), float(np.median(speeds))
     )
-    count.one_more()
+    one_more()
     if found is None:
         raise FmuOutputError(f"{path}: {_NOT_A_VEHICLE}; expected more speed with more force")
     model = _rated(found, validation, limits, step_size, horizon)
@@ -134,25 +141,8 @@ def identify(
 _NOT_A_VEHICLE = "it does not respond to forces like a vehicle"
 
 
-@dataclass
-class _Count:
-    """How many of the drives are done, for whoever wants to know."""
-
-    tell: Callable[[int, int], None] | None
-    total: int
-    done: int = -1
-
-    def __post_init__(self) -> None:
-        self.one_more()
-
-    def one_more(self) -> None:
-        self.done += 1
-        if self.tell is not None:
-            self.tell(self.done, self.total)
-
-
 def _drive_tests(
-    begin: _Beginning, largest: float, speeds: Sequence[float], count: _Count
+    starter: _Starter, largest: float, speeds: Sequence[float], one_more: Callable[[], None]
 ) -> list[list[Trace]]:
     """By level of force, from weak to strong, one trace for each speed."""
     tests = []
@@ -160,8 +150,8 @@ def _drive_tests(
         group = []
         for speed in speeds:
             phases = _test(level * largest, speed, top=1.25 * max(speeds) + 1.0)
-            group.append(begin.drive(phases, speed))
-            count.one_more()
+            group.append(starter.drive(phases, speed))
+            one_more()
         tests.append(group)
     return tests
 
@@ -199,8 +189,8 @@ def _largest_force(opener: Opener, path: Path, force_limit: float, step_size: fl
 
 
 @dataclass
-class _Beginning:
-    """Starts tests at a speed: by the FMU's own means, or by driving up to it."""
+class _Starter:
+    """Starts tests at a speed: by the FMU's parameter for it, or by driving up to it."""
 
     opener: Opener
     force: float  # [N] to drive up with

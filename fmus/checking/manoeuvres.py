@@ -1,4 +1,4 @@
-"""Scripted drives of a vehicle: forces in, what it did out; every one with a fresh instance."""
+"""Scripted drives: a fresh vehicle, forces in, and the trace of what it did out."""
 
 from __future__ import annotations
 
@@ -10,12 +10,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fmus.errors import FmuError
-from fmus.vehicle_protocol import Vehicle
+from fmus.interfaces.vehicle import Vehicle
+from fmus.isolation import open_vehicle
+from fmus.profile.vehicle_profile import Limits
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
+    from pathlib import Path
 
     from numpy.typing import NDArray
+
+    from fmus.description.model import Value
+    from fmus.profile.vehicle_profile import VehicleProfile
 
 
 Opener = Callable[[float | None], Vehicle]
@@ -25,9 +31,49 @@ The steps of the vehicle itself (how long a force is held) are always the same.
 """
 
 
+UNGUARDED = Limits(speed=1e9, position_jump=1e9)
+
+
+def without_guards(profile: VehicleProfile) -> VehicleProfile:
+    """The profile with limits that only absurd values exceed."""
+    return profile.model_copy(update={"limits": UNGUARDED})
+
+
+def opener_of(
+    path: Path,
+    *,
+    step_size: float,
+    profile: VehicleProfile,
+    start_values: Mapping[str, Value] | None = None,
+    isolated: bool | None = None,
+) -> Opener:
+    """Opens fresh vehicles of one FMU and profile; their FMU's own step can be chosen.
+
+    Args:
+        path: the .fmu file.
+        step_size: for which a force is held [s].
+        profile: of the vehicle.
+        start_values: further start values by variable name.
+        isolated: in a process of its own; None: unless it is a shipped FMU.
+    """
+
+    def open_with(fmu_step: float | None) -> Vehicle:
+        fmu = profile.fmu.model_copy(update={"step": fmu_step or profile.fmu.step})
+        stepped = profile.model_copy(update={"fmu": fmu})
+        return open_vehicle(
+            path,
+            step_size=step_size,
+            profile=stepped,
+            start_values=start_values,
+            isolated=isolated,
+        )
+
+    return open_with
+
+
 @dataclass(frozen=True)
 class Phase:
-    """A constant force, held for a time or until the speed has come where it should."""
+    """A constant force, held for a time or until the speed reaches a bound."""
 
     force: float  # [N]
     duration: float  # [s] at most
@@ -37,7 +83,7 @@ class Phase:
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """What a vehicle did: n steps, n + 1 instants.
+    """The record of a drive: n steps, n + 1 instants.
 
     Attributes:
         step_size: of the vehicle [s].
@@ -97,10 +143,10 @@ def drive(
 
 @dataclass(frozen=True)
 class Attempt:
-    """A drive, as far as it went."""
+    """A drive up to its end or failure."""
 
-    trace: Trace | None  # None: it did not start
-    error: FmuError | None  # that ended it
+    trace: Trace | None  # None: the vehicle did not start
+    error: FmuError | None  # that ended the drive
 
 
 def try_to_drive(
@@ -110,14 +156,14 @@ def try_to_drive(
     speed: float = 0.0,
     fmu_step: float | None = None,
 ) -> Attempt:
-    """As :func:`drive`, and what was seen before it failed is kept."""
-    log: _Log | None = None
+    """The same as :func:`drive`, but a failure is returned, with the trace up to it."""
+    log: _DriveLog | None = None
     vehicle: Vehicle | None = None
     error: FmuError | None = None
     try:
         vehicle = opener(fmu_step)
         vehicle.start(speed=speed)
-        log = _Log(vehicle)
+        log = _DriveLog(vehicle)
         for phase in phases:
             _hold(vehicle, phase, log)
     except FmuError as caught:
@@ -128,15 +174,15 @@ def try_to_drive(
     return Attempt(log.trace() if log is not None else None, error)
 
 
-def _hold(vehicle: Vehicle, phase: Phase, log: _Log) -> None:
+def _hold(vehicle: Vehicle, phase: Phase, log: _DriveLog) -> None:
     for _ in range(round(phase.duration / vehicle.step_size)):
         if not phase.above <= vehicle.speed <= phase.below:
             return
         log.step(phase.force)
 
 
-class _Log:
-    """The rows of a drive as it goes on."""
+class _DriveLog:
+    """Collects the rows of a drive."""
 
     def __init__(self, vehicle: Vehicle) -> None:
         self._vehicle = vehicle

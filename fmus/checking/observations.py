@@ -1,4 +1,4 @@
-"""What the drives of a check show: each function is one test of the traces."""
+"""The tests of a check: each function examines traces and returns one finding."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from fmus.checking.consistency import SPEED_UNITS, unit_of
 from fmus.checking.findings import Finding
 from fmus.checking.fitting import fit, prepare
 from fmus.checking.prediction import position_errors
-from fmus.checking.saturation import Resisted, saturation
+from fmus.checking.saturation import ResistanceModel, saturation
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from fmus.checking.fitting import Fit
     from fmus.checking.manoeuvres import Trace
 
-MOVES = 0.02  # [m/s] a change that is one
-CREEPS = 0.1  # [m/s] against the way it should go
+MOVES = 0.02  # [m/s] a larger change of speed is a motion
+CREEPS = 0.1  # [m/s] allowed in the wrong direction
 START_TOLERANCE = 0.05  # [m/s]
 MASS_TOLERANCE = 0.05  # of the controller's M
 POSITION_TOLERANCE = 0.1  # [m] at the horizon of the controller
@@ -131,7 +131,7 @@ def coasts(response: Trace, expected: Expected) -> Finding:
     name = "coasts"
     edges = np.flatnonzero(np.diff(response.force)) + 1
     begin, end = int(edges[0]), int(edges[1])
-    # What still acts of the drive force fades in the first half.
+    # In the first half the drive force may still fade.
     before, after = float(response.speed[(begin + end) // 2]), float(response.speed[end])
     seconds = 0.5 * (end - begin) * response.step_size
     text = f"{seconds:g} s without force: {before:.3g} to {after:.3g} m/s"
@@ -208,13 +208,13 @@ def actuator_limits(
     name, largest = "force limits", expected.largest_force
     if model is None:
         return Finding(name, "skip", "not to be said without a model")
-    resisted = Resisted.of(model, [prepare(response), prepare(rolling)])
+    resisted = ResistanceModel.of(model, [prepare(response), prepare(rolling)])
     drive = saturation([full], 1.0, resisted, [response])
     brake = saturation([rolling], -1.0, resisted)
     lowest, hardest = min(drive, brake), largest / resisted.mass
     if not np.isfinite(lowest):
         lagging = _missing_lead(resisted.mass, response.step_size, expected) is not None
-        if hardest >= WEAK or lagging:  # a lead mends that
+        if hardest >= WEAK or lagging:  # then a lead is what is missing
             return Finding(name, "pass", f"{largest:.0f} N drive as they should")
         enough = float(f"{FIRM * resisted.mass:.1g}")
         return Finding(
@@ -230,7 +230,7 @@ def actuator_limits(
 
 
 def actuator_lag(model: Fit | None, step: float, expected: Expected) -> Finding:
-    """How late do forces act?"""
+    """Do forces act late?"""
     name = "actuator lag"
     if model is None:
         return Finding(name, "skip", "not to be said without a model")
@@ -247,7 +247,7 @@ def actuator_lag(model: Fit | None, step: float, expected: Expected) -> Finding:
 
 
 def pace(response: Trace) -> Finding:
-    """What does a step cost?"""
+    """How long does a step take?"""
     name, cost = "time per step", 1e6 * response.cost
     text = f"{np.median(cost):.0f} us (median), {np.quantile(cost, 0.95):.0f} us (95 %)"
     if np.median(response.cost) <= response.step_size:
@@ -256,7 +256,7 @@ def pace(response: Trace) -> Finding:
 
 
 def warnings(traces: Mapping[str, Trace]) -> Finding:
-    """What the guards remarked on the way."""
+    """Did the guards warn of anything?"""
     seen = list(dict.fromkeys(text for trace in traces.values() for text in trace.warnings))
     if not seen:
         return Finding("warnings", "pass", "none")
@@ -265,5 +265,5 @@ def warnings(traces: Mapping[str, Trace]) -> Finding:
 
 
 def _small(value: float) -> str:
-    """Two digits, and what is mere rounding as 0."""
+    """Two digits; mere rounding is written as 0."""
     return f"{value:.2g}" if value > 1e-9 else "0"

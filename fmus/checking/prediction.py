@@ -1,4 +1,4 @@
-"""How far the MPC's own prediction, with M and alpha alone, is off a drive that was not fitted."""
+"""The errors of the MPC's prediction, which knows M and alpha only, in a drive."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def position_errors(
 ) -> NDArray[np.float64]:
     """(m,) [m] ``horizon`` steps ahead, from every instant; predicted speeds stop at 0.
 
-    Forward Euler, as the MPC predicts (Yang & Özgüner 2019, eqs. (2) and (3)). What follows after
-    a vehicle rolls backwards is left out: the MPC never wants that.
+    Forward Euler, as the MPC predicts (Yang & Özgüner 2019, eqs. (2) and (3)). Everything
+    after a vehicle rolls backwards is left out, because the MPC never wants that.
     """
     backwards = np.flatnonzero(trace.speed < -STANDSTILL)
     end = int(backwards[0]) if backwards.size else trace.force.size

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import tomlkit
 
 if TYPE_CHECKING:
-    from fmus.profile import FittedModel, VehicleProfile
+    from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
 DIGITS = 10  # significant ones: more than any fit knows
 ROUNDING = 1e-12  # what no fit can tell from 0

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fmus.checking.actuator import mean_force
-from fmus.checking.fitting import Drive, Fit, prepare
+from fmus.checking.fitting import Drive, Fit, least_squares, prepare, resistance_rows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,13 +14,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from fmus.checking.manoeuvres import Trace
-    from fmus.profile import FittedModel
+    from fmus.profile.vehicle_profile import FittedModel
 
 POOR_FIT = 0.9  # of R squared, below which a remark says so
 
 
 def saturation_remarks(limits: tuple[float, float]) -> list[str]:
-    """On the largest drive and brake force that arrive [N], where they were reached."""
+    """Remarks on the largest drive and brake force that arrive [N], if they were reached."""
     return [
         f"no more than {limit:.0f} N of {name} force arrive: run with --mpc-force-limit "
         f"{limit:.0f} or less{' (which bounds the brakes, too)' if name == 'drive' else ''}"
@@ -33,7 +32,7 @@ def saturation_remarks(limits: tuple[float, float]) -> list[str]:
 def fit_remarks(
     found: Fit, model: FittedModel, traces: Sequence[Trace], limits: tuple[float, float]
 ) -> list[str]:
-    """On how well M v' + alpha v = u describes the vehicle, and what else it does.
+    """Remarks on how well M v' + alpha v = u describes the vehicle, and what else it does.
 
     Args:
         found: M, alpha and the actuator.
@@ -57,16 +56,11 @@ def fit_remarks(
 
 
 def _resistance(found: Fit, drives: Sequence[Drive]) -> list[str]:
-    """What else resists: a constant force and one that grows with the square of the speed."""
+    """A remark on other resistance: a constant force, and one that grows with speed squared."""
     speed = np.concatenate([drive.speed[:-1][drive.used] for drive in drives])
-    acting = np.concatenate(
-        [mean_force(d.force, d.step, found.lag, found.delay)[d.used] for d in drives]
-    )
-    measured = np.concatenate([drive.acceleration[drive.used] for drive in drives])
     left = np.concatenate([(d.acceleration - found.acceleration(d))[d.used] for d in drives])
-    X = np.column_stack((acting, -speed, -np.ones_like(speed), -speed * np.abs(speed)))
-    scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
-    theta, *_ = np.linalg.lstsq(X / scale, measured, rcond=None)
+    X, measured = resistance_rows(drives, found.lag, found.delay)
+    theta, scale = least_squares(X, measured)
     better = float(np.sqrt(np.mean((measured - X / scale @ theta) ** 2)))
     if better > 0.7 * found.residual or found.residual - better < 0.005 or theta[0] <= 0.0:
         return []

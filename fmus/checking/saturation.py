@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from fmus.checking.actuator import mean_force
-from fmus.checking.fitting import STANDSTILL, Fit, fit, prepare
+from fmus.checking.fitting import STANDSTILL, Fit, fit, least_squares, prepare, resistance_rows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
     from fmus.checking.fitting import Drive
     from fmus.checking.manoeuvres import Trace
 
-SATURATED = 0.85  # less of the force than this share arrives: the actuator is at its limit
+SATURATED = 0.85  # if less of a force than this share arrives, the actuator is at its limit
 _ENOUGH = 20  # steps for four coefficients
-BEYOND = 1.5  # of a limit: what arrives beyond it shows that it is none
+BEYOND = 1.5  # times a limit: if so much arrives at another time, it is none
 SHORTEST = 0.3  # [s] of a phase from which a force is read
 
 
 @dataclass(frozen=True)
-class Resisted:
+class ResistanceModel:
     """M v' + alpha v + c_0 + c_2 v |v| = F of a vehicle that rolls forwards.
 
-    M and alpha alone would take the rolling resistance of a truck for a drive that falls short.
+    With M and alpha alone, a truck's rolling resistance would look like a saturated drive.
     """
 
     mass: float  # M [kg]
@@ -43,15 +43,10 @@ class Resisted:
     def of(cls, model: Fit, drives: Sequence[Drive]) -> Self:
         """The least squares of all four, with the actuator of ``model``."""
         plain = cls(model.mass, model.friction, 0.0, 0.0, model.lag, model.delay)
-        acting = [mean_force(d.force, d.step, model.lag, model.delay)[d.used] for d in drives]
-        if sum(force.size for force in acting) < _ENOUGH:
+        rows, measured = resistance_rows(drives, model.lag, model.delay)
+        if measured.size < _ENOUGH:
             return plain
-        u = np.concatenate(acting)
-        v = np.concatenate([d.speed[:-1][d.used] for d in drives])
-        y = np.concatenate([d.acceleration[d.used] for d in drives])
-        X = np.column_stack((u, -v, -np.ones_like(v), -v * np.abs(v)))
-        scale = np.maximum(np.abs(X).max(axis=0), 1e-300)
-        solution, *_ = np.linalg.lstsq(X / scale, y, rcond=None)
+        solution, scale = least_squares(rows, measured)
         inverse, *resistance = (solution / scale).tolist()
         if inverse <= 0.0:
             return plain
@@ -61,7 +56,7 @@ class Resisted:
     def force(
         self, speed: NDArray[np.float64], acceleration: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """What must act [N]."""
+        """The force that must act for this motion [N]."""
         drag = self.friction * speed + self.constant + self.quadratic * speed * np.abs(speed)
         return self.mass * acceleration + drag
 
@@ -69,7 +64,7 @@ class Resisted:
 def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
     """Largest drive and brake force that arrive [N]; infinite where that was not reached.
 
-    Level by level: what the weaker ones say about M and alpha predicts the next.
+    Level by level: M and alpha from the weaker tests predict the next ones.
 
     Args:
         tests: by level of force, from weak to strong.
@@ -80,7 +75,7 @@ def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
         model = fit(known)
         for side, sign in ((0, 1.0), (1, -1.0)):
             if model is not None and not np.isfinite(limits[side]):
-                resisted = Resisted.of(model, known)
+                resisted = ResistanceModel.of(model, known)
                 limits[side] = min(
                     _limit(trace, sign, resisted, before, strongest)
                     for trace, before, strongest in zip(
@@ -90,15 +85,17 @@ def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
     return limits[0], limits[1]
 
 
-def _limit(trace: Trace, sign: float, model: Resisted, weaker: Trace, strongest: Trace) -> float:
-    """What a test shows of a limit [N], unless with the most force far more arrives."""
+def _limit(
+    trace: Trace, sign: float, model: ResistanceModel, weaker: Trace, strongest: Trace
+) -> float:
+    """The limit [N] that a test shows, unless far more arrives in the strongest test."""
     limit = saturation([trace], sign, model, [weaker])
     most = max((arrives for _, arrives in arriving(strongest, sign, model)), default=0.0)
     return limit if most <= BEYOND * limit else np.inf
 
 
 def saturation(
-    traces: Sequence[Trace], sign: float, model: Resisted, weaker: Sequence[Trace] = ()
+    traces: Sequence[Trace], sign: float, model: ResistanceModel, weaker: Sequence[Trace] = ()
 ) -> float:
     """The smallest force [N] of one sign that falls short of the model, or infinity.
 
@@ -106,7 +103,7 @@ def saturation(
         traces: of the forces in question.
         sign: of those that count.
         model: of the vehicle.
-        weaker: the same tests with less force. Where more arrives the more is asked for, as in a
+        weaker: the same tests with less force. Where a larger force lets more arrive, as in a
             higher gear, there is no limit.
     """
     lesser = [arriving(trace, sign, model) for trace in weaker] or [[] for _ in traces]
@@ -120,13 +117,13 @@ def saturation(
 
 
 def _grows(should: float, arrives: float, before: Sequence[tuple[float, float]]) -> bool:
-    """As much more arrives than in the weaker test as was asked for."""
+    """Whether the force that arrives has grown as much as the force asked for."""
     if not before or not 0.0 < before[-1][0] < should or before[-1][1] <= 0.0:
         return False
     return arrives / before[-1][1] >= SATURATED * should / before[-1][0]
 
 
-def arriving(trace: Trace, sign: float, model: Resisted) -> list[tuple[float, float]]:
+def arriving(trace: Trace, sign: float, model: ResistanceModel) -> list[tuple[float, float]]:
     """Force that should act and that does [N], of the later half of each phase of one sign."""
     h = trace.step_size
     edges = np.flatnonzero(np.diff(trace.force)) + 1

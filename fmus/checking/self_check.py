@@ -1,8 +1,8 @@
 """Does an FMU's result depend on the size of its steps? One step against two halves, before a run.
 
-A solver that is too coarse for its model diverges without a word: one OpenModelica export reaches
-1e14 m/s at steps of 50 ms and returns OK. Whatever converges with first order, as forward Euler
-does, passes: its error is of the size of one step's change.
+A solver that is too coarse for its model diverges without any error: one OpenModelica export
+reaches 1e14 m/s at steps of 50 ms and returns OK. First-order methods such as forward Euler pass:
+their error is of the size of one step's change.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ if TYPE_CHECKING:
 
     from fmus.checking.manoeuvres import Opener
 
-DIVISORS = (1, 2, 5, 10, 20, 50, 100)  # of the step; what is tried, coarse to fine
-RELATIVE = 0.05  # of the largest speed or way of the finer run
+DIVISORS = (1, 2, 5, 10, 20, 50, 100)  # of the step, tried from coarse to fine
+RELATIVE = 0.05  # of the largest speed or distance of the finer run
 SPEED_FLOOR = 0.05  # [m/s]
 POSITION_FLOOR = 0.05  # [m]
-LARGEST_ACCELERATION = 15.0  # [m/s2] of a road vehicle; what one step may change
+LARGEST_ACCELERATION = 15.0  # [m/s2] of a road vehicle, for the change in one step
 _CLEARLY = 0.1  # [m/s2]
 DRIVE, COAST, BRAKE = 1.0, 0.5, 1.5  # [s] of the manoeuvre's parts
 
-_UNABLE = (FmuInterfaceError, FmuProfileError, FmuStartError)  # at a finer step: it cannot be had
+_UNABLE = (FmuInterfaceError, FmuProfileError, FmuStartError)  # the FMU cannot do this step
 
 
 @dataclass(frozen=True)
 class Disagreement:
-    """Where a run with steps of one size leaves that with finer ones."""
+    """Where a run with coarse steps differs most from one with finer steps."""
 
     quantity: str  # "speed" or "position"
     unit: str
@@ -52,7 +52,7 @@ class Disagreement:
 
 @dataclass(frozen=True)
 class Convergence:
-    """What the self-check found.
+    """The result of the self-check.
 
     Attributes:
         step: the FMU's, as the run would take it [s].
@@ -115,23 +115,23 @@ def convergence(
     Raises:
         FmuError: the FMU fails, and smaller steps do not change that.
     """
-    ladder = _Ladder(opener, fmu_step, force, start_speed)
-    whole = ladder.run(1)
+    sizes = _StepSizes(opener, fmu_step, force, start_speed)
+    whole = sizes.run(1)
     if isinstance(whole.error, _UNABLE):
         raise whole.error
-    fine = ladder.first_able()
+    fine = sizes.first_able()
     if whole.error is not None:
-        advised = ladder.first_converged()
-        diverges = isinstance(whole.error, FmuOutputError) and ladder.depends_on_step()
+        advised = sizes.first_converged()
+        diverges = isinstance(whole.error, FmuOutputError) and sizes.depends_on_step()
         if advised is None and not diverges:
             raise whole.error
         problem = f"{_do_not_converge(fmu_step)} ({plain(whole.error).split('; ')[0]})"
     elif fine is None:
         return Convergence(fmu_step, None, traces=whole.shown)
     else:
-        problem = ladder.problem(1, fine)
-        advised = ladder.first_converged() if problem else None
-    shown = whole.shown + (() if fine is None else ladder.run(fine).shown)
+        problem = sizes.problem(1, fine)
+        advised = sizes.first_converged() if problem else None
+    shown = whole.shown + (() if fine is None else sizes.run(fine).shown)
     return Convergence(
         fmu_step,
         None if fine is None else fmu_step / fine,
@@ -142,49 +142,49 @@ def convergence(
 
 
 @dataclass(frozen=True)
-class _Rung:
-    """The manoeuvres with steps of one size."""
+class _Drives:
+    """The manoeuvres driven with steps of one size."""
 
     traces: tuple[Trace, ...]  # as far as they went
     error: FmuError | None
 
     @property
     def shown(self) -> tuple[Trace, ...]:
-        """The last manoeuvre, if it was begun."""
+        """The last manoeuvre, if it has begun."""
         return self.traces[-1:]
 
     @property
     def steps_done(self) -> int:
-        """Before the end, or before it failed."""
+        """How many steps were done before the end or the failure."""
         return sum(trace.force.size for trace in self.traces)
 
 
-class _Ladder:
-    """The step and what it can be divided by; each is run once, when it is asked for."""
+class _StepSizes:
+    """The manoeuvres at the step and at its divisions, each driven when it is first needed."""
 
     def __init__(self, opener: Opener, step: float, force: float, start_speed: float) -> None:
         self._opener = opener
         self._step = step
         self._force = force
         self._speeds = sorted({0.0, start_speed})
-        self._rungs: dict[int, _Rung] = {}
+        self._drives: dict[int, _Drives] = {}
 
-    def run(self, divisor: int) -> _Rung:
-        """The rung of one divisor.
+    def run(self, divisor: int) -> _Drives:
+        """The drives of one divisor.
 
         Raises:
             FmuCrashError: a dead process says nothing about steps, and a hang costs minutes.
         """
-        if divisor not in self._rungs:
-            self._rungs[divisor] = self._attempt(None if divisor == 1 else self._step / divisor)
-        return self._rungs[divisor]
+        if divisor not in self._drives:
+            self._drives[divisor] = self._attempt(None if divisor == 1 else self._step / divisor)
+        return self._drives[divisor]
 
     def first_able(self) -> int | None:
-        """The coarsest of the finer steps that the FMU does: some refuse those not theirs."""
+        """The coarsest of the finer steps that the FMU can do: some FMUs accept their own only."""
         return next((d for d in DIVISORS[1:] if self.run(d).error is None), None)
 
     def problem(self, coarse: int, fine: int) -> str:
-        """Why the coarse step will not do; empty if it will."""
+        """Why the coarse step is too coarse; empty if it is not."""
         for one, two in zip(self.run(coarse).traces, self.run(fine).traces, strict=True):
             found = compare(one, two)
             if found:
@@ -196,7 +196,7 @@ class _Ladder:
         return ""
 
     def first_converged(self) -> int | None:
-        """The coarsest of the finer steps that agrees with the one below it."""
+        """The coarsest of the finer steps that agrees with the next finer one."""
         able = [divisor for divisor in DIVISORS[1:] if self.run(divisor).error is None]
         for coarse, fine in pairwise(able):
             if not self.problem(coarse, fine):
@@ -204,13 +204,13 @@ class _Ladder:
         return None
 
     def depends_on_step(self) -> bool:
-        """Whether how far the FMU comes before it fails, or what fails, depends on its step."""
-        able = [rung for rung in self._rungs.values() if not isinstance(rung.error, _UNABLE)]
-        done = [rung.steps_done for rung in able]
+        """Whether the time or the kind of the failure depends on the step."""
+        able = [drives for drives in self._drives.values() if not isinstance(drives.error, _UNABLE)]
+        done = [drives.steps_done for drives in able]
         blamed = {plain(r.error).split()[0] for r in able if isinstance(r.error, FmuOutputError)}
         return max(done) - min(done) > 1 or len(blamed) > 1
 
-    def _attempt(self, step: float | None) -> _Rung:
+    def _attempt(self, step: float | None) -> _Drives:
         traces = []
         for speed in self._speeds:
             attempt = try_to_drive(self._opener, manoeuvre(self._force), speed=speed, fmu_step=step)
@@ -219,8 +219,8 @@ class _Ladder:
             if attempt.trace is not None:
                 traces.append(attempt.trace)
             if attempt.error is not None:
-                return _Rung(tuple(traces), attempt.error)
-        return _Rung(tuple(traces), None)
+                return _Drives(tuple(traces), attempt.error)
+        return _Drives(tuple(traces), None)
 
 
 def _do_not_converge(step: float) -> str:
@@ -233,7 +233,7 @@ def manoeuvre(force: float) -> list[Phase]:
 
 
 def compare(coarse: Trace, fine: Trace) -> Disagreement | None:
-    """Where two drives through the same forces leave each other, worst of all; None: nowhere.
+    """The worst difference between two drives under the same forces; None: they agree.
 
     First order passes: a finer run may differ by what one step changes, and by 5 %.
     """
@@ -259,22 +259,22 @@ def compare(coarse: Trace, fine: Trace) -> Disagreement | None:
 
 
 def goes_the_wrong_way(trace: Trace) -> bool:
-    """Whether a force forwards slows a vehicle down, and more so than none or one backwards.
+    """Whether a forward force slows a vehicle down, and more than no force or a backward one.
 
-    A vehicle whose signs are right gains by driving, even where a slope or a slow actuator lets it
-    lose speed all the same.
+    With the right sign, driving helps even where a slope or a slow actuator makes the vehicle lose
+    speed.
 
     Args:
         trace: of the :func:`manoeuvre`.
     """
     change = np.diff(trace.speed) / trace.step_size
     driven, braked = change[trace.force > 0.0], change[trace.force < 0.0]
-    rolling = change[trace.force == 0.0][-1]  # when a slow actuator has let go
+    rolling = change[trace.force == 0.0][-1]  # by then a slow actuator has released its force
     return bool(driven.mean() < min(0.0, rolling, braked.mean()) - _CLEARLY)
 
 
 def milliseconds(step: float) -> str:
-    """A step as people say it: ``50 ms``."""
+    """A step as text: ``50 ms``."""
     return f"{1000.0 * step:.4g} ms"
 
 

@@ -1,1 +1,1 @@
-"""Driving an FMU: inverse maps, steps, what comes out, and what no car does."""
+"""Driving a vehicle FMU in this process: its start, its steps, its motion, and what no car does."""

@@ -1,32 +1,26 @@
-"""What no car does: a vehicle FMU that shows it is at fault, whatever status it returns."""
+"""Finding motions that no car has: they show that an FMU is at fault, whatever it returns."""
 
 from __future__ import annotations
 
 from math import isfinite
+from typing import TYPE_CHECKING
 
-DRIVEN = 200.0  # [N] a car that does not answer this much is stuck
+if TYPE_CHECKING:
+    from fmus.profile.vehicle_profile import Limits
+
+DRIVEN = 200.0  # [N] a car that does not react to so much is stuck
 
 
 class Guard:
-    """Judges each new state against the one before.
+    """Finds faults in new states, and puts them into words.
 
     Args:
-        speed_limit: [m/s].
-        position_jump: [m].
-        frozen_time: [s].
+        limits: of the profile.
         names: what the FMU calls its speed, position and acceleration.
     """
 
-    def __init__(
-        self,
-        speed_limit: float,
-        position_jump: float,
-        frozen_time: float,
-        names: dict[str, str],
-    ) -> None:
-        self._speed_limit = speed_limit
-        self._position_jump = position_jump
-        self._frozen_time = frozen_time
+    def __init__(self, limits: Limits, names: dict[str, str]) -> None:
+        self._limits = limits
         self._names = names
         self._frozen = 0.0  # [s]
         self._warned: set[str] = set()
@@ -40,7 +34,7 @@ class Guard:
             position: [m].
             speed: [m/s].
             acceleration: [m/s2].
-            jump: by how much [m] the position differs from what the speed accounts for.
+            jump: by how much the position differs from the integrated speed [m].
             at: time [s].
         """
         for role, value in (
@@ -53,7 +47,7 @@ class Guard:
                     f"{self._names[role]} = {value} at {at:.10g} s; expected a finite number; "
                     "check the FMU's parameters and the step size"
                 )
-        limit = self._speed_limit
+        limit = self._limits.speed
         if abs(speed) > limit:
             return (
                 f"{self._names['speed']} = {speed:.6g} m/s at {at:.10g} s; expected within "
@@ -61,16 +55,16 @@ class Guard:
             )
         return (
             f"{self._names['position']} = {position:.6g} m at {at:.10g} s, {jump:+.6g} m from "
-            f"where the speed leads; expected within {self._position_jump:g} m; check the units of "
-            "position and speed, or raise position_jump in [limits]"
+            f"where the speed leads; expected within {self._limits.position_jump:g} m; check the "
+            "units of position and speed, or raise position_jump in [limits]"
         )
 
     def drift(self, drift: float, way: float, at: float) -> str:
-        """What is wrong with a position that leaves the speed's integral, step by step.
+        """What is wrong with a position that drifts away from the integrated speed.
 
         Args:
-            drift: position beyond what the speed accounts for, since the start [m].
-            way: that the speed accounts for [m].
+            drift: position minus integrated speed, since the start [m].
+            way: distance by the integrated speed [m].
             at: time [s].
         """
         position, speed = self._names["position"], self._names["speed"]
@@ -83,7 +77,7 @@ class Guard:
         """A warning about a state that stands still though it is driven; empty if there is none.
 
         Args:
-            changed: whether the motion has answered in this step.
+            changed: whether the motion has changed in this step.
             force: held over it [N].
             speed: [m/s].
             step: [s].
@@ -93,16 +87,16 @@ class Guard:
             self._frozen = 0.0
             return ""
         self._frozen += step
-        if self._frozen < self._frozen_time:
+        if self._frozen < self._limits.frozen_time:
             return ""
         return self.once(
             "frozen",
-            f"{self._names['speed']} has not changed for {self._frozen_time:g} s until "
+            f"{self._names['speed']} has not changed for {self._limits.frozen_time:g} s until "
             f"{at:.10g} s under forces like {force:.0f} N; is the input connected?",
         )
 
     def once(self, kind: str, warning: str) -> str:
-        """The warning the first time, then nothing."""
+        """The warning the first time; empty afterwards."""
         if kind in self._warned:
             return ""
         self._warned.add(kind)

@@ -1,4 +1,4 @@
-"""From an FMU's outputs to a motion in SI units, with an eye on what no car does."""
+"""An FMU's outputs as a motion in SI units, checked against what no car does."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from fmus.driving.guards import DRIVEN, Guard
 from fmus.errors import FmuOutputError
 
 if TYPE_CHECKING:
-    from fmus.preparation import Prepared
-    from fmus.wiring import Wiring
+    from fmus.profile.preparation import Prepared
+    from fmus.profile.wiring import Wiring
 
 
-_SLIP = 0.2  # share of its way by which a position may differ from what the speed accounts for
+_SLIP = 0.2  # share of the distance by which the position may differ from the integrated speed
 _REVERSING = -0.05  # [m/s] beyond what a stop within a step may overshoot
 
 
 class Motion:
-    """Position, speed and acceleration along the way, as the FMU tells them or as derived.
+    """Position, speed and acceleration along the path, as the FMU gives them or as derived.
 
     Args:
         prepared: the vehicle.
@@ -37,48 +37,43 @@ class Motion:
         self.names = names_of(wiring)
         self._path = prepared.path
         self._wires = wiring.outputs
-        self._place = wiring.output("position")
-        self._rate = wiring.output("acceleration")
+        self._position_output = wiring.output("position")
+        self._acceleration_output = wiring.output("acceleration")
         self._inputs = wiring.inputs
         self._bounds = prepared.bounds
-        self._limit = prepared.speed_limit
-        self._jump = prepared.position_jump
-        self._guard = Guard(self._limit, self._jump, prepared.frozen_time, self.names)
+        limits = prepared.profile.limits
+        self._limit, self._jump = limits.speed, limits.position_jump
+        self._guard = Guard(limits, self.names)
         self._trusted = prepared.ours
-        self._answered = 0.0  # [N] under which the speed last changed
+        self._last_effective = 0.0  # [N] force under which the speed last changed
         self._origin = 0.0  # [m] where the FMU's own position is 0
-        self._way = self._drift = 0.0  # [m] that the speed accounts for; and the position beyond it
+        self._distance = 0.0  # [m] driven since the start, by the speed
+        self._drift = 0.0  # [m] by which the position has moved farther
 
     @property
     def state(self) -> tuple[float, float, float]:
         """Position, speed and acceleration."""
         return self.position, self.speed, self.acceleration
 
-    def save(self) -> tuple[float, ...]:
-        """What :meth:`restore` needs."""
-        return (*self.state, self._way, self._drift)
-
-    def restore(self, saved: tuple[float, ...]) -> None:
-        """Go back to a saved motion."""
-        self.position, self.speed, self.acceleration, self._way, self._drift = saved
-
     def begin(self, outputs: memoryview[float]) -> None:
-        """Take over a first state as it is.
+        """Take over the first state.
 
         Raises:
-            FmuOutputError: no car has it.
+            FmuOutputError: no car can have this state.
         """
         wires = self._wires
         self.speed = wires[0].to_si(outputs[0])
-        if self._rate is not None:
-            self.acceleration = wires[self._rate].to_si(outputs[self._rate])
-        if self._place is not None:
-            self.position = wires[self._place].to_si(outputs[self._place])
-        self._answered = nan if self.speed else 0.0  # at a speed: whatever comes first
+        if self._acceleration_output is not None:
+            self.acceleration = wires[self._acceleration_output].to_si(
+                outputs[self._acceleration_output]
+            )
+        if self._position_output is not None:
+            self.position = wires[self._position_output].to_si(outputs[self._position_output])
+        self._last_effective = nan if self.speed else 0.0  # already moving: unknown
         self._judge(0.0, 0.0, 0.0)
 
     def count_from(self, position: float) -> None:
-        """Let the present place be at ``position`` [m]."""
+        """Let the present position count as ``position`` [m]."""
         self._origin += self.position - position
         self.position = position
 
@@ -94,10 +89,10 @@ class Motion:
             time: at its end [s].
 
         Raises:
-            FmuOutputError: no car has it.
+            FmuOutputError: no car can have this state.
         """
         wires, before, here = self._wires, self.speed, self.position
-        place, rate = self._place, self._rate
+        place, rate = self._position_output, self._acceleration_output
         wire = wires[0]
         self.speed = speed = wire.scale * outputs[0] + wire.shift
         if place is not None:
@@ -118,33 +113,34 @@ class Motion:
     def _watch(
         self, before: float, here: float, force: float, duration: float, time: float
     ) -> None:
-        """Look at a step that led from the speed ``before`` [m/s] and the position ``here`` [m].
+        """Check a step that led from the speed ``before`` [m/s] and the position ``here`` [m].
 
         Raises:
-            FmuOutputError: no car does that.
+            FmuOutputError: no car can move like this.
         """
         speed, position = self.speed, self.position
         way = 0.5 * duration * (before + speed)
         drift = position - (here + way)
         self._judge(drift, 0.5 * duration * abs(speed - before), time)
-        if speed != before or isnan(self._answered):
-            self._answered = force
-        if self._place is None:  # cruising: its speed tells nothing until the force is another one
-            changed = speed != before or abs(force - self._answered) < DRIVEN
+        if speed != before or isnan(self._last_effective):
+            self._last_effective = force
+        if self._position_output is None:  # until the force changes, a car may be cruising
+            changed = speed != before or abs(force - self._last_effective) < DRIVEN
         else:
             changed = speed != before or position != here
-        if changed:  # what is frozen is the watchdog's
-            self._way += abs(way)
+        if changed:  # a frozen motion is left to the guard's own test
+            self._distance += abs(way)
             self._drift += drift
-        if abs(self._drift) > self._jump + _SLIP * self._way:
-            raise FmuOutputError(f"{self._path}: {self._guard.drift(self._drift, self._way, time)}")
+        if abs(self._drift) > self._jump + _SLIP * self._distance:
+            problem = self._guard.drift(self._drift, self._distance, time)
+            raise FmuOutputError(f"{self._path}: {problem}")
         self._note(self._guard.watch(changed, force, speed, duration, time))
         if speed < _REVERSING:
             backwards = f"{self.names['speed']} = {speed:.3g} m/s at {time:.10g} s: it reverses"
             self._note(self._guard.once("reverse", backwards))
 
     def _judge(self, jump: float, slack: float, time: float) -> None:
-        """Refuse a state; ``slack`` [m] of its ``jump`` [m] is accounted for."""
+        """Refuse a state that no car can have; ``slack`` [m] of its ``jump`` [m] is allowed."""
         good = (
             -self._limit <= self.speed <= self._limit
             and abs(jump) <= self._jump + slack
@@ -156,7 +152,7 @@ class Motion:
             raise FmuOutputError(f"{self._path}: {problem}")
 
     def keep_bounds(self, inputs: memoryview[float]) -> None:
-        """Let inputs have no values beyond those that the FMU declares."""
+        """Limit the inputs to the ranges that the FMU declares."""
         for bound in self._bounds:
             value = inputs[bound.index]
             if not bound.low <= value <= bound.high:

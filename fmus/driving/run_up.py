@@ -8,32 +8,34 @@ from fmus.errors import FmuStartError
 from fmus.text import printable
 
 if TYPE_CHECKING:
-    from fmus.vehicle import VehicleFmu
+    from fmus.interfaces.vehicle import Drivable
 
-_NEAR = 0.01  # [m/s] of the speed wanted, and
-_SETTLED = 0.5  # [s] for so long
-_CLOSE = 0.3  # [m/s] from which on the integrator works
+_NEAR = 0.01  # [m/s] largest error of the speed in the end
+_SETTLED = 0.5  # [s] for which the speed must stay as near
+_CLOSE = 0.3  # [m/s] error below which the integrator works
 _LIMIT = 120.0  # [s] of simulated time
 _RESPONSE = 0.5  # [s] time constant of the approach
-_INTEGRATION = 4.0  # [s] of the integrator: what the model's friction does not account for
-_BACKWARDS = 1.0  # [m/s] so much is no creeping
-_STILL = 0.02  # [m/s] less is no motion
-_STRONGEST = 3.0  # [m/s2] that is asked for
+_INTEGRATION = 4.0  # [s] time constant of the integrator, for resistance beyond the model's
+_BACKWARDS = 1.0  # [m/s] more is no creeping
+_STILL = 0.02  # [m/s] a smaller change is no motion
+_STRONGEST = 3.0  # [m/s2] largest acceleration asked for
 
 
-def run_up(vehicle: VehicleFmu, speed: float) -> float:
+def run_up(vehicle: Drivable, speed: float) -> float:
     """Drive ``vehicle`` until it keeps ``speed`` [m/s]; returns how long it took [s].
 
     Raises:
         FmuStartError: it does not get there.
     """
-    mass, friction = vehicle.prepared.run_up_mass, vehicle.prepared.run_up_friction
+    profile = vehicle.prepared.profile
+    known = profile.model or profile.inverse_map
+    mass, friction = known.mass, known.friction
     h, integral, settled, first = vehicle.step_size, 0.0, 0.0, vehicle.speed
     for _ in range(round(_LIMIT / h)):
         error = speed - vehicle.speed
         wanted = error / _RESPONSE + integral
         acceleration = min(max(wanted, -_STRONGEST), _STRONGEST)
-        if abs(error) < _CLOSE:  # on the way there it would wind up
+        if abs(error) < _CLOSE:  # farther away the integrator would wind up
             integral += error * h / (_RESPONSE * _INTEGRATION)
         vehicle.step(mass * acceleration + friction * speed)
         settled = settled + h if abs(speed - vehicle.speed) <= _NEAR else 0.0
@@ -62,8 +64,8 @@ def run_up(vehicle: VehicleFmu, speed: float) -> float:
     raise FmuStartError(msg)
 
 
-def _idle(vehicle: VehicleFmu) -> str:
-    """The inputs that nobody drives, which keep their start values."""
+def _idle(vehicle: Drivable) -> str:
+    """The inputs that the profile does not drive, as the end of a message."""
     prepared = vehicle.prepared
     driven = {wire.channel.variable.name for wire in prepared.wiring.inputs}
     idle = [

@@ -1,4 +1,4 @@
-"""How a vehicle comes to its first state: what its FMU is told, and whether it obeys."""
+"""A vehicle's first state: the FMU's start values, and the check that it starts there."""
 
 from __future__ import annotations
 
@@ -9,16 +9,15 @@ from fmus.driving.run_up import run_up
 from fmus.errors import FmuOutputError, FmuStartError, FmuStepError
 
 if TYPE_CHECKING:
-    from fmus.model import Channel
-    from fmus.preparation import Prepared
-    from fmus.profile import Value
-    from fmus.vehicle import VehicleFmu
+    from fmus.description.model import Channel, Value
+    from fmus.interfaces.vehicle import Drivable
+    from fmus.profile.preparation import Prepared
 
 _FIT = 0.02  # [m/s] or [m], and share, by which the first state may differ from the one asked for
 
 
 def start_values(prepared: Prepared, position: float, speed: float) -> dict[Channel, Value]:
-    """What the FMU is to start with; its inputs are those of no force."""
+    """The FMU's start values; its inputs start as for no force."""
     wiring = prepared.wiring
     at_rest = memoryview(bytearray(8 * len(wiring.inputs))).cast("d")
     prepared.command.apply(0.0, speed, at_rest)
@@ -35,16 +34,16 @@ def start_values(prepared: Prepared, position: float, speed: float) -> dict[Chan
     return values
 
 
-def reach(vehicle: VehicleFmu, speed: float) -> float | None:
-    """Be at the speed asked for [m/s], or drive up to it.
+def reach(vehicle: Drivable, speed: float) -> float | None:
+    """Check that the vehicle starts at a speed [m/s], or drive up to it.
 
     Returns:
-        How long that took [s]; None: the FMU starts at it.
+        how long the drive took [s]; None: the FMU starts at the speed.
 
     Raises:
-        FmuStartError: the speed cannot be had.
+        FmuStartError: the vehicle cannot get to the speed.
         FmuStepError: the FMU failed on the way there.
-        FmuOutputError: likewise.
+        FmuOutputError: the same.
     """
     if _fits(vehicle.speed, speed):
         return None
@@ -57,7 +56,7 @@ def reach(vehicle: VehicleFmu, speed: float) -> float | None:
             "[initial.speed]"
         )
         raise FmuStartError(msg)
-    if not vehicle.prepared.run_up or speed < 0.0:
+    if not vehicle.prepared.profile.initial.run_up or speed < 0.0:
         msg = (
             f"{vehicle.path}: {name} starts at {vehicle.speed:.6g} m/s and not at {speed:g} m/s; "
             "name the FMU's parameter for it, [initial.speed] variable = ..., or start at this "
@@ -71,11 +70,11 @@ def reach(vehicle: VehicleFmu, speed: float) -> float | None:
         raise type(error)(msg) from None
 
 
-def require_place(vehicle: VehicleFmu, position: float) -> None:
-    """Make sure that an FMU with a parameter for its first position [m] is there.
+def require_position(vehicle: Drivable, position: float) -> None:
+    """Check that an FMU with a parameter for its first position [m] starts there.
 
     Raises:
-        FmuStartError: it is not.
+        FmuStartError: it starts elsewhere.
     """
     wiring = vehicle.prepared.wiring
     initial = wiring.initial_position

@@ -1,30 +1,29 @@
-"""Reading, loading and calling FMUs: the only package that talks to FMPy.
+"""Loading and calling FMUs: the only package that talks to FMPy.
 
-Instances call the FMU's C functions themselves, without FMPy's wrappers: a step costs what it
-costs in C, and a function that an FMU lacks is missed only where it is needed.
+Instances call the FMU's C functions themselves, without FMPy's wrappers: a step takes as long as it
+takes in C, and a missing function is an error only where it is needed.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fmus.binaries import this_platform
-from fmus.errors import FmuInterfaceError, FmuPlatformError
+from fmus.description.model import Kind
+from fmus.errors import FmuInterfaceError
 from fmus.fmi.co_simulation import CoSimulation
 from fmus.fmi.fmi1 import Fmi1Calls
 from fmus.fmi.fmi2 import Fmi2Calls
 from fmus.fmi.fmi3 import Fmi3Calls
 from fmus.fmi.library import Library
-from fmus.instance import Journal
-from fmus.model import Kind
+from fmus.fmi.messages import MessageLog
 
 if TYPE_CHECKING:
     from pathlib import Path
     from typing import Literal
 
+    from fmus.description.model import Interface, Model
     from fmus.fmi.calls import Calls
-    from fmus.instance import Instance
-    from fmus.model import Interface, Model
+    from fmus.fmi.running import Instance
 
 __all__ = ["load"]
 
@@ -35,6 +34,7 @@ def load(
     model: Model,
     interface: Interface,
     folder: Path,
+    binary: str,
     *,
     solver: Literal["cvode", "rk4"] | None = None,
     tolerance: float | None = None,
@@ -46,6 +46,7 @@ def load(
         model: as read.
         interface: the one of its interfaces that is to run.
         folder: with the extracted FMU; the caller removes it after :meth:`Instance.close`.
+        binary: this platform's library, by its name in the archive.
         solver: of Model Exchange; None: CVode where it runs.
         tolerance: relative: of Model Exchange's solver, or told to a Co-Simulation FMU.
         rewinds: before each step keep the state, so that a discarded step can be done again in
@@ -59,26 +60,14 @@ def load(
         msg = f"{model.path}: FMI {model.fmi_version}; expected 1.0, 2.0 or 3.0; export it again"
         raise FmuInterfaceError(msg)
     (folder / "resources").mkdir(exist_ok=True)  # named to the FMU even where it has none
-    library = Library(_binary(model, interface, folder), model.path)
+    library = Library(folder / binary, model.path)
     try:
-        calls = _CALLS[model.fmi_version](library, model, interface, folder, Journal())
+        calls = _CALLS[model.fmi_version](library, model, interface, folder, MessageLog())
         if interface.kind == Kind.MODEL_EXCHANGE:
-            from fmus.fmi.model_exchange import ModelExchange  # its numpy is not always needed
+            from fmus.fmi.model_exchange import ModelExchange  # Co-Simulation needs no numpy
 
             return ModelExchange(calls, tolerance, solver)
         return CoSimulation(calls, tolerance, rewinds=rewinds)
     except BaseException:
         library.close()
         raise
-
-
-def _binary(model: Model, interface: Interface, folder: Path) -> Path:
-    here = this_platform()
-    file = f"{interface.identifier}{here.suffix}"
-    names = here.folders(model.fmi_version)
-    for name in names:
-        path = folder / "binaries" / name / file
-        if path.is_file():
-            return path
-    msg = f"{model.path}: no binaries/{names[0]}/{file}; export the FMU for {here}"
-    raise FmuPlatformError(msg)

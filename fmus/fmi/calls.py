@@ -9,15 +9,16 @@ from ctypes import c_size_t, c_uint32, c_void_p
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from fmus.instance import ERROR, STATUS_NAMES, WARNING
+from fmus.description.model import Kind
+from fmus.fmi.status import ERROR, WARNING, named
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
+    from fmus.description.model import Interface, Model
     from fmus.fmi.library import Function, Library
-    from fmus.instance import Journal
-    from fmus.model import Interface, Model
+    from fmus.fmi.messages import MessageLog
 
 
 class CallFailedError(Exception):
@@ -47,7 +48,7 @@ class NoInstanceError(CallFailedError):
 
 @dataclass(frozen=True)
 class CType:
-    """How values of an FMI type travel: the C type, and the end of its functions' names."""
+    """An FMI type's C type, and how the names of its functions end."""
 
     type: type[Any]
     suffix: str
@@ -55,10 +56,10 @@ class CType:
 
 @dataclass(frozen=True)
 class Progress:
-    """What an FMU says after a step that it did not simply do."""
+    """What an FMU says after a step that it did not complete."""
 
-    reached: float | None  # [s]; None: it does not say
-    ended: bool  # it wants the simulation to end
+    reached: float | None  # [s]; None: the FMU does not say
+    ended: bool  # the FMU wants to end the simulation
 
 
 @dataclass
@@ -79,26 +80,48 @@ class Calls(ABC):
         model: the FMU.
         interface: that is to run.
         folder: with the extracted FMU.
-        journal: receives the FMU's messages.
+        messages: receives the FMU's messages.
 
     Raises:
         FmuPlatformError: a function is missing that the FMU must have.
     """
 
     types: ClassVar[Mapping[str, CType]]
+    state_word: ClassVar = "FMUstate"  # as the standard spells it in the names of functions
+    exchange: ClassVar[dict[str, str]] = {  # what Model Exchange calls often, by what it does
+        "set_time": "SetTime",
+        "set_states": "SetContinuousStates",
+        "get_states": "GetContinuousStates",
+        "get_derivatives": "GetDerivatives",
+        "get_indicators": "GetEventIndicators",
+        "get_nominals": "GetNominalsOfContinuousStates",
+    }
 
     def __init__(
-        self, library: Library, model: Model, interface: Interface, folder: Path, journal: Journal
+        self,
+        library: Library,
+        model: Model,
+        interface: Interface,
+        folder: Path,
+        messages: MessageLog,
     ) -> None:
         self.library = library
         self.model = model
         self.interface = interface
         self.folder = folder
-        self.journal = journal
+        self.messages = messages
         self.component: c_void_p | None = None
+        self.prefix = f"fmi{model.fmi_version[0]}"  # of all functions' names
+        self.exchanges = interface.kind == Kind.MODEL_EXCHANGE
         self._functions: dict[str, Function] = {}
+        self._free: Function
+        self.find_functions()
 
     # ---- life ----
+
+    @abstractmethod
+    def find_functions(self) -> None:
+        """Look up the functions that every FMU must have, and make the receiver of messages."""
 
     @abstractmethod
     def instantiate(self) -> None:
@@ -108,27 +131,39 @@ class Calls(ABC):
             CallFailedError: the FMU refuses.
         """
 
-    @abstractmethod
+    def keep_instance(self, component: int | None, function: str) -> None:
+        """Keep the instance that a function has made.
+
+        Raises:
+            NoInstanceError: it has made none.
+        """
+        if not component:
+            raise NoInstanceError(function)
+        self.component = c_void_p(component)
+
     def configure(self, setting: Sequence[Setting]) -> None:
-        """Set the start values that come before the initialisation."""
+        """Set start values."""
+        for one in setting:
+            self.apply(one)
 
     @abstractmethod
     def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:
-        """Bring the instance to time 0; the inputs' start values are set on the way."""
+        """Bring the instance to time 0 and set the inputs' start values."""
 
-    @abstractmethod
     def terminate(self) -> None:
         """End the simulation."""
+        self.call(self.name("Terminate"))
 
-    @abstractmethod
     def free(self) -> None:
         """Free the instance."""
+        self._free(self.component)
+        self.component = None
 
     # ---- values ----
 
-    @abstractmethod
     def name(self, verb: str, suffix: str = "") -> str:
         """A function's name, e.g. of ``Set`` and ``Real``."""
+        return f"{self.prefix}{verb}{suffix}"
 
     def arguments(self, references: Sequence[int], values: Any) -> tuple[Any, ...]:
         """What a set or get function takes, ready to be passed any number of times."""
@@ -148,49 +183,45 @@ class Calls(ABC):
 
     @abstractmethod
     def stepper(self, start: ctypes.c_double, step: ctypes.c_double) -> Stepper:
-        """What does a step, with its arguments."""
+        """The function that does a step, with its arguments."""
 
     # ---- Model Exchange ----
 
-    @abstractmethod
     def enter_event_mode(self) -> None:
         """From continuous-time mode."""
+        self.call(self.name("EnterEventMode"))
 
     @abstractmethod
     def update_discrete_states(self) -> EventInfo:
         """One round of the event iteration."""
 
-    @abstractmethod
     def enter_continuous_time_mode(self) -> None:
         """From event mode."""
+        self.call(self.name("EnterContinuousTimeMode"))
 
     @abstractmethod
     def completed_step(self) -> tuple[bool, bool]:
-        """After an integrator's step: whether it wants event mode, whether it wants to end."""
+        """After an integrator's step: whether the FMU wants event mode, whether it wants to end."""
 
-    @abstractmethod
     def exchange_names(self) -> Mapping[str, str]:
         """The names of the functions that Model Exchange calls often, by what they do."""
+        return {what: self.name(verb) for what, verb in self.exchange.items()}
 
     # ---- state ----
-
-    @abstractmethod
-    def state_names(self) -> tuple[str, str, str]:
-        """The functions that get, set and free a state."""
 
     def save(self) -> c_void_p:
         """The FMU's state."""
         state = c_void_p()
-        self.call(self.state_names()[0], ctypes.byref(state))
+        self.call(self.name("Get", self.state_word), ctypes.byref(state))
         return state
 
     def restore(self, state: c_void_p) -> None:
         """Go back to a saved state."""
-        self.call(self.state_names()[1], state)
+        self.call(self.name("Set", self.state_word), state)
 
     def free_state(self, state: c_void_p) -> None:
         """Free a saved state."""
-        self.call(self.state_names()[2], ctypes.byref(state))
+        self.call(self.name("Free", self.state_word), ctypes.byref(state))
 
     # ---- calling ----
 
@@ -230,18 +261,13 @@ class Setting:
 class Stepper:
     """A step of Co-Simulation.
 
-    ``flags`` is anything but 0 after a step that FMI 3 calls done but that ended early.
+    ``flags[0]`` is not 0 after a step that FMI 3 calls done although it ended early.
     """
 
     do_step: Function
     arguments: tuple[Any, ...]
     flags: Any  # indexable
-    progress: Callable[[], Progress]  # after a step that was not simply done
-
-
-def named(status: int) -> str:
-    """A status in words."""
-    return f"'{STATUS_NAMES[status]}'" if 0 <= status < len(STATUS_NAMES) else f"status {status}"
+    progress: Callable[[], Progress]  # after a step that was not completed
 
 
 if sys.platform == "win32":
@@ -251,7 +277,7 @@ else:
 
 
 def allocators() -> tuple[c_void_p, c_void_p]:
-    """C's own calloc and free, for FMUs that take the host's."""
+    """C's own calloc and free, for FMUs that use the host's functions for memory."""
     return (
         ctypes.cast(_c_library.calloc, c_void_p),
         ctypes.cast(_c_library.free, c_void_p),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from fmus.fmi.calls import CallFailedError
-from fmus.instance import DISCARD, WARNING
+from fmus.fmi.status import DISCARD, WARNING
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from fmus.fmi.calls import Calls
 
-SMALLEST = 1e-13  # step, relative to the greater of the time and 1 s, that is still a step
-LONGEST = 0.02  # [s] step with event indicators: two crossings within one step go unseen
+SMALLEST = 1e-13  # smallest step, relative to the greater of the time and 1 s
+LONGEST = 0.02  # [s] step with event indicators, as two crossings in one step would be missed
 
 
 class IntegrationError(Exception):
@@ -60,12 +60,12 @@ class ContinuousSystem:
             status = self._get_states(self._component, x.ctypes.data_as(c_void_p), self._size)
             self._require(status, "get_states")
         if not np.isfinite(x).all():
-            msg = f"state {_first_odd(x)} of {self.nx} is {x[_first_odd(x) - 1]}"
+            msg = f"state {_first_not_finite(x)} of {self.nx} is {x[_first_not_finite(x) - 1]}"
             raise IntegrationError(msg)
         return x
 
     def nominals(self) -> NDArray[np.float64]:
-        """The states' sizes; what is no positive number counts as 1."""
+        """The states' typical sizes; whatever is no positive number counts as 1."""
         x = np.ones(self.nx)
         if self.nx:
             status = self._get_nominals(self._component, x.ctypes.data_as(c_void_p), self._size)
@@ -111,7 +111,7 @@ class ContinuousSystem:
         status = self._get_indicators(self._component, pointer, self._number)
         self._require(status, "get_indicators")
         if not np.isfinite(self._z).all():
-            odd = _first_odd(self._z)
+            odd = _first_not_finite(self._z)
             msg = f"event indicator {odd} of {self.nz} is {self._z[odd - 1]} at {time:.9g} s"
             raise IntegrationError(msg)
         return self._z > 0.0
@@ -120,7 +120,7 @@ class ContinuousSystem:
         """Which derivative is no finite number, in words; empty if all are."""
         if np.isfinite(slope).all():
             return ""
-        odd = _first_odd(slope)
+        odd = _first_not_finite(slope)
         return f"derivative {odd} of {self.nx} is {slope[odd - 1]} at {time:.9g} s"
 
     def _put(self, x: int) -> None:
@@ -136,7 +136,7 @@ class ContinuousSystem:
 
 
 class Solver(Protocol):
-    """What integrates a continuous system.
+    """Integrates a continuous system.
 
     Attributes:
         x: the states at the end of the last step.
@@ -147,10 +147,10 @@ class Solver(Protocol):
     remedy: str
 
     def restart(self, time: float, x: NDArray[np.float64], nominals: NDArray[np.float64]) -> None:
-        """Begin anew, after an event or with new inputs."""
+        """Start again, after an event or with new inputs."""
 
     def expect_events(self) -> None:
-        """The next step is to be a cautious one: one event may follow soon upon another."""
+        """Make the next step a short one: the next event may follow soon."""
 
     def step(self, stop: float) -> float:
         """One internal step, not beyond ``stop`` [s]; returns where it ends [s].
@@ -203,5 +203,5 @@ def counts(calls: Calls) -> tuple[int, int]:
     return found[0], found[1]
 
 
-def _first_odd(values: NDArray[np.float64]) -> int:
+def _first_not_finite(values: NDArray[np.float64]) -> int:
     return int(np.argmin(np.isfinite(values))) + 1

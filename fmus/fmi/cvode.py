@@ -1,7 +1,7 @@
 """CVode of SUNDIALS: variable order and step, implicit, for stiff systems too.
 
 Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363. FMPy brings the compiled libraries; its own
-solver class is not used: it prints what goes wrong in the FMU, and goes on.
+solver class is not used, because it only prints errors of the FMU and goes on.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from fmus.fmi.continuous import ContinuousSystem
 
-# The solver starts anew at every step of the co-simulation, so that local errors, all of one sign,
-# add up over hundreds of them: of the tolerance, this is what one internal step may use.
+# The solver starts again at every step of the co-simulation. Local errors of one sign add up over
+# hundreds of them, so one internal step may use only this share of the tolerance.
 _SHARE = 0.01
 _BDF, _ONE_STEP = c_int(2), c_int(2)
 _REASONS = {
@@ -39,13 +39,13 @@ def available() -> bool:
     """Whether FMPy has SUNDIALS for this platform."""
     try:
         _libraries()
-    except Exception:  # whatever loading a foreign library can raise
+    except Exception:  # loading a foreign library can raise anything
         return False
     return True
 
 
 def _libraries() -> Any:
-    from fmpy.sundials import libraries  # with a check of SUNDIALS' version
+    from fmpy.sundials import libraries  # checks SUNDIALS' version
 
     return libraries
 
@@ -76,22 +76,22 @@ class Cvode:
 
         self._context = c_void_p()
         self._core["SUNContext_Create"](c_int(0), byref(self._context))
-        self._core["SUNContext_ClearErrHandlers"](self._context)  # they print, as does the logger
+        self._core["SUNContext_ClearErrHandlers"](self._context)  # handlers and logger would print
         self._core["SUNContext_SetLogger"](self._context, None)
         n = c_int64(system.nx)
         self._state, self._absolute, self._between = (
-            self._made(self._vectors["N_VNew_Serial"], n) for _ in range(3)
+            self._create(self._vectors["N_VNew_Serial"], n) for _ in range(3)
         )
         self.x = self._view(self._state)
-        self._memory = self._made(self._cvode["CVodeCreate"], _BDF)
+        self._memory = self._create(self._cvode["CVodeCreate"], _BDF)
         self._require("CVodeInit", self._right_hand_side, c_double(0.0), self._state)
-        self._matrix = self._made(found.sundials_sunmatrixdense["SUNDenseMatrix"], n, n)
+        self._matrix = self._create(found.sundials_sunmatrixdense["SUNDenseMatrix"], n, n)
         solve = found.sundials_sunlinsoldense["SUNLinSol_Dense"]
-        self._linear = self._made(solve, self._state, self._matrix)
+        self._linear = self._create(solve, self._state, self._matrix)
         self._view(self._absolute)[:] = self._tolerance
         self._require("CVodeSVtolerances", c_double(self._tolerance), self._absolute)
         self._require("CVodeSetLinearSolver", self._linear, self._matrix)
-        self._require("CVodeSetMaxNumSteps", c_long(-1))  # we count
+        self._require("CVodeSetMaxNumSteps", c_long(-1))  # giveway counts them
         if system.nz:
             self._require("CVodeSetMaxStep", c_double(LONGEST))
 
@@ -105,7 +105,7 @@ class Cvode:
         self._require("CVodeSetMinStep", c_double(SMALLEST * max(1.0, abs(time))))
 
     def expect_events(self) -> None:
-        """It begins with small steps anyway."""
+        """Nothing to do: CVode always starts with small steps."""
 
     def step(self, stop: float) -> float:  # noqa: D102
         self._undefined = ""
@@ -150,7 +150,7 @@ class Cvode:
             return _GIVE_UP
         return _TRY_SMALLER if self._undefined else 0
 
-    def _made(self, function: Any, *arguments: Any) -> Any:
+    def _create(self, function: Any, *arguments: Any) -> Any:
         """An object of SUNDIALS, in its context."""
         function.restype = c_void_p
         pointer = function(*arguments, self._context)

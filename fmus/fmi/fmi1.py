@@ -10,26 +10,20 @@ from fmus.fmi.calls import (
     Calls,
     CType,
     EventInfo,
-    NoInstanceError,
     Progress,
     Setting,
     Stepper,
     allocators,
 )
 from fmus.fmi.messages import formatted_receiver
-from fmus.instance import ERROR, WARNING
-from fmus.model import Kind
+from fmus.fmi.status import ERROR, WARNING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
-    from fmus.fmi.library import Library
-    from fmus.instance import Journal
-    from fmus.model import Interface, Model
 
 _LAST_SUCCESSFUL_TIME = c_int(2)  # fmiStatusKind
-_LONGEST_WAIT = c_double(0.0)  # [ms] of a tool for its start; 0: as long as it takes
+_LONGEST_WAIT = c_double(0.0)  # [ms] for a tool to start; 0: without limit
 
 
 class _Callbacks(Structure):  # passed by value
@@ -41,7 +35,7 @@ class _Callbacks(Structure):  # passed by value
     ]
 
 
-class _ModelCallbacks(Structure):  # those of Model Exchange end earlier
+class _ModelCallbacks(Structure):  # Model Exchange has no stepFinished
     _fields_: ClassVar = _Callbacks._fields_[:3]
 
 
@@ -74,35 +68,35 @@ class Fmi1Calls(Calls):
         "Boolean": CType(c_byte, "Boolean"),
         "String": CType(c_char_p, "String"),
     }
+    exchange: ClassVar[dict[str, str]] = Calls.exchange | {
+        "get_nominals": "GetNominalContinuousStates"
+    }
 
-    def __init__(
-        self, library: Library, model: Model, interface: Interface, folder: Path, journal: Journal
-    ) -> None:
-        super().__init__(library, model, interface, folder, journal)
-        self._receiver = formatted_receiver(journal)
-        self._exchange = interface.kind == Kind.MODEL_EXCHANGE
+    def find_functions(self) -> None:  # noqa: D102 - as in Calls
+        self.prefix = f"{self.interface.identifier}_fmi"
+        self._receiver = formatted_receiver(self.messages)
         logger = ctypes.cast(self._receiver, c_void_p)
         self._callbacks: Structure = (
             _ModelCallbacks(logger, *allocators())
-            if self._exchange
+            if self.exchanges
             else _Callbacks(logger, *allocators(), None)
         )
         self._first: EventInfo | None = None  # of the initialisation
-        if self._exchange:
+        if self.exchanges:
             names = ("InstantiateModel", "Initialize", "Terminate", "FreeModelInstance")
         else:
             names = ("InstantiateSlave", "InitializeSlave", "TerminateSlave", "FreeSlaveInstance")
         make, self._initialise, self._terminate, free = map(self.name, names)
         self._make = make
-        self._instantiate = library.instantiator(make)
-        self._free = library.function(free)
+        self._instantiate = self.library.instantiator(make)
+        self._free = self.library.function(free)
         for name in (self._initialise, self._terminate):
             self.function(name)
 
-    def instantiate(self) -> None:  # noqa: D102 - as in Calls
+    def instantiate(self) -> None:  # noqa: D102
         name, guid = (c_char_p(t.encode()) for t in (self.interface.identifier, self.model.guid))
         logging = c_byte(1)  # for the reason of a failure: some FMUs give it only then
-        if self._exchange:
+        if self.exchanges:
             component = self._instantiate(name, guid, self._callbacks, logging)
         else:
             component = self._instantiate(
@@ -116,17 +110,11 @@ class Fmi1Calls(Calls):
                 self._callbacks,
                 logging,
             )
-        if not component:
-            raise NoInstanceError(self._make)
-        self.component = c_void_p(component)
-
-    def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102
-        for one in setting:
-            self.apply(one)
+        self.keep_instance(component, self._make)
 
     def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:  # noqa: D102
         self.configure(inputs)
-        if not self._exchange:
+        if not self.exchanges:
             self.call(self._initialise, c_double(0.0), c_byte(0), c_double(0.0))  # no stop time
             return
         self.call(self.name("SetTime"), c_double(0.0))
@@ -137,16 +125,6 @@ class Fmi1Calls(Calls):
 
     def terminate(self) -> None:  # noqa: D102
         self.call(self._terminate)
-
-    def free(self) -> None:  # noqa: D102
-        self._free(self.component)
-        self.component = None
-
-    def name(self, verb: str, suffix: str = "") -> str:  # noqa: D102
-        return f"{self.interface.identifier}_fmi{verb}{suffix}"
-
-    def state_names(self) -> tuple[str, str, str]:  # noqa: D102
-        return self.name("GetFMUstate"), self.name("SetFMUstate"), self.name("FreeFMUstate")
 
     # ---- Co-Simulation ----
 
@@ -172,7 +150,7 @@ class Fmi1Calls(Calls):
         """FMI 1 has no modes."""
 
     def update_discrete_states(self) -> EventInfo:  # noqa: D102
-        if self._first is not None:  # the initialisation was the first update
+        if self._first is not None:  # FMI 1's initialisation is the first update
             first, self._first = self._first, None
             return first
         info = _EventInfo()
@@ -186,13 +164,3 @@ class Fmi1Calls(Calls):
         event = c_byte()
         self.call(self.name("CompletedIntegratorStep"), byref(event))
         return bool(event.value), False
-
-    def exchange_names(self) -> Mapping[str, str]:  # noqa: D102
-        return {
-            "set_time": self.name("SetTime"),
-            "set_states": self.name("SetContinuousStates"),
-            "get_states": self.name("GetContinuousStates"),
-            "get_derivatives": self.name("GetDerivatives"),
-            "get_indicators": self.name("GetEventIndicators"),
-            "get_nominals": self.name("GetNominalContinuousStates"),
-        }

@@ -10,23 +10,17 @@ from fmus.fmi.calls import (
     Calls,
     CType,
     EventInfo,
-    NoInstanceError,
     Progress,
     Setting,
     Stepper,
     allocators,
 )
 from fmus.fmi.messages import formatted_receiver
-from fmus.instance import DISCARD, WARNING
-from fmus.model import Kind
+from fmus.fmi.status import DISCARD, WARNING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
-    from fmus.fmi.library import Library
-    from fmus.instance import Journal
-    from fmus.model import Interface, Model
 
 _LAST_SUCCESSFUL_TIME = c_int(2)  # fmi2StatusKind
 _TERMINATED = c_int(3)
@@ -64,38 +58,28 @@ class Fmi2Calls(Calls):
         "String": CType(c_char_p, "String"),
     }
 
-    def __init__(
-        self, library: Library, model: Model, interface: Interface, folder: Path, journal: Journal
-    ) -> None:
-        super().__init__(library, model, interface, folder, journal)
-        self._receiver = formatted_receiver(journal)
+    def find_functions(self) -> None:  # noqa: D102 - as in Calls
+        self._receiver = formatted_receiver(self.messages)
         logger = ctypes.cast(self._receiver, c_void_p)
         self._callbacks = _Callbacks(logger, *allocators(), None, None)
-        self._instantiate = library.instantiator("fmi2Instantiate")
+        self._instantiate = self.library.instantiator("fmi2Instantiate")
         for name in ("SetupExperiment", "EnterInitializationMode", "ExitInitializationMode"):
             self.function(f"fmi2{name}")
-        self._free = library.function("fmi2FreeInstance")
+        self._free = self.library.function("fmi2FreeInstance")
         self.function("fmi2Terminate")
 
-    def instantiate(self) -> None:  # noqa: D102 - as in Calls
+    def instantiate(self) -> None:  # noqa: D102
         resources = (self.folder / "resources").resolve()
         component = self._instantiate(
             c_char_p(self.interface.identifier.encode()),
-            c_int(0 if self.interface.kind == Kind.MODEL_EXCHANGE else 1),
+            c_int(0 if self.exchanges else 1),
             c_char_p(self.model.guid.encode()),
             c_char_p(resources.as_uri().encode()),
             byref(self._callbacks),
             c_int(0),  # not visible
             c_int(1),  # with logging, for the reason of a failure: some FMUs give it only then
         )
-        if not component:
-            msg = "fmi2Instantiate"
-            raise NoInstanceError(msg)
-        self.component = c_void_p(component)
-
-    def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102
-        for one in setting:
-            self.apply(one)
+        self.keep_instance(component, "fmi2Instantiate")
 
     def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:  # noqa: D102
         self.call(
@@ -107,22 +91,8 @@ class Fmi2Calls(Calls):
             c_double(0.0),
         )
         self.call("fmi2EnterInitializationMode")
-        for one in inputs:
-            self.apply(one)
+        self.configure(inputs)
         self.call("fmi2ExitInitializationMode")
-
-    def terminate(self) -> None:  # noqa: D102
-        self.call("fmi2Terminate")
-
-    def free(self) -> None:  # noqa: D102
-        self._free(self.component)
-        self.component = None
-
-    def name(self, verb: str, suffix: str = "") -> str:  # noqa: D102
-        return f"fmi2{verb}{suffix}"
-
-    def state_names(self) -> tuple[str, str, str]:  # noqa: D102
-        return "fmi2GetFMUstate", "fmi2SetFMUstate", "fmi2FreeFMUstate"
 
     # ---- Co-Simulation ----
 
@@ -149,9 +119,6 @@ class Fmi2Calls(Calls):
 
     # ---- Model Exchange ----
 
-    def enter_event_mode(self) -> None:  # noqa: D102
-        self.call("fmi2EnterEventMode")
-
     def update_discrete_states(self) -> EventInfo:  # noqa: D102
         info = _EventInfo()
         self.call("fmi2NewDiscreteStates", byref(info))
@@ -162,20 +129,7 @@ class Fmi2Calls(Calls):
             next_time=info.nextEventTime if info.nextEventTimeDefined else None,
         )
 
-    def enter_continuous_time_mode(self) -> None:  # noqa: D102
-        self.call("fmi2EnterContinuousTimeMode")
-
     def completed_step(self) -> tuple[bool, bool]:  # noqa: D102
         event, end = c_int(), c_int()
         self.call("fmi2CompletedIntegratorStep", c_int(0), byref(event), byref(end))
         return bool(event.value), bool(end.value)
-
-    def exchange_names(self) -> Mapping[str, str]:  # noqa: D102
-        return {
-            "set_time": "fmi2SetTime",
-            "set_states": "fmi2SetContinuousStates",
-            "get_states": "fmi2GetContinuousStates",
-            "get_derivatives": "fmi2GetDerivatives",
-            "get_indicators": "fmi2GetEventIndicators",
-            "get_nominals": "fmi2GetNominalsOfContinuousStates",
-        }

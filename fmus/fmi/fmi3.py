@@ -15,17 +15,11 @@ from ctypes import (
 )
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from fmus.fmi.calls import Calls, CType, EventInfo, NoInstanceError, Progress, Setting, Stepper
+from fmus.fmi.calls import Calls, CType, EventInfo, Progress, Setting, Stepper
 from fmus.fmi.messages import plain_receiver
-from fmus.model import Kind
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
-    from fmus.fmi.library import Library
-    from fmus.instance import Journal
-    from fmus.model import Interface, Model
 
 
 def _types() -> dict[str, CType]:
@@ -46,20 +40,20 @@ class Fmi3Calls(Calls):
     """The functions of FMI 3.0."""
 
     types: ClassVar[Mapping[str, CType]] = _types()
+    state_word: ClassVar = "FMUState"
+    exchange: ClassVar[dict[str, str]] = Calls.exchange | {
+        "get_derivatives": "GetContinuousStateDerivatives"
+    }
 
-    def __init__(
-        self, library: Library, model: Model, interface: Interface, folder: Path, journal: Journal
-    ) -> None:
-        super().__init__(library, model, interface, folder, journal)
-        self._receiver = plain_receiver(journal)
-        exchange = interface.kind == Kind.MODEL_EXCHANGE
-        self._make = f"fmi3Instantiate{'ModelExchange' if exchange else 'CoSimulation'}"
-        self._instantiate = library.instantiator(self._make)
+    def find_functions(self) -> None:  # noqa: D102 - as in Calls
+        self._receiver = plain_receiver(self.messages)
+        self._make = f"fmi3Instantiate{'ModelExchange' if self.exchanges else 'CoSimulation'}"
+        self._instantiate = self.library.instantiator(self._make)
         for name in ("EnterInitializationMode", "ExitInitializationMode", "Terminate"):
             self.function(f"fmi3{name}")
-        self._free = library.function("fmi3FreeInstance")
+        self._free = self.library.function("fmi3FreeInstance")
 
-    def instantiate(self) -> None:  # noqa: D102 - as in Calls
+    def instantiate(self) -> None:  # noqa: D102
         resources = str((self.folder / "resources").resolve()) + os.sep
         start = (
             c_char_p(self.interface.identifier.encode()),
@@ -69,7 +63,7 @@ class Fmi3Calls(Calls):
             c_bool(True),  # with logging, for the reason of a failure
         )
         environment = (None, ctypes.cast(self._receiver, c_void_p))
-        if self.interface.kind == Kind.MODEL_EXCHANGE:
+        if self.exchanges:
             component = self._instantiate(*start, *environment)
         else:
             event_mode_used = early_return_allowed = c_bool(False)
@@ -77,9 +71,7 @@ class Fmi3Calls(Calls):
             component = self._instantiate(
                 *start, event_mode_used, early_return_allowed, *needed, *environment, None
             )
-        if not component:
-            raise NoInstanceError(self._make)
-        self.component = c_void_p(component)
+        self.keep_instance(component, self._make)
 
     def configure(self, setting: Sequence[Setting]) -> None:  # noqa: D102
         structural: list[Setting] = []
@@ -89,11 +81,9 @@ class Fmi3Calls(Calls):
             (structural if causality == "structuralParameter" else others).append(one)
         if structural:
             self.call("fmi3EnterConfigurationMode")
-            for one in structural:
-                self.apply(one)
+            super().configure(structural)
             self.call("fmi3ExitConfigurationMode")
-        for one in others:
-            self.apply(one)
+        super().configure(others)
 
     def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:  # noqa: D102
         self.call(
@@ -104,25 +94,11 @@ class Fmi3Calls(Calls):
             c_bool(False),  # no stop time
             c_double(0.0),
         )
-        for one in inputs:
-            self.apply(one)
+        self.configure(inputs)
         self.call("fmi3ExitInitializationMode")
-
-    def terminate(self) -> None:  # noqa: D102
-        self.call("fmi3Terminate")
-
-    def free(self) -> None:  # noqa: D102
-        self._free(self.component)
-        self.component = None
-
-    def name(self, verb: str, suffix: str = "") -> str:  # noqa: D102
-        return f"fmi3{verb}{suffix}"
 
     def arguments(self, references: Sequence[int], values: Any) -> tuple[Any, ...]:  # noqa: D102
         return *super().arguments(references, values), c_size_t(len(values))
-
-    def state_names(self) -> tuple[str, str, str]:  # noqa: D102
-        return "fmi3GetFMUState", "fmi3SetFMUState", "fmi3FreeFMUState"
 
     # ---- Co-Simulation ----
 
@@ -141,9 +117,6 @@ class Fmi3Calls(Calls):
 
     # ---- Model Exchange ----
 
-    def enter_event_mode(self) -> None:  # noqa: D102
-        self.call("fmi3EnterEventMode")
-
     def update_discrete_states(self) -> EventInfo:  # noqa: D102
         again, end, nominals, values, defined = (c_bool() for _ in range(5))
         time = c_double()
@@ -156,20 +129,7 @@ class Fmi3Calls(Calls):
             next_time=time.value if defined.value else None,
         )
 
-    def enter_continuous_time_mode(self) -> None:  # noqa: D102
-        self.call("fmi3EnterContinuousTimeMode")
-
     def completed_step(self) -> tuple[bool, bool]:  # noqa: D102
         event, end = c_bool(), c_bool()
         self.call("fmi3CompletedIntegratorStep", c_bool(False), byref(event), byref(end))
         return event.value, end.value
-
-    def exchange_names(self) -> Mapping[str, str]:  # noqa: D102
-        return {
-            "set_time": "fmi3SetTime",
-            "set_states": "fmi3SetContinuousStates",
-            "get_states": "fmi3GetContinuousStates",
-            "get_derivatives": "fmi3GetContinuousStateDerivatives",
-            "get_indicators": "fmi3GetEventIndicators",
-            "get_nominals": "fmi3GetNominalsOfContinuousStates",
-        }

@@ -1,4 +1,4 @@
-"""An FMU's shared library: loading it, finding its functions, letting it go."""
+"""An FMU's shared library: loading it, finding its functions, unloading it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Function = Callable[..., int]
 """A C function that takes ready-made ctypes objects as they are and returns an int."""
 
-_ALTERED_SEARCH_PATH = 0x8  # Windows: what the library depends on is sought beside it
+_ALTERED_SEARCH_PATH = 0x8  # Windows looks for dependencies in the library's folder
 
 
 class Library:
@@ -34,7 +34,8 @@ class Library:
     def __init__(self, path: Path, fmu: Path) -> None:
         self._fmu = fmu
         try:
-            self._library = _load(path)
+            neighbours = [file for file in path.parent.iterdir() if file != path]
+            self._library = _load_with(path, neighbours, ctypes.DEFAULT_MODE)
         except OSError as error:
             reason = printable(str(error).replace(str(path.parent), "").lstrip("/\\"))
             msg = (
@@ -84,19 +85,14 @@ class Library:
             _ctypes.dlclose(handle)
 
 
-def _load(path: Path) -> ctypes.CDLL:
-    beside = [file for file in path.parent.iterdir() if file != path]
-    return _load_with(path, beside, ctypes.DEFAULT_MODE)
-
-
-def _load_with(path: Path, beside: list[Path], mode: int) -> ctypes.CDLL:
-    """Load a library; what it needs and lies beside it is loaded first where the system fails."""
+def _load_with(path: Path, neighbours: list[Path], mode: int) -> ctypes.CDLL:
+    """Load a library; missing dependencies are loaded from its own folder first."""
     while True:
         try:
             return ctypes.CDLL(str(path), mode=mode, winmode=_ALTERED_SEARCH_PATH)
         except OSError as error:
-            missing = next((file for file in beside if file.name in str(error)), None)
+            missing = next((file for file in neighbours if file.name in str(error)), None)
             if missing is None:
                 raise
-            beside.remove(missing)
-            _load_with(missing, beside, ctypes.RTLD_GLOBAL)
+            neighbours.remove(missing)
+            _load_with(missing, neighbours, ctypes.RTLD_GLOBAL)

@@ -1,8 +1,8 @@
-"""What an FMU says: the C functions that receive its messages.
+"""The messages of an FMU: the log that keeps them, and the C functions that receive them.
 
 Those of FMI 1 and 2 are printf formats with arguments, which Python cannot receive as such. They
-are taken from where the platform's calling convention puts them, and memory is read only where it
-is readable: a message like "100% sure" must not bring the process down.
+are taken from the registers and the stack, as the platform's calling convention has it. Memory is
+read only where it is readable: a message like "100% sure" must not crash the process.
 """
 
 from __future__ import annotations
@@ -13,25 +13,56 @@ import platform
 import re
 import struct
 import sys
+from collections import deque
 from contextlib import suppress
 from ctypes import CFUNCTYPE, c_double, c_int, c_uint64, c_void_p
 from typing import TYPE_CHECKING, Any
 
+from fmus.text import printable
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from fmus.instance import Journal
 
 _LONGEST = 4096  # bytes that are read of a message
 _WIDEST = 200  # characters of a number's field
 _PAGE = 4096  # bytes
 
 
-# ---- where variadic arguments are ----
+class MessageLog:
+    """Keeps the last messages of an FMU that report anything but success."""
+
+    def __init__(self) -> None:
+        self._messages: deque[str] = deque(maxlen=3)
+
+    def add(self, status: int, message: bytes | str | None) -> None:
+        """Keep a message on one line, unless it is kept already."""
+        if not status or not message:
+            return
+        text = printable(_decoded(message) if isinstance(message, bytes) else message)
+        if text and text not in self._messages:
+            self._messages.append(text)
+
+    def take(self) -> str:
+        """Return the messages since the last call, and forget them."""
+        text = "; ".join(self._messages)
+        self._messages.clear()
+        return text
+
+
+def _decoded(message: bytes) -> str:
+    """Old tools write Latin-1 where the standard says UTF-8."""
+    try:
+        return message.decode("utf-8")
+    except UnicodeDecodeError:
+        return message.decode("latin-1")
+
+
+# ---- the places of variadic arguments ----
 
 
 def _convention() -> tuple[int, int, int, int]:
-    """After a receiver's five: integer registers to skip, to use; double registers; stack slots."""
+    """After five fixed arguments: integer registers to skip and to use, double registers, stack."""
     machine = platform.machine().lower()
     if sys.platform == "win32":
         return (0, 0, 0, 16) if machine in {"amd64", "x86_64"} else (0, 0, 0, 0)
@@ -82,8 +113,8 @@ class Arguments:
 # ---- receivers ----
 
 
-def formatted_receiver(journal: Journal) -> Any:
-    """The logger of FMI 1 and 2, which writes to ``journal``; keep it while the FMU is loaded."""
+def formatted_receiver(messages: MessageLog) -> Any:
+    """The logger of FMI 1 and 2, which writes to ``messages``; keep it while the FMU is loaded."""
 
     def receive(
         _owner: int | None,
@@ -94,21 +125,21 @@ def formatted_receiver(journal: Journal) -> Any:
         *slots: Any,
     ) -> None:
         if status:
-            with suppress(Exception):  # nothing may be raised into C
-                journal.add(status, expand(read_text(message), Arguments(slots)))
+            with suppress(Exception):  # no exception may reach C
+                messages.add(status, expand(read_text(message), Arguments(slots)))
 
     return _FORMATTED(receive)
 
 
-def plain_receiver(journal: Journal) -> Any:
-    """The same for FMI 3, whose messages are ready to be read."""
+def plain_receiver(messages: MessageLog) -> Any:
+    """The logger of FMI 3, whose messages need no formatting."""
 
     def receive(
         _owner: int | None, status: int, _category: int | None, message: int | None
     ) -> None:
         if status:
             with suppress(Exception):
-                journal.add(status, read_text(message))
+                messages.add(status, read_text(message))
 
     return _PLAIN(receive)
 
@@ -156,7 +187,7 @@ def _converted(match: re.Match[bytes], arguments: Arguments) -> bytes:
     dot = "." if match["precision"] is not None else ""
     pattern = f"%{part['flags']}{width}{dot}{precision}"
     if kind in "eEfFgGaA":
-        if part["length"] == "L":  # a long double: lies elsewhere on every platform
+        if part["length"] == "L":  # a long double has another place on every platform
             return match.group()
         number = arguments.double()
         return (number.hex() if kind in "aA" else f"{pattern}{kind}" % number).encode()
@@ -193,7 +224,7 @@ def _string(address: int, match: re.Match[bytes], precision: str) -> bytes:
 
 
 def read_text(address: int | None) -> bytes:
-    """The C string there, at most some thousand bytes of it; empty where nothing is readable."""
+    """The start of the C string at an address; empty where the memory is not readable."""
     text = b""
     while address and len(text) < _LONGEST:
         here = address + len(text)
@@ -222,7 +253,7 @@ else:
     _write.restype = ctypes.c_ssize_t
 
     def _read_memory(address: int, size: int) -> bytes:
-        """Through a pipe: the kernel refuses to write what is not readable."""
+        """Read memory through a pipe: the kernel refuses to write what is not readable."""
         source, sink = os.pipe()
         try:
             done = _write(sink, address, size)

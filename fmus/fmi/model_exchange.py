@@ -7,7 +7,6 @@ the end of the step; event mode again; and so on (FMI 2.0.4, section 3.2; FMI 3.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from fmus.errors import FmuInterfaceError
@@ -15,20 +14,20 @@ from fmus.fmi import cvode
 from fmus.fmi.calls import CallFailedError
 from fmus.fmi.continuous import ContinuousSystem, IntegrationError, Solver, UndefinedError, locate
 from fmus.fmi.runge_kutta import RungeKutta
-from fmus.fmi.running import RunningInstance
-from fmus.instance import ENDED, ERROR, PENDING, WARNING
+from fmus.fmi.running import Instance
+from fmus.fmi.status import ENDED, ERROR, PENDING, WARNING
 
 if TYPE_CHECKING:
     from fmus.fmi.calls import Calls
+    from fmus.fmi.running import Tick
     from fmus.fmi.values import Transfer
-    from fmus.instance import Tick
 
 TOLERANCE = 1e-6  # relative
 RESOLUTION = 1e-12  # of times, relative to the greater of the time and 1 s
 ROUNDS = 100  # of one event iteration
 EVENTS = 200  # in one step
 INTERNAL_STEPS = 5_000  # in one step
-PATIENCE = 500  # internal steps that CVode may take in one step before another solver is tried
+PATIENCE = 500  # internal steps of CVode in one step, before another solver is tried
 DENSE = 500  # states up to which CVode's dense Jacobian is affordable
 
 
@@ -36,13 +35,7 @@ class _EndedError(Exception):
     """The FMU wants the simulation to end."""
 
 
-@dataclass(frozen=True, eq=False)
-class _SavedState:
-    handle: Any
-    next_event: float | None
-
-
-class ModelExchange(RunningInstance):
+class ModelExchange(Instance):
     """An FMU that is integrated.
 
     Args:
@@ -72,7 +65,7 @@ class ModelExchange(RunningInstance):
         for what in ("set_time", *(("get_derivatives",) if calls.model.states else ())):
             calls.function(calls.exchange_names()[what])
 
-    def prepare(self) -> None:  # noqa: D102 - as in RunningInstance
+    def prepare(self) -> None:  # noqa: D102 - as in Instance
         try:
             self._system = ContinuousSystem(self.calls)
             self._iterate(0.0)
@@ -80,11 +73,11 @@ class ModelExchange(RunningInstance):
             self._solver = self._make_solver()
             self._nominals = self._system.nominals()
         except _EndedError:
-            self.journal.add(ERROR, "it wants to end the simulation at its start")
+            self.messages.add(ERROR, "it wants to end the simulation at its start")
             msg = "the event iteration"
             raise CallFailedError(msg, ENDED) from None
         except (IntegrationError, UndefinedError) as error:
-            self.journal.add(ERROR, str(error))
+            self.messages.add(ERROR, str(error))
             msg = "the initialisation"
             raise CallFailedError(msg, ERROR) from error
 
@@ -95,7 +88,7 @@ class ModelExchange(RunningInstance):
         def tick(time: float, size: float) -> int:
             try:
                 self._begin(time)
-                status = self.look(set_inputs(*set_arguments))
+                status = self.note_status(set_inputs(*set_arguments))
                 if status > WARNING:
                     return status
                 self._run(time, time + size)
@@ -103,19 +96,19 @@ class ModelExchange(RunningInstance):
                 return ENDED
             except CallFailedError as error:
                 if error.status <= PENDING:
-                    self.journal.add(ERROR, str(error))
-                return self.look(error.status)
+                    self.messages.add(ERROR, str(error))
+                return self.note_status(error.status)
             except (IntegrationError, UndefinedError) as error:
-                self.journal.add(ERROR, str(error))
-                return self.look(ERROR)
-            return self.look(get_outputs(*get_arguments))
+                self.messages.add(ERROR, str(error))
+                return self.note_status(ERROR)
+            return self.note_status(get_outputs(*get_arguments))
 
         return tick
 
     @property
     def solver(self) -> Solver:
-        """What integrates now."""
-        assert self._solver is not None  # prepare() made it
+        """The solver in use."""
+        assert self._solver is not None  # prepare() has made it
         return self._solver
 
     # ---- one step ----
@@ -124,8 +117,8 @@ class ModelExchange(RunningInstance):
         """Event mode at the start of a step, before the inputs are set."""
         upcoming = self._next_event
         if upcoming is not None and 0.0 < upcoming - time <= _resolution(time):
-            time = upcoming  # it was left over from the last step
-        self._system.set_time(time)  # FMI 3 does not allow it in event mode
+            time = upcoming  # the event was left over from the last step
+        self._system.set_time(time)  # in event mode FMI 3 does not allow it
         self.calls.enter_event_mode()
 
     def _run(self, time: float, end: float) -> None:
@@ -174,14 +167,14 @@ class ModelExchange(RunningInstance):
             msg = f"its event iteration at {time:.9g} s has not ended after {ROUNDS} rounds"
             raise IntegrationError(msg)
         upcoming = info.next_time
-        # One that is over has been dealt with just now: some FMUs forget to take it back.
+        # A time event that is over has just been handled; some FMUs keep naming it.
         later = upcoming is not None and upcoming > time + _resolution(time)
         self._next_event = upcoming if later else None
 
     def _integrate(self, time: float, stop: float) -> tuple[float, bool]:
-        """Continuous time up to ``stop`` or to an event: where it ended, and whether by an event.
+        """Integrate up to ``stop`` or an event; return where that ended, and whether by an event.
 
-        The FMU is then at that point.
+        The FMU is left at that point.
         """
         system = self._system
         if stop - time <= _resolution(stop):
@@ -210,16 +203,16 @@ class ModelExchange(RunningInstance):
     def _advance(self, time: float, stop: float, count: int) -> float:
         """One internal step from ``time``; ``count`` have been done since the last event."""
         if count == PATIENCE:
-            self._give_way(time)
+            self._fall_back(time)
         try:
             return self.solver.step(stop)
         except IntegrationError:
-            if not self._give_way(time):
+            if not self._fall_back(time):
                 raise
             return self.solver.step(stop)
 
-    def _give_way(self, time: float) -> bool:
-        """Let Runge-Kutta go on where CVode makes no headway, if the choice is ours.
+    def _fall_back(self, time: float) -> bool:
+        """Go on with Runge-Kutta where CVode makes no progress, unless the profile names a solver.
 
         CVode shrinks its steps without end where derivatives jump and no event is declared: dry
         friction written as a sign of the speed holds a car at rest by such jumps.
@@ -257,17 +250,7 @@ class ModelExchange(RunningInstance):
             return cvode.Cvode(system, tolerance)
         return RungeKutta(system, tolerance)
 
-    # ---- states and end ----
-
-    def save(self) -> Any:  # noqa: D102
-        return _SavedState(super().save(), self._next_event)
-
-    def restore(self, state: Any) -> None:  # noqa: D102
-        super().restore(state.handle)
-        self._next_event = state.next_event
-
-    def free_state(self, state: Any) -> None:  # noqa: D102
-        super().free_state(state.handle)
+    # ---- end ----
 
     def stop(self) -> None:  # noqa: D102
         super().stop()

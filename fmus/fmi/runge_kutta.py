@@ -14,29 +14,25 @@ if TYPE_CHECKING:
 
     from fmus.fmi.continuous import ContinuousSystem
 
-FIRST_STEP = 1e-5  # [s] what comes soon after an event must not be leapt over
+FIRST_STEP = 1e-5  # [s] short: another event may follow soon
 SAFETY, LEAST, MOST = 0.9, 0.1, 4.0  # of the next step's length: Hairer, Norsett, Wanner, II.4
 
 
 class RungeKutta:
-    """Steps are done once whole and once in halves; the difference tells the error.
+    """Does each step once whole and once in halves; the difference estimates the error.
 
     Both results combined are of order 5 (Richardson; Hairer, Norsett & Wanner 1993, II.4).
 
     Args:
         system: to integrate.
         tolerance: relative; times a state's nominal value it is the absolute one.
-        fixed_step: [s] plain steps of order 4 of this length instead.
     """
 
     remedy = '`solver = "cvode"`, it is for stiff systems, or a greater `tolerance`,'
 
-    def __init__(
-        self, system: ContinuousSystem, tolerance: float, *, fixed_step: float | None = None
-    ) -> None:
+    def __init__(self, system: ContinuousSystem, tolerance: float) -> None:
         self._system = system
         self._tolerance = tolerance
-        self._fixed = fixed_step
         self._next = FIRST_STEP
         self._slopes = np.zeros((4, system.nx))
         self._trial = np.zeros(system.nx)
@@ -61,9 +57,8 @@ class RungeKutta:
             return stop
         why = ""
         while True:
-            wanted = self._fixed or self._next
-            last = wanted >= (stop - start) * (1.0 - 1e-9)
-            h = stop - start if last else wanted
+            last = self._next >= (stop - start) * (1.0 - 1e-9)
+            h = stop - start if last else self._next
             try:
                 end, error = self._propose(start, x, h)
                 why = f"the local error is {error:.3g} times the tolerance"
@@ -73,7 +68,7 @@ class RungeKutta:
                 break
             factor = max(LEAST, SAFETY * error**-0.2) if isfinite(error) else LEAST
             self._next = h * factor
-            if self._fixed or self._next < SMALLEST * max(1.0, abs(start)):
+            if self._next < SMALLEST * max(1.0, abs(start)):
                 msg = f"{why}; no step from {start:.9g} s is small enough"
                 raise IntegrationError(msg)
         grown = h * (min(MOST, SAFETY * error**-0.2) if error > 0.0 else MOST)
@@ -87,7 +82,7 @@ class RungeKutta:
         return self._propose(self._start, self._x_start, time - self._start)[0]
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Nothing to free."""
 
     def _arrive(
         self, start: float, x_start: NDArray[np.float64], end: float, x: NDArray[np.float64]
@@ -100,8 +95,6 @@ class RungeKutta:
     ) -> tuple[NDArray[np.float64], float]:
         """The states after ``h``, and the error relative to the tolerance."""
         whole = self._classical(time, x, h)
-        if self._fixed:
-            return whole, 0.0
         halves = self._classical(time + 0.5 * h, self._classical(time, x, 0.5 * h), 0.5 * h)
         difference = (halves - whole) / 15.0
         scale = self._tolerance * (self._nominals + np.maximum(np.abs(x), np.abs(halves)))

@@ -2,56 +2,69 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from fmus.errors import FmuPlatformError, FmuStartError, FmuStateError
-from fmus.fmi.calls import CallFailedError, named
+from fmus.errors import FmuStartError
+from fmus.fmi.calls import CallFailedError
+from fmus.fmi.status import ERROR, FATAL, PENDING, WARNING, named
 from fmus.fmi.values import Transfer, settings
-from fmus.instance import ERROR, FATAL, PENDING, WARNING, Instance
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from fmus.description.model import Channel, Value
     from fmus.fmi.calls import Calls
-    from fmus.instance import Tick
-    from fmus.model import Channel
-    from fmus.profile import Value
 
 
-class RunningInstance(Instance):
-    """An instance that is started, stepped, stopped.
+Tick = Callable[[float, float], int]
+"""One step: (start of the step [s], step [s]) -> status."""
+
+
+class Instance(ABC):
+    """An FMU's library, loaded, and one instance of its model that is started, stepped, stopped.
+
+    Whole numbers, booleans and elements of arrays are doubles in the buffers, too.
 
     Args:
         calls: the FMU's functions.
         tolerance: relative, told to the FMU; None: its own.
+
+    Attributes:
+        inputs: one double per input channel; the next :attr:`tick` hands them to the FMU.
+        outputs: one double per output channel, as of the last tick.
+        tick: does one step and fills :attr:`outputs`.
+        messages: the FMU's last messages, and what was found wrong with it.
     """
 
     def __init__(self, calls: Calls, tolerance: float | None) -> None:
-        super().__init__(calls.model, calls.interface)
+        self.model = calls.model
+        self.interface = calls.interface
+        self.path = calls.model.path
         self.calls = calls
         self.tolerance = tolerance
-        self.journal = calls.journal
+        self.messages = calls.messages
+        self.inputs = self.outputs = memoryview(bytearray()).cast("d")
+        self.tick: Tick = _not_started
         self._initialised = False
-        self._get_outputs: Transfer
-        self._worst = 0  # status since the instance was made
+        self._worst = 0  # highest status since the instance was made
         self._untouchable = False  # after a fatal error
-        self._idle = self.tick
 
-    @property
-    def path(self) -> Any:
-        """The FMU's file, for messages."""
-        return self.model.path
-
-    def start(  # noqa: D102 - as in Instance
+    def start(
         self,
         values: Mapping[Channel, Value],
         inputs: Sequence[Channel],
         outputs: Sequence[Channel],
     ) -> None:
+        """Make a new instance with these start values, initialise it at time 0, read its outputs.
+
+        Raises:
+            FmuStartError: the FMU refuses, or a value does not fit its variable.
+        """
         self.stop()
-        self.journal.take()
+        self.messages.take()
         ready = settings(self.calls, values)
         of_inputs = {c.variable.name for c in values if c.variable.causality == "input"}
         try:
@@ -63,7 +76,7 @@ class RunningInstance(Instance):
             self._link(inputs, outputs, values)
         except CallFailedError as error:
             self._worst = max(self._worst, error.status)
-            reason = f"{error}: {self.journal.take() or 'without a message'}"
+            reason = f"{error}: {self.messages.take() or 'without a message'}"
             self.stop()
             msg = f"{self.path}: the FMU does not start: {reason}; {error.remedy}"
             raise FmuStartError(msg) from error
@@ -83,69 +96,35 @@ class RunningInstance(Instance):
             given = values.get(channel)
             if isinstance(given, int | float):
                 self.inputs[index] = given
-        self._get_outputs = out
-        status = self.look(out.function(*out.arguments))
+        status = self.note_status(out.function(*out.arguments))
         if status > WARNING:
             msg = "the reading of its outputs"
             raise CallFailedError(msg, status)
         self.tick = self.make_tick(into, out)
 
-    def prepare(self) -> None:
-        """What is left to do between the initialisation and the first step."""
+    def prepare(self) -> None:  # noqa: B027
+        """What is to be done between the initialisation and the first step."""
 
     @abstractmethod
     def make_tick(self, into: Transfer, out: Transfer) -> Tick:
-        """What does a step."""
+        """The function that does a step."""
 
-    def look(self, status: int) -> int:
-        """A status as FMI knows them, noted for how the instance may be ended."""
+    def note_status(self, status: int) -> int:
+        """The status, or ERROR for one that FMI does not know; the worst one is remembered."""
         if not 0 <= status <= PENDING:
-            self.journal.add(ERROR, f"it returned {named(status)}, which FMI does not know")
+            self.messages.add(ERROR, f"it returned {named(status)}, which FMI does not know")
             status = ERROR
         self._worst = max(self._worst, status)
         return status
 
-    # ---- states ----
-
-    def save(self) -> Any:  # noqa: D102 - as in Instance
-        try:
-            return self.calls.save()
-        except (CallFailedError, FmuPlatformError) as error:
-            raise self._refusal("does not save its state", error) from error
-
-    def restore(self, state: Any) -> None:  # noqa: D102
-        if self._worst == FATAL:
-            msg = f"{self.path}: the FMU failed fatally; start the vehicle again"
-            raise FmuStateError(msg)
-        try:
-            self.calls.restore(state)
-        except (CallFailedError, FmuPlatformError) as error:
-            raise self._refusal("does not return to the saved state", error) from error
-        self._worst = 0
-        status = self.look(self._get_outputs.function(*self._get_outputs.arguments))
-        if status > WARNING:
-            unread = CallFailedError("the reading of its outputs", status)
-            raise self._refusal("does not return to the saved state", unread)
-
-    def free_state(self, state: Any) -> None:  # noqa: D102
-        if self.calls.component and self._worst != FATAL:
-            with suppress(
-                CallFailedError, FmuPlatformError
-            ):  # nothing is left to do for a state that stays
-                self.calls.free_state(state)
-
-    def _refusal(self, what: str, error: Exception) -> FmuStateError:
-        said = self.journal.take() or str(error)
-        reason = "its binary lacks the function" if isinstance(error, FmuPlatformError) else said
-        return FmuStateError(f"{self.path}: the FMU {what}: {reason}; start the vehicle again")
-
     # ---- end ----
 
-    def stop(self) -> None:  # noqa: D102
-        self.tick = self._idle
-        self._untouchable |= self._worst == FATAL  # then nothing may be called any more
+    def stop(self) -> None:
+        """End and free the instance, if there is one; the library stays loaded."""
+        self.tick = _not_started
+        self._untouchable |= self._worst == FATAL  # after a fatal error no function may be called
         if self.calls.component and self._worst != FATAL:
-            with suppress(Exception):  # nothing is lost if an FMU cannot end in peace
+            with suppress(Exception):  # an FMU that cannot be ended properly does no harm
                 if self._initialised and self._worst < ERROR:
                     self.calls.terminate()
             with suppress(Exception):
@@ -154,7 +133,12 @@ class RunningInstance(Instance):
         self._initialised = False
         self._worst = 0
 
-    def close(self) -> None:  # noqa: D102
+    def close(self) -> None:
+        """Free the instance and the library."""
         self.stop()
         if not self._untouchable:
             self.calls.library.close()
+
+
+def _not_started(_start: float, _step: float) -> int:
+    return ERROR

@@ -1,4 +1,4 @@
-"""Values on their way into and out of an FMU: start values, and the buffers of every step."""
+"""Start values of an FMU, and the buffers that carry its inputs and outputs in every step."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ from fmus.fmi.calls import CType, Setting
 from fmus.text import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
+    from fmus.description.model import Channel, Value, Variable
     from fmus.fmi.calls import Calls
-    from fmus.model import Channel, Variable
-    from fmus.profile import Value
 
 # ---- start values ----
 
@@ -42,11 +41,11 @@ def settings(calls: Calls, values: Mapping[Channel, Value]) -> list[Setting]:
 
 
 def start_list(variable: Variable) -> list[Any]:
-    """The start values that the FMU itself names; 0 or nothing where it names none."""
+    """The start values in the model description; 0 or an empty text where there are none."""
     text = variable.kind == "String"
     words = [variable.start] if text or variable.scalar else variable.start.split()
     words = [word for word in words if word] or [""]
-    if len(words) != variable.size:  # one value stands for all
+    if len(words) != variable.size:  # one value counts for all elements
         words = [words[0]] * variable.size
     return words if text else [_number(word) for word in words]
 
@@ -109,7 +108,7 @@ def _unfit(calls: Calls, variable: Variable, value: Any, expected: str) -> FmuSt
 
 
 def _negated(variable: Variable, value: Any) -> Any:
-    """What stands under a negated alias's reference, or the alias of it: not, or minus."""
+    """The value of a negated alias: not, or minus, the value of the other variable."""
     return 1 - value if variable.is_boolean else -value
 
 
@@ -141,10 +140,11 @@ class Transfer:
         self.arguments: tuple[Any, ...] = ()
         types = [_type(calls, channel) for channel in channels]
         for index, channel in enumerate(channels):
-            self.view[index] = _start(channel)
+            self.view[index] = float(start_list(channel.variable)[channel.element])
         if not channels:
             return
-        if len(set(types)) == 1 and types[0].type is c_double and _all_plain(channels):
+        plain = all(c.variable.scalar and not c.variable.negated for c in channels)
+        if plain and len(set(types)) == 1 and types[0].type is c_double:
             self.function = calls.function(calls.name(verb, types[0].suffix))
             references = [channel.variable.reference for channel in channels]
             self.arguments = calls.arguments(references, buffer)
@@ -155,25 +155,20 @@ class Transfer:
             )
             for ctype in dict.fromkeys(types)
         ]
-        self.function = self._set if verb == "Set" else self._get
+        self._setting = verb == "Set"
+        self.function = self._copy
 
-    def _set(self) -> int:
+    def _copy(self) -> int:
+        """Set or get all groups; returns the worst status."""
         worst = 0
         for group in self._groups:
-            group.fill(self.view)
+            if self._setting:
+                group.fill(self.view)
             status = group.function(*group.arguments)
             if status not in (0, 1):
                 return status
-            worst = max(worst, status)
-        return worst
-
-    def _get(self) -> int:
-        worst = 0
-        for group in self._groups:
-            status = group.function(*group.arguments)
-            if status not in (0, 1):
-                return status
-            group.empty(self.view)
+            if not self._setting:
+                group.empty(self.view)
             worst = max(worst, status)
         return worst
 
@@ -238,14 +233,6 @@ def _type(calls: Calls, channel: Channel) -> CType:
         )
         raise FmuVariableError(msg)
     return ctype
-
-
-def _start(channel: Channel) -> float:
-    return float(start_list(channel.variable)[channel.element])
-
-
-def _all_plain(channels: Iterable[Channel]) -> bool:
-    return all(c.variable.scalar and not c.variable.negated for c in channels)
 
 
 def _nothing() -> int:

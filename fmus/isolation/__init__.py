@@ -1,20 +1,21 @@
-"""Any vehicle FMU: one that is not ours runs in a process of its own."""
+"""Foreign vehicle FMUs run in a process of their own, so that a crash of one ends no run."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fmus.bundled import is_bundled
-from fmus.isolation.vehicle import IsolatedVehicle
-from fmus.vehicle import VehicleFmu
+from fmus.driving.vehicle import VehicleFmu
+from fmus.isolation.isolated_vehicle import IsolatedVehicle
+from fmus.profile.bundled import is_bundled
 
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
 
-    from fmus.profile import Value, VehicleProfile
-    from fmus.vehicle_protocol import Vehicle
+    from fmus.description.model import Value
+    from fmus.interfaces.vehicle import Vehicle
+    from fmus.profile.vehicle_profile import VehicleProfile
 
 __all__ = ["IsolatedVehicle", "open_vehicle"]
 
@@ -32,9 +33,9 @@ def open_vehicle(
     Args:
         path: the .fmu file.
         step_size: [s].
-        profile: which variable plays which part; None: see :func:`fmus.preparation.prepare`.
+        profile: which variable plays which part; None: see :func:`fmus.prepare`.
         start_values: further start values by variable name.
-        isolated: in a process of its own; None: unless it is a shipped FMU.
+        isolated: run it in a process of its own; None: yes, unless it is a shipped FMU.
 
     Raises:
         FmuError: see :class:`IsolatedVehicle`.

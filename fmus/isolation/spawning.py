@@ -1,4 +1,4 @@
-"""Interpreters that run a part of this package, and their end."""
+"""Starting Python interpreters that run a module of this package, and killing them."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from fmus.errors import FmuCrashError
-from fmus.isolation.burial import PrintedTail
-from fmus.isolation.remains import scratch_of
+from fmus.isolation.cleanup import scratch_of
+from fmus.isolation.exit_report import PrintedTail
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 IMPORT_TIMEOUT: Final = 120.0  # [s] on the busiest machine
-DEATH_TIMEOUT: Final = 10.0  # [s] a killed process that does not go: the system is in trouble
+END_TIMEOUT: Final = 10.0  # [s] for a killed process to end; only a failing system takes longer
 _BOOT: Final = (
     "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
     "from fmus.isolation.{module} import main; main(*arguments)"
@@ -34,15 +34,15 @@ def spawn(
     output: Any,
     pass_fds: Sequence[int] = (),
 ) -> subprocess.Popen[bytes]:
-    """An interpreter like this one that runs ``main`` of a module of this package.
+    """Start an interpreter like this one that runs ``main`` of a module of this package.
 
     Args:
         path: of the FMU, named in errors.
-        module: its name.
-        arguments: of ``main``: numbers and texts.
-        folder: the vehicle's temporary one.
-        output: where it prints.
-        pass_fds: files that it inherits.
+        module: name of the module in this package.
+        arguments: of its ``main``: numbers and texts.
+        folder: the vehicle's temporary folder.
+        output: where the interpreter prints.
+        pass_fds: file descriptors that it inherits.
 
     Raises:
         FmuCrashError: it cannot be started.
@@ -66,15 +66,15 @@ def spawn(
             cwd=scratch,
             env=os.environ | {"TMPDIR": scratch},
             pass_fds=pass_fds,
-            start_new_session=True,  # Ctrl-C in the terminal is not for it
-            creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # likewise on Windows
+            start_new_session=True,  # Ctrl-C in the terminal must not reach it
+            creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # the same on Windows
         )
     except OSError as error:
         raise no_process(path, str(error).encode()) from None
 
 
 def _absolute(entry: str) -> str:
-    """An entry of sys.path as it is wherever a process works; those of import hooks stay."""
+    """An entry of sys.path as an absolute path; entries that are no path (import hooks) stay."""
     return str(Path(entry).absolute()) if Path(entry).exists() else entry
 
 
@@ -89,7 +89,7 @@ def kill_group(process: subprocess.Popen[bytes]) -> None:
 
 
 def no_process(path: Path, printed: bytes) -> FmuCrashError:
-    """The error that the FMU can have no process, with the last line that was printed."""
+    """The error that no process can be started for the FMU, with the last line it printed."""
     tail = PrintedTail()
     tail.add(printed)
     reason = tail.last_line() or "it ended at once"

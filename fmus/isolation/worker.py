@@ -1,4 +1,4 @@
-"""The FMU's own process: runs one vehicle for one episode, as told through a socket."""
+"""The FMU's own process: it runs one vehicle for one episode, as requested through a socket."""
 
 from __future__ import annotations
 
@@ -15,12 +15,14 @@ from pathlib import Path
 from time import sleep
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from fmus.description.model import Kind
+from fmus.driving.vehicle import VehicleFmu
 from fmus.errors import FmuError
-from fmus.isolation.protocol import (
+from fmus.isolation.wire import (
+    CONNECTION_LOST,
     DONE,
     FAILED,
     LOAD,
-    LOST,
     QUIT,
     START,
     STEP,
@@ -28,20 +30,18 @@ from fmus.isolation.protocol import (
     receive,
     reply,
 )
-from fmus.model import Kind
 from fmus.text import printable
-from fmus.vehicle import VehicleFmu
 
 if TYPE_CHECKING:
-    from fmus.preparation import Prepared
+    from fmus.profile.preparation import Prepared
 
 
-_WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: in JSON below its limit
+_WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: JSON stays below its limit
 
 
 @dataclass(frozen=True)
 class Order:
-    """What the process is to run: a vehicle, and the folder that holds its unpacked FMU."""
+    """What the process shall run: a vehicle, and the folder that holds its unpacked FMU."""
 
     prepared: Prepared
     folder: Path
@@ -51,7 +51,7 @@ class Order:
         return VehicleFmu.unpacked(self.prepared, self.folder)
 
     def import_ahead(self) -> None:
-        """Import what the vehicle would import, so that its workers find it done."""
+        """Import what the vehicle will need, so that forked workers need not import it again."""
         if self.prepared.wiring.interface.kind is Kind.MODEL_EXCHANGE:
             from fmus.fmi import cvode
 
@@ -66,11 +66,11 @@ def read_order(folder: str) -> Order:
 
 
 def main(port: int, token: str, folder: str) -> NoReturn:
-    """Be a worker that nobody watches over; connect back to the vehicle's process.
+    """Run as a worker without a watchdog; connect back to the vehicle's process.
 
     Args:
         port: on this machine.
-        token: by which the vehicle knows us.
+        token: proves to the vehicle that this is its worker.
         folder: the vehicle's temporary folder.
     """
     parent = os.getppid()
@@ -78,7 +78,7 @@ def main(port: int, token: str, folder: str) -> NoReturn:
     def watch() -> None:
         while os.getppid() == parent:
             sleep(1.0)
-        os._exit(LOST)
+        os._exit(CONNECTION_LOST)
 
     threading.Thread(target=watch, daemon=True).start()
     connection = socket.create_connection(("127.0.0.1", port))
@@ -88,25 +88,25 @@ def main(port: int, token: str, folder: str) -> NoReturn:
 
 
 def serve(order: Order, connection: socket.socket) -> NoReturn:
-    """Answer requests until the connection ends; then the process ends."""
-    status = LOST
-    with suppress(BaseException):  # whatever happened, the other side sees the connection end
+    """Answer requests until the connection is closed; then end the process."""
+    status = CONNECTION_LOST
+    with suppress(BaseException):  # whatever happens, the other side notices the closed connection
         _protect()
         _Worker(order, connection).run()
         status = 0
-    os._exit(status)  # neither the FMU's exit handlers nor ours
+    os._exit(status)  # runs neither the FMU's exit handlers nor ours
 
 
 def _protect() -> None:
-    """What the FMU prints comes out line by line; a crash leaves no core file."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the other process's business
+    """Have the FMU's output flushed line by line, and no core file written at a crash."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by the vehicle's process
     if sys.platform != "win32":
         import resource
 
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         libc = ctypes.CDLL(None)
         for name in ("stdout", "__stdoutp"):
-            with suppress(ValueError):  # the name is that of another C library
+            with suppress(ValueError):  # this C library has another name for it
                 line_wise = 1  # _IOLBF: Linux and macOS agree
                 libc.setvbuf(ctypes.c_void_p.in_dll(libc, name), None, line_wise, ctypes.c_size_t())
 
@@ -125,7 +125,7 @@ class _Worker:
                 text = self._do(what, first, second)
             except FmuError as error:
                 self._refuse(number, type(error).__name__, str(error))
-            except Exception as error:  # a fault of ours, or an FMU that tampers with Python
+            except Exception as error:  # a fault of giveway, or an FMU that tampers with Python
                 self._refuse(number, "", f"{type(error).__name__}: {printable(error)}")
             else:
                 reply(self._connection, DONE, number, self._state, text)
@@ -142,10 +142,10 @@ class _Worker:
             vehicle.start(position=first, speed=second)
         elif what == QUIT and vehicle is not None:
             vehicle.close()
-        return self._news()
+        return self._new_warnings()
 
-    def _news(self) -> Text | None:
-        """Warnings that have not been told."""
+    def _new_warnings(self) -> Text | None:
+        """Warnings that have not been sent yet."""
         warnings = self._vehicle.warnings if self._vehicle is not None else []
         if len(warnings) == self._warned:
             return None
@@ -163,5 +163,5 @@ class _Worker:
     def _refuse(self, number: int, kind: str, message: str) -> None:
         text: dict[str, Any] = {"error": kind, "message": printable(message, _MESSAGE)}
         text["time"] = 0.0 if self._vehicle is None else self._vehicle.time
-        text |= self._news() or {}
+        text |= self._new_warnings() or {}
         reply(self._connection, FAILED, number, self._state, text)

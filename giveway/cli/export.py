@@ -1,4 +1,4 @@
-"""``giveway export controller``: the regulator, as configured, as an FMU for other masters."""
+"""``giveway export controller``: the controller, as configured, as an FMU for other masters."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
-from controller import Pid
-from fmus.controller_fmu.export import export_controller
-from fmus.controller_fmu.parameters import CONTROLLER_FILES, ControllerParameters
+from controller import Pid, SpeedController
 from fmus.errors import FmuError
+from fmus.sources.export import export_controller
+from fmus.sources.parameters import CONTROLLER_FILES, ControllerParameters
 from giveway.cli.run import layers_of
 from giveway.config.loading import load
-from giveway.cosimulation.assembly import control_step
-from giveway.ego.controllers import make_regulator
+from giveway.cosimulation.preflight import control_step
+from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ConfigError, ControlError, ResultsError
 from giveway.scenario_files import read_scenario
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig, RunConfig
 
 
 def export_command(
@@ -78,17 +78,17 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
     raise ConfigError(msg)
 
 
-def _parameters(config: RunConfig, time_step: float) -> ControllerParameters:
-    """What giveway's own regulator of one ego is set to."""
-    regulator = make_regulator(config, time_step)
-    if not config.controller.endswith("-paper") or not isinstance(regulator.pid, Pid):
+def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
+    """What giveway's own controller of one ego is set to."""
+    own = make_controller(config, time_step)
+    if not isinstance(own, SpeedController) or not isinstance(own.pid, Pid):
         msg = f"controller = {config.controller}: only the paper's controllers can be exported"
         raise ConfigError(f"{msg}; choose --controller mpc-paper or pid-paper")
     if config.safety_layer:
         msg = "[safety] enabled = true: the safety layer is no part of an exported controller"
         raise ConfigError(f"{msg}; leave it out with --no-safety")
-    pid = regulator.pid.parameters
-    model = config.vehicle if regulator.mpc is None else regulator.mpc.model
+    pid = own.pid.parameters
+    model = config.vehicle if own.mpc is None else own.mpc.model
     try:
         return ControllerParameters(
             mass=model.mass,
@@ -106,7 +106,7 @@ def _parameters(config: RunConfig, time_step: float) -> ControllerParameters:
             integral_gain=pid.K_i,
             derivative_gain=pid.K_d,
             horizon=config.mpc.horizon,
-            mpc=regulator.mpc is not None,
+            mpc=own.mpc is not None,
         )
     except FmuError as error:
         raise ControlError(str(error)) from error

@@ -10,11 +10,11 @@ from rich.table import Table
 from rich.text import Text
 
 from fmus import FmuError
-from fmus.bundled import is_bundled
 from fmus.checking import Finding, check, opener_of, without_guards
 from fmus.checking.self_check import plain
-from fmus.preparation import choose_profile, prepare
-from fmus.profile import Axis
+from fmus.profile.bundled import is_bundled
+from fmus.profile.preparation import choose_profile, prepare
+from fmus.profile.vehicle_profile import Axis
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fmus.checking import CheckReport
-    from fmus.profile import VehicleProfile
+    from fmus.profile.vehicle_profile import VehicleProfile
 
 _STYLES = {"pass": "green", "skip": "cyan", "warn": "yellow", "fail": "bold red"}
 

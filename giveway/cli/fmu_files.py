@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from fmus import FmuError
-from fmus.profile import read_profile
+from fmus.profile.vehicle_profile import read_profile
 from giveway.errors import ConfigError, ResultsError
 from giveway.figures import save_figure
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from fmus.profile import VehicleProfile
+    from fmus.profile.vehicle_profile import VehicleProfile
 
 
 def require_fmu(path: Path) -> None:

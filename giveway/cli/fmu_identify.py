@@ -15,7 +15,7 @@ from fmus import FmuError
 from fmus.checking import identify, opener_of, require_converged
 from fmus.checking.identification import SPEEDS
 from fmus.checking.profile_file import profile_text, with_model
-from fmus.preparation import choose_profile, prepare
+from fmus.profile.preparation import choose_profile, prepare
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
 from giveway.errors import ConfigError, ResultsError, VehicleError
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fmus.checking import Identification
-    from fmus.profile import VehicleProfile
+    from fmus.profile.vehicle_profile import VehicleProfile
 
 
 def identify_command(
@@ -166,11 +166,11 @@ def _text(path: Path, file: Path | None, profile: VehicleProfile) -> str:
     """The profile's text, with the user's comments where there is a file."""
     if file is not None:
         return file.read_text(encoding="utf-8-sig")
-    from fmus.bundled import is_bundled
+    from fmus.profile.bundled import is_bundled
 
     if not is_bundled(path):
-        from fmus.drafts.drafting import draft_profile
-        from fmus.fmi.reading import read_model
+        from fmus.description.reading import read_model
+        from fmus.profile.draft_profile import draft_profile
 
         text: str = draft_profile(read_model(path)).toml
         tomllib.loads(text)

@@ -12,22 +12,23 @@ from rich.table import Table
 from rich.text import Text
 
 from fmus import FmuError
-from fmus.archive import open_archive
-from fmus.binaries import this_platform
-from fmus.drafts.drafting import draft_profile
+from fmus.archive.gate import open_archive
+from fmus.description.binaries import binary_of, this_platform
+from fmus.description.model import Unit
+from fmus.description.reading import model_of
+from fmus.description.units import quantity, to_si
 from fmus.errors import FmuPlatformError
-from fmus.fmi.reading import binary_of, findings, model_of
-from fmus.model import Unit
+from fmus.fmi.validation import findings
+from fmus.profile.draft_profile import draft_profile
 from fmus.text import printable
-from fmus.units import quantity, to_si
 from giveway.cli.exit import fail
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from fmus.drafts.draft import Draft
-    from fmus.model import Interface, Model, Variable
+    from fmus.description.model import Interface, Model, Variable
+    from fmus.profile.draft import Draft
 
 SHOWN: Final = 12  # rows of a list
 SHOWN_FINDINGS: Final = 4

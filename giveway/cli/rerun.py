@@ -14,7 +14,7 @@ from giveway.precompile import compile_kernels_once
 from giveway.records.progress import Ending
 from giveway.results.folder import check_folder
 from giveway.studies.folder import StudyFolder
-from giveway.studies.rerun import config_of, rerun
+from giveway.studies.rerun import checked_run, rerun
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -37,16 +37,16 @@ def rerun_command(
     """
     console = Console(quiet=outputs.quiet)
     folder = StudyFolder.open(study)
-    config = config_of(folder, run)
+    checked = checked_run(folder, run, predictions=predictions)
     out = outputs.folder or study / "reruns" / run
     check_folder(out, force=outputs.force)
     compile_kernels_once(console)
-    with run_progress(console, config) as watcher:
+    with run_progress(console, checked.config) as watcher:
         result = rerun(
             folder,
             run,
             out,
-            predictions=predictions,
+            checked=checked,
             force=outputs.force,
             pictures=outputs.pictures,
             watcher=watcher,

@@ -13,11 +13,9 @@ from giveway.cli.exit import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
 from giveway.config.layers import Layer, read_toml
 from giveway.config.loading import load
-from giveway.crowd.zone import Zone
 from giveway.errors import GivewayError
 from giveway.records.progress import Ending
 from giveway.results.folder import check_folder, require_parquet
-from giveway.scenario_files import read_scenario
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -66,27 +64,22 @@ def run_command(
         GivewayError: one line that says what to do.
     """
     console = Console(quiet=outputs.quiet)
-    layers = layers_of(scenario, config, settings)
-    effective, found = load(layers)
+    effective, found = load(layers_of(scenario, config, settings))
     folder = outputs.folder or default_folder(effective, found.name)
     check_folder(folder, force=outputs.force)
     if outputs.parquet:
         require_parquet()
-    files = read_scenario(found.config_file)
-    files.require_inputs()
-    Zone(effective.crowd.zone, effective.crowd.zone_margin)
-    from giveway.cosimulation.assembly import control_step
-    from giveway.ego.vehicle import require_vehicles
+    from giveway.cosimulation.preflight import preflight
     from giveway.precompile import compile_kernels_once
 
-    require_vehicles(effective.each_ego(), control_step(effective, files))
+    checked = preflight(effective, found)
     compile_kernels_once(console)
-    from giveway.api import run_layers
+    from giveway.api import run_checked
 
     with run_progress(console, effective) as watcher:
         try:
-            result = run_layers(
-                layers,
+            result = run_checked(
+                checked,
                 results=folder,
                 force=outputs.force,
                 parquet=outputs.parquet,

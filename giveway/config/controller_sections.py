@@ -6,6 +6,9 @@ from typing import Literal
 
 from giveway.config.option import Preset, Section, option
 
+CORRIDOR_MARGIN = 0.25
+"""[m] The corridor of a vehicle is wider than its body by this much on each side."""
+
 
 class RegulationConfig(Section):
     """What both controllers aim at, and who counts as being in front."""
@@ -17,7 +20,8 @@ class RegulationConfig(Section):
     corridor_half_width: float | None = option(
         None,
         "m",
-        "in front: the body centre is this close to the ego's path; none: half its width + 0.25",
+        "in front: the body centre is this close to the ego's path; none: half its width + "
+        f"{CORRIDOR_MARGIN:g}",
         gt=0,
         le=20,
     )

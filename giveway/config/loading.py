@@ -46,8 +46,9 @@ def load(layers: Sequence[Layer]) -> tuple[RunConfig, Scenario]:
         settings = {key: value for key, value in layer.values.items() if key != "description"}
         own = [Layer(layer.origin, settings)]
     layers = [*own, *layers]
-    config = build_config([*_identified(layers), *layers])
-    own_model = _model_of(build_config(layers))
+    identified = _identified(layers)
+    config = build_config([*identified, *layers])
+    own_model = _model_of(build_config(layers) if identified else config)
     config = _with_one_ego(_each_identified(config, own_model), layers)
     return _placed(config, scenario), scenario
 

@@ -97,11 +97,11 @@ class RunConfig(Section):
 
     @model_validator(mode="after")
     def _check_egos(self) -> RunConfig:
-        for config in self.each_ego():
-            config.require_speeds_in_reach()
+        for ego in self.each_ego():
+            ego.require_speeds_in_reach()
         return self
 
-    def each_ego(self) -> tuple[RunConfig, ...]:
+    def each_ego(self) -> tuple[EgoRunConfig, ...]:
         """The configuration of each ego, complete and without ``egos``.
 
         Raises:
@@ -109,21 +109,17 @@ class RunConfig(Section):
         """
         if self.ego.none:
             return ()
-        alone = self.model_copy(update={"egos": ()})
-        if self.egos:
-            drivers = [alone._with(number, entry) for number, entry in enumerate(self.egos)]
-        else:
-            drivers = [alone]
-        return tuple(one for driver in drivers for one in driver._one_per_vehicle())
+        entries = [self._with(*entry) for entry in enumerate(self.egos)] or [self]
+        return tuple(own for entry in entries for own in entry._one_per_vehicle())
 
     def _with(self, number: int, entry: dict[str, Any]) -> RunConfig:
-        """This configuration with the keys of one entry of ``egos``."""
+        """This configuration with the keys of one entry of ``egos``, and without ``egos``."""
         unknown = sorted(set(entry) - set(EGO_TABLES))
         if unknown:
             expected = ", ".join(EGO_TABLES)
             msg = f"egos[{number}]: unknown key '{unknown[0]}'; expected one of {expected}"
             raise ValueError(msg)
-        values = self.model_dump()
+        values = self.model_dump(exclude={"egos"})
         for key, value in entry.items():
             values[key] = {**values[key], **value} if isinstance(value, dict) else value
         try:
@@ -134,18 +130,29 @@ class RunConfig(Section):
             msg = f"egos[{number}]: {key} = {first['input']!r}: {first['msg']}"
             raise ValueError(msg) from None
 
-    def _one_per_vehicle(self) -> list[RunConfig]:
-        names = self.ego.take_over
-        if len(names) < 2:
-            return [self]
+    def _one_per_vehicle(self) -> list[EgoRunConfig]:
+        """One for each vehicle that is taken over, or the one of an inserted ego."""
+        taken = [{"take_over": (name,)} for name in self.ego.take_over] or [{}]
         return [
-            self.model_copy(update={"ego": self.ego.model_copy(update={"take_over": (name,)})})
-            for name in names
+            EgoRunConfig.model_construct(
+                _fields_set=self.model_fields_set,
+                **{**dict(self), "ego": self.ego.model_copy(update=own), "egos": ()},
+            )
+            for own in taken
         ]
+
+
+class EgoRunConfig(RunConfig):
+    """What a run's configuration amounts to for one of its egos; ``egos`` is empty."""
+
+    @model_validator(mode="after")
+    def _check_egos(self) -> EgoRunConfig:
+        self.require_speeds_in_reach()
+        return self
 
     @property
     def ego_id(self) -> str:
-        """SUMO's id of the ego, of a configuration for one."""
+        """SUMO's id of the ego."""
         return self.ego.take_over[0] if self.ego.take_over else self.ego.id
 
     @property
@@ -166,11 +173,6 @@ class RunConfig(Section):
             return self.pid.buffer_distance
         linear = self.controller == "pid-tuned" and self.tuned_pid.profile == "linear"
         return self.tuned_pid.buffer_distance if linear else 0.0
-
-    @property
-    def corridor_margin(self) -> float:
-        """What the corridor is wider than half the vehicle, on each side [m]."""
-        return 0.25
 
     def require_speeds_in_reach(self) -> None:
         """Make sure that the MPC may drive at the speeds asked for.

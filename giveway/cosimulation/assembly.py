@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,16 +9,17 @@ import numpy as np
 
 from giveway.config.presets import parameters_of
 from giveway.cosimulation.departures import Departures
+from giveway.cosimulation.preflight import substeps_of
 from giveway.cosimulation.yielding import Yielding
 from giveway.crowd.exchange import Exchange
 from giveway.crowd.roster import Roster
 from giveway.crowd.spawn import PREFIX, Spawned, spawn
 from giveway.crowd.zone import Zone
-from giveway.ego.controllers import make_driver, make_regulator
-from giveway.ego.vehicle import model_remark, require_vehicles
+from giveway.ego.controllers import make_controller, make_driver
+from giveway.ego.vehicle import model_remark
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
-from giveway.scenario_files import StartOptions, free_prefix, read_scenario
+from giveway.scenario_files import StartOptions, free_prefix
 from giveway.sumo.session import SumoSession
 from giveway.sumo.types import all_types, inserted_type
 from giveway.walkways import WalkNetwork
@@ -29,7 +29,6 @@ from pedestrian_model import (
     CrowdModel,
     PedestrianModelError,
     Surroundings,
-    arrived,
 )
 
 if TYPE_CHECKING:
@@ -37,15 +36,9 @@ if TYPE_CHECKING:
     from contextlib import ExitStack
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig, RunConfig
+    from giveway.cosimulation.preflight import CheckedRun
     from giveway.ego.ego import Driver
-    from giveway.scenario_files import ScenarioFiles
-    from sumo_scenarios import Scenario
-
-ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
-LONGEST_STEP = 0.05  # [s] of the co-simulation: the paper's, and what the crowd is stable at
 
 
 @dataclass(frozen=True)
@@ -84,14 +77,9 @@ class Parts:
             )
         return (*self.remarks, *remarks)
 
-    def arrived(self, crowd: Crowd) -> NDArray[np.bool_]:
-        """(n,) who of ``crowd`` has reached the last way-point."""
-        return arrived(crowd, ARRIVAL_RADIUS)
-
 
 def assemble(
-    config: RunConfig,
-    scenario: Scenario,
+    checked: CheckedRun,
     stack: ExitStack,
     *,
     outputs: Path | None = None,
@@ -100,12 +88,10 @@ def assemble(
 ) -> Parts:
     """Set up every part and let SUMO run up to the first departure; ``stack`` closes everything.
 
-    The cheap and the fallible come first, SUMO before the vehicles: what is wrong with a request
-    is said before anything runs.
+    SUMO comes before the vehicles: what is wrong with a scenario is said before any FMU runs.
 
     Args:
-        config: the run's.
-        scenario: its scenario.
+        checked: what is to be run.
         stack: closes SUMO and the FMUs.
         outputs: folder for SUMO's own outputs; None drops them.
         native_log: file for what SUMO prints; None: a temporary one.
@@ -114,13 +100,9 @@ def assemble(
     Raises:
         GivewayError: a part cannot be set up as asked.
     """
-    files = read_scenario(scenario.config_file)
-    zone = Zone(config.crowd.zone, config.crowd.zone_margin)
-    egos = config.each_ego()
-    _require_distinct(egos)
-    time_step = control_step(config, files)
-    require_vehicles(egos, time_step)
-    regulators = [make_regulator(ego, time_step) for ego in egos]
+    config, files, zone = checked.config, checked.files, checked.zone
+    egos, time_step = checked.egos, checked.time_step
+    controllers = [make_controller(ego, time_step) for ego in egos]
     walkers = not zone.nowhere and not (zone.follows_egos and not egos)
     moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
     sumo = stack.enter_context(
@@ -128,17 +110,17 @@ def assemble(
             files, _start_options(config, moved, outputs), _types(egos), native_log=native_log
         )
     )
-    substeps = _substeps(time_step, sumo.step_length)
+    substeps = substeps_of(time_step, sumo.step_length)
     remarks = list(sumo.start.remarks)
     network = WalkNetwork.read(files.net_file) if walkers or config.crowd.walls else None
     if network is not None:
         zone.require_overlap(network.boundary)
         remarks += _remarks_on(network, files.net_file)
     drivers = tuple(
-        make_driver(ego, regulator, time_step, stack)
-        for ego, regulator in zip(egos, regulators, strict=True)
+        make_driver(ego, controller, time_step, stack)
+        for ego, controller in zip(egos, controllers, strict=True)
     )
-    departures = Departures(drivers, sumo, scenario.config_file, time_step)
+    departures = Departures(drivers, sumo, files.config_file, time_step)
     departures.run_until_first(goes_on)
     roster = _roster(config, departures, sumo, files.net_file, network)
     exchange = None
@@ -170,14 +152,6 @@ def assemble(
     )
 
 
-def _require_distinct(egos: Sequence[RunConfig]) -> None:
-    names = [ego.ego_id for ego in egos]
-    for name in names:
-        if names.count(name) > 1:
-            msg = f"ego '{name}': two egos have this id; give each [[egos]] entry its own"
-            raise ConfigError(msg)
-
-
 def _start_options(config: RunConfig, moved: bool, outputs: Path | None) -> StartOptions:
     sumo = config.sumo
     seed = config.seed if sumo.seed == "run" else sumo.seed
@@ -196,7 +170,7 @@ def _start_options(config: RunConfig, moved: bool, outputs: Path | None) -> Star
     )
 
 
-def _types(egos: Sequence[RunConfig]) -> str:
+def _types(egos: Sequence[EgoRunConfig]) -> str:
     """The vehicle types of all egos to be inserted, and of those to be taken over."""
     bodies = {
         inserted_type(ego.ego.id): VehicleShape(
@@ -265,37 +239,3 @@ def _crowd(spawned: Spawned) -> Crowd:
         )
     except PedestrianModelError as error:
         raise CrowdError(f"pedestrians cannot be placed: {error}") from error
-
-
-def control_step(config: RunConfig, files: ScenarioFiles) -> float:
-    """The control step [s] of a run of these files."""
-    step_length = _whole_milliseconds(config.sumo.step_length or files.step_length)
-    return _time_step(config.time_step, step_length)
-
-
-def _whole_milliseconds(step_length: float) -> float:
-    """SUMO's step [s] as it keeps it: half a millisecond is rounded up."""
-    return math.floor(1000.0 * step_length + 0.5) / 1000.0
-
-
-def _time_step(wanted: float | None, step_length: float) -> float:
-    """The control step [s]: as wanted, or 0.05 s, or the longest below that divides SUMO's."""
-    if wanted is not None:
-        return wanted
-    return step_length / max(1, math.ceil(step_length / LONGEST_STEP - 1e-9))
-
-
-def _substeps(time_step: float, step_length: float) -> int:
-    """How many control steps make one SUMO step.
-
-    Raises:
-        ConfigError: they do not fit a whole number of times.
-    """
-    substeps = round(step_length / time_step)
-    if substeps < 1 or abs(substeps * time_step - step_length) > 1e-9:
-        msg = (
-            f"--time-step {time_step:g}: SUMO's step of {step_length:g} s is not a whole multiple "
-            "of it; choose another time step [s] or --sumo-step-length, or leave it out"
-        )
-        raise ConfigError(msg)
-    return substeps

@@ -111,13 +111,12 @@ class Departures:
         return all(driver.taken_over for driver in self.waiting)
 
     def note(self) -> None:
-        """Once after each SUMO step: who departed in it."""
-        if self.waiting:
-            departed = self._session.vehicles.departed()
-            if departed and len(self._departed) < _NAMES_KEPT:
-                self._departed.update(dict.fromkeys(departed))
-            elif departed:
-                self._departed.update((d.id, None) for d in self.waiting if d.id in departed)
+        """Once after each SUMO step, while anybody waits: who departed in it."""
+        departed = self._session.vehicles.departed()
+        if departed and len(self._departed) < _NAMES_KEPT:
+            self._departed.update(dict.fromkeys(departed))
+        elif departed:
+            self._departed.update((d.id, None) for d in self.waiting if d.id in departed)
 
     def due(self) -> list[Ego]:
         """The egos that enter the road now."""

@@ -30,16 +30,18 @@ from giveway.crowd.disturbance import disturbance_of
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.processes.heartbeat import Phase
 from giveway.records.progress import Ending, Progress, Watcher
-from pedestrian_model import PedestrianModelError
+from pedestrian_model import PedestrianModelError, arrived
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from giveway.cosimulation.assembly import Parts
     from giveway.ego.ego import Ego
+    from giveway.processes.interrupts import DeferredInterrupt
     from giveway.recording.recorder import Recorder
 
 Array = NDArray[np.float64]
+
+
+ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
 
 
 def looks_ahead(period: float | None, time_step: float) -> int:
@@ -83,14 +85,14 @@ class Loop:
         self._fronts = np.empty((0, 2))
         self._disturbance = disturbance_of(parts.config, parts.crowd_model)
 
-    def run(self, watcher: Watcher | None, interrupted: Callable[[], bool]) -> Ending:
+    def run(self, watcher: Watcher | None, interrupt: DeferredInterrupt) -> Ending:
         """Step until every ego is done, a limit or an interrupt.
 
         Raises:
             GivewayError: a part failed; everything recorded so far stays recorded.
         """
         try:
-            ending = self._run(watcher, interrupted)
+            ending = self._run(watcher, interrupt)
         except FmuError as error:
             raise VehicleError(f"step {self._k}: {error}") from error
         except ControllerError as error:
@@ -116,7 +118,7 @@ class Loop:
             f"{state[bad[0]].tolist()}; expected finite numbers [m, m/s]"
         )
 
-    def _run(self, watcher: Watcher | None, interrupted: Callable[[], bool]) -> Ending:
+    def _run(self, watcher: Watcher | None, interrupt: DeferredInterrupt) -> Ending:
         parts = self._parts
         limit = np.inf if parts.config.time_limit is None else parts.config.time_limit
         last_step = min(limit, parts.sumo.end - self._start) / self._time_step - 1e-6
@@ -140,7 +142,7 @@ class Loop:
             if parts.sumo.end == np.inf and self._standstill.too_long(self._egos, elapsed):
                 self.remarks.append(self._standstill.remark)
                 return Ending.TIME_LIMIT
-            if interrupted():
+            if interrupt.requested:
                 return Ending.INTERRUPTED
             self._advance()
 
@@ -179,8 +181,9 @@ class Loop:
             if ego.lights.systems:
                 states = parts.sumo.light_states(ego.lights.systems)
                 ego.lights.update(states, ego.front, ego.vehicle.speed)
-        if parts.yielding is not None:
-            parts.yielding.update(self._mirror.background, self._roster.crowd)
+        background, yielding = self._mirror.background, parts.yielding
+        if yielding is not None and (background.ids or yielding.limited):
+            yielding.update(background, self._roster.crowd)
         self._record_background()
         self._recorder.ledger(self._roster.ledger)
 
@@ -209,7 +212,7 @@ class Loop:
             look_at = perf_counter()
             seen = ego.look(row, mirror.poses, crowd, surroundings)
             decide_at = perf_counter()
-            decision = ego.decide(self._k, seen)
+            decision = ego.decide(self._k, time, seen)
             controlled_at = perf_counter()
             recorder.ego(ego.id, ego.row(time, seen, decision))
             predicted = ego.expected(seen) if self._looks else None
@@ -282,7 +285,8 @@ class Loop:
             mirror.carry_on()
         else:
             mirror.push(self._k, self._egos, self._roster)
-            parts.departures.note()
+            if parts.departures.waiting:
+                parts.departures.note()
         ended = perf_counter()
         self._recorder.timing(
             self._predicting,
@@ -304,7 +308,7 @@ class Loop:
         else:
             people = roster.present, len(roster.ids)
             self._disturbance.advance(crowd, *now, *people)
-        there = parts.arrived(roster.crowd)
+        there = arrived(roster.crowd, ARRIVAL_RADIUS)
         if not np.count_nonzero(there):
             return
         names = roster.release(there)  # they leave SUMO with its next step

@@ -13,7 +13,7 @@ import numpy as np
 from giveway.crowd.noise import planar_noise
 
 if TYPE_CHECKING:
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig
     from pedestrian_model import Crowd
 
 _STREAM = 0x5EE  # tells these draws from others of the same seed
@@ -26,10 +26,10 @@ class Perception:
     see the same, whatever else runs beside them.
 
     Args:
-        config: of this ego alone.
+        config: of the ego.
     """
 
-    def __init__(self, config: RunConfig) -> None:
+    def __init__(self, config: EgoRunConfig) -> None:
         self._noise = config.perception.position_noise
         known = config.perception.desired_speeds == "known"
         self._speed = None if known else config.crowd.desired_speed_mean

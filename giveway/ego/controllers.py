@@ -15,10 +15,10 @@ from controller import (
     PidParameters,
     Planner,
     PlannerParameters,
-    PlanningRegulator,
+    PlanningController,
     ReferenceParameters,
-    Regulator,
     SafetyParameters,
+    SpeedController,
     TunedPid,
     TunedPidParameters,
 )
@@ -32,17 +32,18 @@ from pedestrian_model import Predictor
 if TYPE_CHECKING:
     from contextlib import ExitStack
 
-    from giveway.config import RunConfig
+    from controller import Controller
+    from giveway.config import EgoRunConfig
 
 
 _WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut at two in x and in y
 
 
-def make_regulator(config: RunConfig, time_step: float) -> Regulator | PlanningRegulator:
+def make_controller(config: EgoRunConfig, time_step: float) -> Controller:
     """The controller of one ego.
 
     Args:
-        config: of this ego alone.
+        config: of the ego.
         time_step: of the co-simulation [s].
 
     Raises:
@@ -51,7 +52,7 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator | PlanningR
     regulation = config.regulation
     try:
         if config.controller == "pid-tuned":
-            return Regulator(None, _tuned_pid(config, time_step))
+            return SpeedController(None, _tuned_pid(config, time_step))
         if config.controller == "mpc":
             return _planning(config, time_step)
         pid = Pid(
@@ -67,7 +68,7 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator | PlanningR
             time_step,
         )
         if not config.optimises:
-            return Regulator(None, pid)
+            return SpeedController(None, pid)
         model = LongitudinalModel(
             mass=config.vehicle.mass,
             friction=config.vehicle.friction,
@@ -88,10 +89,10 @@ def make_regulator(config: RunConfig, time_step: float) -> Regulator | PlanningR
         )
     except ControllerError as error:
         raise ControlError(str(error)) from error
-    return Regulator(mpc, pid)
+    return SpeedController(mpc, pid)
 
 
-def _tuned_pid(config: RunConfig, time_step: float) -> TunedPid:
+def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
     """The well-tuned PID, with the actuator's limits of the MPC."""
     regulation, tuned, vehicle = config.regulation, config.tuned_pid, config.vehicle
     return TunedPid(
@@ -118,7 +119,7 @@ def _tuned_pid(config: RunConfig, time_step: float) -> TunedPid:
     )
 
 
-def _planning(config: RunConfig, time_step: float) -> PlanningRegulator:
+def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
     """The planning MPC, with the tuned PID where a hard corridor leaves it no plan."""
     regulation, planner, limits = config.regulation, config.planner, config.mpc
     margin = model_margin(config, time_step)
@@ -146,22 +147,25 @@ def _planning(config: RunConfig, time_step: float) -> PlanningRegulator:
         ),
     )
     model = LongitudinalModel(config.vehicle.mass, config.vehicle.friction, time_step)
-    return PlanningRegulator(Planner(model, parameters), _tuned_pid(config, time_step))
+    return PlanningController(Planner(model, parameters), _tuned_pid(config, time_step))
 
 
-def plan_steps(config: RunConfig, time_step: float) -> int:
+def plan_steps(config: EgoRunConfig, time_step: float) -> int:
     """The planner's horizon in steps."""
     return max(4, round(config.planner.horizon / time_step))
 
 
 def make_driver(
-    config: RunConfig, regulator: Regulator | PlanningRegulator, time_step: float, stack: ExitStack
+    config: EgoRunConfig,
+    controller: Controller,
+    time_step: float,
+    stack: ExitStack,
 ) -> Driver:
     """One ego's FMU, loaded, with its controller.
 
     Args:
-        config: of this ego alone.
-        regulator: its controller.
+        config: of the ego.
+        controller: decides on its force.
         time_step: of the co-simulation [s].
         stack: closes the FMU.
 
@@ -174,21 +178,18 @@ def make_driver(
         vehicle, description = open_for(config, time_step, stack)
     except FmuError as error:
         raise VehicleError(str(error)) from error
-    predictor = None
-    if isinstance(regulator, PlanningRegulator):
-        predictor = Predictor(expected, time_step, regulator.planner.horizon)
-    elif regulator.mpc is not None:
-        predictor = Predictor(expected, time_step, config.mpc.horizon)
+    ahead = controller.horizon
+    predictor = Predictor(expected, time_step, ahead) if ahead else None
     fastest = max(crowd.max_speed, expected.max_speed)
     safety = safety_parameters(config, time_step) if config.safety_layer else None
-    return Driver(config, vehicle, description, regulator, predictor, fastest, safety)
+    return Driver(config, vehicle, description, controller, predictor, fastest, safety)
 
 
-def safety_parameters(config: RunConfig, time_step: float) -> SafetyParameters:
+def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameters:
     """The limits that the safety layer counts on; the body's width is not known yet.
 
     Args:
-        config: of this ego alone.
+        config: of the ego.
         time_step: of the co-simulation [s].
     """
     safety, people = config.safety, parameters_of(config.crowd.preset)

@@ -68,6 +68,7 @@ class Corridor:
         self._ahead = np.full(horizon, np.inf)
         self._vehicles_ahead = np.full(horizon, np.inf)
         self._nobody = np.full(horizon, np.inf)
+        self._steps, self._distance, self._speed = (np.zeros(0) for _ in range(3))
 
     @property
     def nobody(self) -> Array:
@@ -144,14 +145,21 @@ class Corridor:
             front: the front bumper's station now [m].
             speed: the ego's speed [m/s].
         """
-        path = self.path
-        fill_ego_poses(
+        path, steps = self.path, poses.shape[0]
+        if len(self._steps) != steps:
+            self._steps, self._distance, self._speed = (
+                np.arange(steps, dtype=float),
+                *np.empty((2, steps)),
+            )
+        np.multiply(self._steps, speed * self.time_step, out=self._distance)
+        self._speed[:] = speed
+        fill_poses(
             path.vertices,
             path.stations,
             path.headings,
             front,
-            speed * self.time_step,
-            speed,
+            self._distance,
+            self._speed,
             self.body_length,
             row,
             poses,
@@ -159,21 +167,33 @@ class Corridor:
 
 
 @kernel
-def fill_ego_poses(
+def fill_poses(
     vertices: Array,
     stations: Array,
     headings: Array,
     front: float,
-    advance: float,
-    speed: float,
+    distance: Array,
+    speeds: Array,
     length: float,
     row: int,
     poses: Array,
 ) -> None:
-    """The body's centre, heading and speed at steps 0 ... N-1 of a prediction."""
+    """Fill ``poses[:, row]`` with a body's centre, heading and speed at steps 0 ... N-1.
+
+    Args:
+        vertices: of the path, as ``stations`` and ``headings``.
+        stations: see ``vertices``.
+        headings: see ``vertices``.
+        front: the front bumper's station now [m].
+        distance: (at least N,) [m] driven until each step.
+        speeds: (at least N,) [m/s] at each step.
+        length: of the body [m].
+        row: to be filled.
+        poses: (N, m, 7).
+    """
     for i in range(poses.shape[0]):
-        x, y, heading = body_pose(vertices, stations, headings, front + i * advance, length)
+        x, y, heading = body_pose(vertices, stations, headings, front + distance[i], length)
         poses[i, row, 0] = x - 0.5 * length * np.cos(heading)
         poses[i, row, 1] = y - 0.5 * length * np.sin(heading)
         poses[i, row, 2] = heading
-        poses[i, row, 3] = speed
+        poses[i, row, 3] = speeds[i]

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from controller import Observation, PlanningRegulator, Situation
+from controller import Observation
 from fmus import FmuError
+from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import NO_LEADER, Corridor, Leader
 from giveway.ego.foresight import CrowdForesight
+from giveway.ego.path_view import PathView
 from giveway.ego.safety import Guard
 from giveway.errors import ControlError, VehicleError
 from giveway.records.rows import EgoRow
@@ -20,9 +22,9 @@ from giveway.records.rows import EgoRow
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from controller import Decision, Regulator, SafetyParameters
+    from controller import Controller, Decision, SafetyParameters
     from fmus import Vehicle
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig
     from giveway.ego.lights import Lights
     from giveway.geometry.bodies import VehicleShape
     from giveway.geometry.path import EgoPath, Pose
@@ -35,7 +37,6 @@ _BEYOND = 0.5  # [m] beyond the stopping place no plan may lead
 _RECOVERY = 2.0  # [s] in which a safe distance that is lost is to be regained
 _STRAIGHT = 1.0  # [s] of a long horizon in which others go straight on; then the road may bend
 _PREDICT_ALL = 150  # persons; of a larger crowd only who matters to the ego is predicted
-_INTERACTION = 8.0  # [m] the VCI model's radius of interaction
 
 
 @dataclass
@@ -43,15 +44,16 @@ class Driver:
     """A controller with its FMU, ready for its vehicle to depart.
 
     Attributes:
-        config: of this ego alone.
+        config: of the ego.
         description: of the FMU, for the manifest.
+        controller: decides on its force.
         predictor: None: the controller looks at the present only.
     """
 
-    config: RunConfig
+    config: EgoRunConfig
     vehicle: Vehicle
     description: dict[str, object]
-    regulator: Regulator | PlanningRegulator
+    controller: Controller
     predictor: Predictor | None
     walking_speed_limit: float  # [m/s]
     safety: SafetyParameters | None  # None: nothing watches over the controller
@@ -84,10 +86,8 @@ class Driver:
 
     @property
     def horizon(self) -> int:
-        """Steps that the controller looks ahead."""
-        if isinstance(self.regulator, PlanningRegulator):
-            return self.regulator.planner.horizon
-        return self.config.mpc.horizon if self.config.optimises else 1
+        """Steps that are looked ahead; the first one in any case."""
+        return max(1, self.controller.horizon)
 
 
 class Seen(NamedTuple):
@@ -101,9 +101,9 @@ class Seen(NamedTuple):
     whom: NDArray[np.bool_] | None  # of the crowd has been predicted; None: everybody
     closest: float  # station [m] of ``person`` in truth, however it is seen: for the tables
     crowd: Crowd  # the pedestrians as they are seen
-    foresight: (
-        CrowdForesight | None
-    )  # of the planning controller, where somebody may get in the way
+    foresight: CrowdForesight | None  # for a controller that foresees, if somebody may come
+    poses: Array  # (N, m, 7) of all vehicles at steps 0 ... N-1
+    row: int  # the ego's among them
 
 
 class Ego:
@@ -142,16 +142,17 @@ class Ego:
         half_width = config.regulation.corridor_half_width
         self.corridor = Corridor(
             path,
-            half_width=shape.width / 2 + config.corridor_margin
-            if half_width is None
-            else half_width,
+            half_width=shape.width / 2 + CORRIDOR_MARGIN if half_width is None else half_width,
             horizon=driver.horizon,
             time_step=time_step,
             walking_speed_limit=driver.walking_speed_limit,
             body_length=shape.length,
-            straight=round(_STRAIGHT / time_step) if config.controller == "mpc" else None,
+            straight=round(_STRAIGHT / time_step) if driver.controller.foresees else None,
         )
         self._span = driver.horizon * time_step  # [s]
+        predictor = driver.predictor
+        self._interaction = 0.0 if predictor is None else predictor.parameters.interaction_radius
+        self._view = PathView(path)
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
         self._perception = Perception(config)
         safety = driver.safety
@@ -165,7 +166,7 @@ class Ego:
     def _foresee(self) -> CrowdForesight | None:
         """What the planning controller asks how people would answer to a manoeuvre."""
         driver, planner = self.driver, self.config.planner
-        if not isinstance(driver.regulator, PlanningRegulator) or driver.predictor is None:
+        if not driver.controller.foresees or driver.predictor is None:
             return None
         return CrowdForesight(
             driver.predictor,
@@ -173,7 +174,6 @@ class Ego:
             self.shape,
             half_width=self.corridor.half_width,
             growth=planner.margin_growth,
-            conflict_time=driver.regulator.planner.parameters.manoeuvres.conflict_time,
             planned_speed=planner.planned_speed,
             clearance=self.driver.clearance,
             braking=self.config.mpc.force_limit / self.config.vehicle.mass,
@@ -221,7 +221,9 @@ class Ego:
         front, speed, corridor = self.front, self.vehicle.speed, self.corridor
         truth, crowd = crowd, self._perception.observe(crowd)
         person, reachable = corridor.closest_now(crowd.position, front)
-        closest = person if crowd is truth else corridor.closest_now(truth.position, front)[0]
+        closest = person
+        if not self._perception.exact:
+            closest, _ = corridor.closest_now(truth.position, front)
         ahead = corridor.nobody
         predictor, predicted, whom, foresight = self.driver.predictor, None, None, None
         if reachable and predictor is not None:
@@ -242,7 +244,9 @@ class Ego:
             if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
                 allowed = stop + _BEYOND + self._origin
                 ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
-        return Seen(person, leader, stop, ahead, predicted, whom, closest, crowd, foresight)
+        return Seen(
+            person, leader, stop, ahead, predicted, whom, closest, crowd, foresight, poses, row
+        )
 
     def _relevant(self, crowd: Crowd, speed: float) -> NDArray[np.bool_] | None:
         """(n,) whom of a large crowd the plan, or somebody whom it depends on, may meet.
@@ -256,25 +260,25 @@ class Ego:
         x, y, _ = self.pose
         strongest = config.mpc.force_limit / config.vehicle.mass
         reach = (speed + strongest * span / 2.0) * span + config.regulation.safe_distance
-        reach += self.driver.walking_speed_limit * span + _INTERACTION
+        reach += self.driver.walking_speed_limit * span + self._interaction
         reach += self.shape.length + self.corridor.half_width
         d_x, d_y = crowd.position[:, 0] - x, crowd.position[:, 1] - y
         within: NDArray[np.bool_] = d_x * d_x + d_y * d_y <= reach * reach
         return within
 
-    def decide(self, step: int, seen: Seen) -> Decision:
+    def decide(self, step: int, time: float, seen: Seen) -> Decision:
         """The force for the step from t_k on; kept for :meth:`advance`.
+
+        Args:
+            step: k, for messages.
+            time: t_k on SUMO's clock [s].
+            seen: what the ego reacts to.
 
         Raises:
             ControlError: the controller gave no finite force.
         """
-        regulation = self.config.regulation
-        origin = self.front + self._origin
-        stop = seen.stop + self._origin + regulation.safe_distance
-        gap = min(seen.person, seen.leader.station, stop) - origin
-        free = seen.stop == math.inf == seen.leader.station
-        limit = math.inf if free else self._speed_limit(seen)
-        decision = self._ask(seen, gap, limit)
+        controller = self.driver.controller
+        decision = controller.control(self._observation(time, seen))
         if not math.isfinite(decision.force):
             msg = (
                 f"controller '{decision.acting}' of '{self.id}' at step {step}: force = "
@@ -283,23 +287,38 @@ class Ego:
             )
             raise ControlError(msg)
         if self._guard is not None:
-            allowed = self._guard.watch(decision, self.front, self.vehicle.speed, seen.crowd)
-            if allowed is not decision:
-                self.driver.regulator.applied(allowed.force)
-                decision = allowed
+            safe = self._guard.overrule(decision, self.front, self.vehicle.speed, seen.crowd)
+            if safe is not None:
+                controller.applied(safe.force)
+                decision = safe
         self._force = decision.force
         return decision
 
-    def _ask(self, seen: Seen, gap: float, limit: float) -> Decision:
-        """The controller's own decision."""
-        regulator, speed = self.driver.regulator, self.vehicle.speed
-        origin = self.front + self._origin
-        if not isinstance(regulator, PlanningRegulator):
-            return regulator.control(Observation(origin, speed, gap, seen.ahead, limit))
-        allowed = None
-        if seen.ahead is not self.corridor.nobody:
-            allowed = seen.ahead - (origin + self.config.regulation.safe_distance)
-        return regulator.control(Situation(speed, gap, limit, allowed, seen.foresight))
+    def _observation(self, time: float, seen: Seen) -> Observation:
+        """What the controller is shown."""
+        front, vehicle = self.front, self.vehicle
+        safe_distance = self.config.regulation.safe_distance
+        origin = front + self._origin
+        stop = seen.stop + self._origin + safe_distance
+        free = seen.stop == math.inf == seen.leader.station
+        self._view.station = front
+        return Observation(
+            position=origin,
+            speed=vehicle.speed,
+            gap=min(seen.person, seen.leader.station, stop) - origin,
+            obstacle_positions=seen.ahead,
+            speed_limit=math.inf if free else self._speed_limit(seen),
+            safe_distance=safe_distance,
+            foresight=seen.foresight,
+            time=time,
+            acceleration=vehicle.acceleration,
+            force=self._force,
+            stop_gap=seen.stop - front,
+            path=self._view,
+            people=seen.crowd,
+            vehicles=seen.poses,
+            row=seen.row,
+        )
 
     def expected(self, seen: Seen) -> Array | None:
         """(N, n, 2) [m] where the decision expects people at steps 1 ... N, until the next look."""

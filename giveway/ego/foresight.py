@@ -1,21 +1,23 @@
-"""What a manoeuvre would lead to: the crowd predicted under it, seen from the ego on its way."""
+"""What a manoeuvre would lead to: the crowd predicted under it, seen from the ego on its path."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from controller.planning import Prospect
+from controller import Prospect
+from giveway.ego.corridor import fill_poses
 from giveway.ego.in_front import closest_in_front, window
-from giveway.ego.threats import Alarm, courses
+from giveway.ego.threats import Alarm, conflicts_and_calm
 from giveway.geometry.kernel import kernel
 from giveway.geometry.path import body_pose
+from giveway.metrics.critical import CRITICAL_TTC
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from controller.planning import Manoeuvre
+    from controller import Manoeuvre
     from giveway.geometry.bodies import VehicleShape
     from giveway.geometry.path import EgoPath
     from pedestrian_model import Crowd, Predictor, Surroundings
@@ -23,23 +25,36 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 PASSED = 0.3  # [m] behind the front bumper people still count as in front: they are squeezed past
-_EVERY = 2  # steps from one look for conflicts to the next
+_EVERY = 2  # steps from one search for conflicts to the next
+
+
+class View(NamedTuple):
+    """The ego's body and how it looks ahead, as the kernel takes it."""
+
+    length: float  # of the body [m]
+    width: float  # [m]
+    half_width: float  # of the corridor [m]
+    growth: float  # of it with the look-ahead, on each side [m/s]
+    conflict_time: float  # time to collision of a conflict [s]
+    time_step: float  # [s]
 
 
 class CrowdForesight:
     """Predicts the crowd under one manoeuvre after the other.
 
+    The manoeuvres are tried in poses of its own: what other egos see does not change by them.
+
     Args:
         predictor: of N steps.
-        path: the ego's way.
+        path: the ego's.
         shape: its body.
         half_width: of the corridor [m].
         growth: of it with the look-ahead, on each side [m/s].
-        conflict_time: time to collision of a conflict [s].
         planned_speed: people are predicted under the manoeuvre, else under the present speed.
         clearance: [m] that the safety layer keeps to people's bodies.
         braking: [m/s^2] of the ego at most.
         safety_layer: whether there is one: only then it matters what it would do.
+        conflict_time: time to collision of a conflict [s] (FHWA-HRT-08-051).
     """
 
     def __init__(
@@ -50,29 +65,39 @@ class CrowdForesight:
         *,
         half_width: float,
         growth: float,
-        conflict_time: float,
         planned_speed: bool,
         clearance: float,
         braking: float,
         safety_layer: bool,
+        conflict_time: float = CRITICAL_TTC,
     ) -> None:
         N = predictor.horizon
         self._predictor = predictor
         self._path = path
-        self._shape = shape
-        self._half_width = half_width
-        self._growth = growth
-        self._conflict_time = conflict_time
         self._planned_speed = planned_speed
-        self._clearance = clearance
-        self._braking = braking
-        self._layer = safety_layer
+        # Plain tuples: each call would look the class of a named one up anew (2 us).
+        self._view = tuple(
+            View(shape.length, shape.width, half_width, growth, conflict_time, predictor.time_step)
+        )
+        people = predictor.parameters
+        self._alarm = tuple(
+            Alarm(
+                people.body_radius,
+                clearance,
+                people.max_acceleration,
+                people.max_speed,
+                braking,
+                safety_layer,
+            )
+        )
+        self._length = shape.length
         self._constant = np.arange(N + 1) * predictor.time_step
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
         self._prospect = Prospect(np.empty(N), np.zeros(N), np.zeros(N))
         self._predicted = np.empty((N, 0, 2))
         self._best = np.empty((N, 0, 2))
-        self._stale, self._preferred = True, False
+        self._poses = np.empty((N, 0, 7))
+        self._copied, self._stale, self._preferred = False, True, False
 
     def look(
         self,
@@ -88,14 +113,14 @@ class CrowdForesight:
         Args:
             people: whom to predict.
             surroundings: the walls and lights that they heed.
-            poses: (N, m, 7) of all vehicles at steps 0 ... N-1; the ego's row is overwritten.
+            poses: (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
             row: the ego's.
             front: the front bumper's station [m].
             speed: the ego's [m/s].
         """
         self._people, self._surroundings = people, surroundings
-        self._poses, self._row, self._front, self._now = poses, row, front, speed
-        self._stale, self._preferred = True, False
+        self._given, self._row, self._front, self._now = poses, row, front, speed
+        self._copied, self._stale, self._preferred = False, True, False
 
     @property
     def best(self) -> Array | None:
@@ -111,7 +136,7 @@ class CrowdForesight:
             self._speed[:] = self._now
             self._predict(self._distance, self._speed)
         gap, conflicts, calm = self._prospect
-        path, people = self._path, self._predictor.parameters
+        path = self._path
         assess(
             path.vertices,
             path.stations,
@@ -120,19 +145,8 @@ class CrowdForesight:
             self._front,
             manoeuvre.distance,
             manoeuvre.speed,
-            self._shape.length,
-            self._shape.width,
-            self._half_width,
-            self._growth,
-            self._conflict_time,
-            self._predictor.time_step,
-            Alarm(
-                people.body_radius,
-                self._clearance,
-                people.max_acceleration,
-                self._braking,
-                self._layer,
-            ),
+            self._view,
+            self._alarm,
             gap,
             conflicts,
             calm,
@@ -148,40 +162,28 @@ class CrowdForesight:
 
     def _predict(self, distance: Array, speed: Array) -> None:
         path = self._path
-        fill_planned_poses(
+        if not self._copied:
+            self._copy()
+        fill_poses(
             path.vertices,
             path.stations,
             path.headings,
             self._front,
             distance,
             speed,
-            self._shape.length,
+            self._length,
             self._row,
             self._poses,
         )
         self._predicted = self._predictor.predict(self._people, self._poses, self._surroundings)
         self._stale = False
 
-
-@kernel
-def fill_planned_poses(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
-    front: float,
-    distance: Array,
-    speeds: Array,
-    length: float,
-    row: int,
-    poses: Array,
-) -> None:
-    """The body's centre, heading and speed at steps 0 ... N-1 of a manoeuvre."""
-    for i in range(poses.shape[0]):
-        x, y, heading = body_pose(vertices, stations, headings, front + distance[i], length)
-        poses[i, row, 0] = x - 0.5 * length * np.cos(heading)
-        poses[i, row, 1] = y - 0.5 * length * np.sin(heading)
-        poses[i, row, 2] = heading
-        poses[i, row, 3] = speeds[i]
+    def _copy(self) -> None:
+        """Take over the poses of this instant."""
+        if self._poses.shape != self._given.shape:
+            self._poses = np.empty_like(self._given)
+        self._poses[:] = self._given
+        self._copied = True
 
 
 @kernel
@@ -193,34 +195,32 @@ def assess(
     front: float,
     distance: Array,
     speeds: Array,
-    length: float,
-    width: float,
-    half_width: float,
-    growth: float,
-    conflict_time: float,
-    time_step: float,
-    alarm: Alarm,
+    view: tuple[float, ...],
+    alarm: tuple[Any, ...],
     gap: Array,
     conflicts: Array,
     calm: Array,
 ) -> None:
     """Fill gaps in front, persons on a collision course, and calm speeds at steps 1 ... N.
 
-    Between two looks at people's courses the numbers are held.
+    Conflicts and calm speeds are found at every second step and held in between. ``view`` and
+    ``alarm`` are the numbers of a :class:`View` and an :class:`Alarm`.
     """
     N = predicted.shape[0]
+    v, limits = View(*view), Alarm(*alarm)
+    length, time_step = v.length, v.time_step
     first, last = window(stations, front, PASSED + length)
     conflicts[0], calm[0] = 0.0, np.inf
     for i in range(N):
         at = front + distance[i + 1]
-        wide = half_width + growth * (i + 1) * time_step
+        wide = v.half_width + v.growth * (i + 1) * time_step
         closest, _ = closest_in_front(
             vertices, stations, first, last, predicted[i], at - PASSED, wide, 0.0
         )
         gap[i] = closest - at
         if i % _EVERY == 0 and i + 1 < N:
             x, y, heading = body_pose(vertices, stations, headings, at, length)
-            conflicts[i], calm[i] = courses(
+            conflicts[i], calm[i] = conflicts_and_calm(
                 predicted[i],
                 predicted[i + 1],
                 x,
@@ -228,10 +228,10 @@ def assess(
                 heading,
                 speeds[i + 1],
                 length / 2.0,
-                width / 2.0,
-                conflict_time,
+                v.width / 2.0,
+                v.conflict_time,
                 time_step,
-                alarm,
+                limits,
             )
         elif i > 0:
             conflicts[i], calm[i] = conflicts[i - 1], calm[i - 1]

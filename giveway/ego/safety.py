@@ -10,7 +10,7 @@ from giveway.ego.way_ahead import WayAhead
 
 if TYPE_CHECKING:
     from controller import Decision
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig
     from giveway.geometry.bodies import VehicleShape
     from giveway.geometry.path import EgoPath
     from pedestrian_model import Crowd
@@ -21,7 +21,7 @@ class Guard:
 
     Args:
         limits: of people and of the brake.
-        config: of this ego alone.
+        config: of the ego.
         path: its way.
         shape: its body.
         time_step: of the co-simulation [s].
@@ -30,7 +30,7 @@ class Guard:
     def __init__(
         self,
         limits: SafetyParameters,
-        config: RunConfig,
+        config: EgoRunConfig,
         path: EgoPath,
         shape: VehicleShape,
         time_step: float,
@@ -39,8 +39,10 @@ class Guard:
         self._layer = SafetyLayer(model, replace(limits, width=shape.width))
         self._way = WayAhead(path, shape.length)
 
-    def watch(self, decision: Decision, front: float, speed: float, crowd: Crowd) -> Decision:
-        """The very same decision, or the safety layer's.
+    def overrule(
+        self, decision: Decision, front: float, speed: float, crowd: Crowd
+    ) -> Decision | None:
+        """The safety layer's decision instead of the controller's; None: it lets that through.
 
         Args:
             decision: the controller's.
@@ -53,5 +55,5 @@ class Guard:
             decision.force, speed, way, spacing, crowd.position, crowd.velocity
         )
         if not safe.acted:
-            return decision
+            return None
         return decision._replace(force=safe.force, acting="safety", reason=safe.reason)

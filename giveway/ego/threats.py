@@ -1,4 +1,4 @@
-"""Whose course leads into the ego, and up to which speed nobody could force it to stop hard."""
+"""Who is about to collide with the ego, and up to which speed nobody could make it stop hard."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 _SLOW = 0.2  # [m/s] the ego is no danger (Yang & Özgüner 2019: a standing vehicle is an obstacle)
 _HALVINGS = 5  # of the interval in which the calm speed is looked for
-_WALKING = 2.5  # [m/s] that nobody exceeds
 
 
 class Alarm(NamedTuple):
@@ -24,13 +23,14 @@ class Alarm(NamedTuple):
 
     radius: float  # of a body [m]
     clearance: float  # kept to it by the safety layer [m]
-    walking_acceleration: float  # [m/s^2]
+    walking_acceleration: float  # [m/s^2] that nobody exceeds
+    walking_speed: float  # [m/s] that nobody exceeds
     braking: float  # of the ego at most [m/s^2]
     heeded: bool  # there is a safety layer that would act
 
 
 @kernel
-def courses(
+def conflicts_and_calm(
     here: Array,
     there: Array,
     front_x: float,
@@ -51,7 +51,7 @@ def courses(
     if speed <= _SLOW:
         return 0.0, np.inf
     c, s = np.cos(heading), np.sin(heading)
-    far = 2.0 * half_length + half_width + conflict_time * (speed + _WALKING)
+    far = 2.0 * half_length + half_width + conflict_time * (speed + alarm.walking_speed)
     conflicts, calm = 0.0, speed
     for j in range(here.shape[0]):
         d_x, d_y = here[j, 0] - front_x, here[j, 1] - front_y
@@ -105,7 +105,8 @@ def is_threat(
     """
     step = speed * time_step
     stop = time_step + speed / alarm.braking
-    within = 0.5 * (step + _WALKING * time_step)  # a step's motion relative to the front, halved
+    # half of a step's motion relative to the front
+    within = 0.5 * (step + alarm.walking_speed * time_step)
     clear = max(
         alarm.radius + alarm.clearance, np.sqrt(alarm.radius * alarm.radius + within * within)
     )

@@ -22,7 +22,8 @@ from fmus import (
     read_profile,
 )
 from fmus.checking import convergence, goes_the_wrong_way, opener_of, remedy
-from fmus.profile import Axis
+from fmus.profile.vehicle_profile import Axis
+from giveway.config import RunConfig
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.errors import VehicleError
 
@@ -30,8 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from contextlib import ExitStack
 
-    from fmus.profile import FittedModel
-    from giveway.config import RunConfig
+    from fmus.profile.vehicle_profile import FittedModel
+    from giveway.config import EgoRunConfig
     from giveway.config.sections import VehicleConfig
 
 _CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
@@ -47,7 +48,7 @@ def fmu_path(settings: VehicleConfig) -> Path:
     return Path(settings.fmu) if version is None else bundled_fmu(version)
 
 
-def require_vehicles(egos: Sequence[RunConfig], time_step: float) -> None:
+def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
     """Make sure, before anything runs, that every FMU can be read and its profile fits.
 
     Args:
@@ -66,14 +67,14 @@ def require_vehicles(egos: Sequence[RunConfig], time_step: float) -> None:
 
 
 def open_for(
-    config: RunConfig, time_step: float, stack: ExitStack
+    config: EgoRunConfig, time_step: float, stack: ExitStack
 ) -> tuple[Vehicle, dict[str, object]]:
     """The vehicle of one ego, and what the manifest says of it.
 
     An FMU that is not ours is first driven for some seconds in full and in half steps.
 
     Args:
-        config: of this ego alone.
+        config: of the ego.
         time_step: of the co-simulation [s].
         stack: closes the vehicle.
 
@@ -115,7 +116,7 @@ def open_for(
 def _require_sound(
     path: Path,
     profile: VehicleProfile,
-    config: RunConfig,
+    config: EgoRunConfig,
     time_step: float,
 ) -> None:
     """Drive an FMU for some seconds in its full steps and in smaller ones, once per process.
@@ -157,14 +158,14 @@ def _require_sound(
     _sound.add(key)
 
 
-def model_margin(config: RunConfig, time_step: float) -> float:
+def model_margin(config: EgoRunConfig, time_step: float) -> float:
     """What the MPC keeps beyond the safe distance [m]: what the identified model is wrong by.
 
     Over a horizon that is longer than the fit's it grows with the square, as the way under an
     acceleration that is not accounted for.
 
     Args:
-        config: of one ego.
+        config: of the ego.
         time_step: of the co-simulation [s].
 
     Raises:
@@ -176,11 +177,11 @@ def model_margin(config: RunConfig, time_step: float) -> float:
     return model.position_error * max(1.0, config.mpc.horizon * time_step / model.horizon) ** 2
 
 
-def identified_reaction_time(config: RunConfig) -> float:
+def identified_reaction_time(config: EgoRunConfig) -> float:
     """The dead time and the lag of the actuator [s], as the profile knows them.
 
     Args:
-        config: of one ego.
+        config: of the ego.
 
     Raises:
         VehicleError: the profile cannot be read.
@@ -189,11 +190,11 @@ def identified_reaction_time(config: RunConfig) -> float:
     return 0.0 if model is None else model.delay + model.lag
 
 
-def model_remark(config: RunConfig, time_step: float) -> str:
+def model_remark(config: EgoRunConfig, time_step: float) -> str:
     """What the controller knows of its vehicle by identification; empty if nothing.
 
     Args:
-        config: of one ego.
+        config: of the ego.
         time_step: of the co-simulation [s].
     """
     model = _model(config)
@@ -214,12 +215,12 @@ def model_remark(config: RunConfig, time_step: float) -> str:
     return text + _other_size(config)
 
 
-def _other_size(config: RunConfig) -> str:
+def _other_size(config: EgoRunConfig) -> str:
     """The flags for a vehicle of another size than that of the defaults; empty for a car.
 
     Forces that move 1000 kg as they should hardly brake a truck.
     """
-    usual = type(config)()
+    usual = RunConfig()
     ratio = config.vehicle.mass / usual.vehicle.mass
     if 1.0 / _OTHER_SIZE < ratio < _OTHER_SIZE:
         return ""
@@ -244,7 +245,7 @@ def _other_size(config: RunConfig) -> str:
     )
 
 
-def _model(config: RunConfig) -> FittedModel | None:
+def _model(config: EgoRunConfig) -> FittedModel | None:
     try:
         profile = _profile(config.vehicle)
     except FmuError as error:

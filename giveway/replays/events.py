@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig
 
 _INFEASIBLE = {
     "infeasible: too close": "no plan: the next position is already inside the safe distance",
@@ -64,7 +64,7 @@ def _manoeuvre(name: str) -> str | None:
     return f"slowing down to {aimed['speed']} at {aimed['rate'].lstrip('-')} costs least"
 
 
-def events(rows: pd.DataFrame, people: pd.DataFrame, config: RunConfig) -> list[dict[str, Any]]:
+def events(rows: pd.DataFrame, people: pd.DataFrame, config: EgoRunConfig) -> list[dict[str, Any]]:
     """What to look at, in the order of time.
 
     Args:

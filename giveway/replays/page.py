@@ -12,6 +12,7 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from shapely import LineString
 
+from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.config.presets import parameters_of
 from giveway.errors import ResultsError
 from giveway.geometry.angles import angle_to_heading, angles_to_headings
@@ -221,7 +222,7 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
         "id": name,
         "controller": config.controller,
         "body": [length, width],
-        "corridor": width / 2 + config.corridor_margin if half_width is None else half_width,
+        "corridor": width / 2 + CORRIDOR_MARGIN if half_width is None else half_width,
         "safe": config.regulation.safe_distance,
         "fromCentre": config.regulation.gap_from == "centre",
         "summary": _summary(run.rows_of(name)),

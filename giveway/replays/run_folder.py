@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
+from giveway.config import EgoRunConfig
 from giveway.config.layers import build_config, read_toml
 from giveway.errors import ConfigError, ResultsError
 from giveway.records.columns import EGO_COLUMNS, PREDICTION_COLUMNS, TRAJECTORY_COLUMNS
@@ -43,7 +44,7 @@ class RunFolder:
 
     path: Path
     config: RunConfig
-    egos: dict[str, RunConfig]
+    egos: dict[str, EgoRunConfig]
     ego: pd.DataFrame
     trajectories: pd.DataFrame
     pedestrians: pd.DataFrame
@@ -91,11 +92,12 @@ class RunFolder:
         if not len(time):
             msg = f"{folder}: the run left no rows; there is nothing to play"
             raise ResultsError(msg)
-        configs = {one.ego_id: one for one in config.each_ego()}
+        configs = {own.ego_id: own for own in config.each_ego()}
+        unnamed = EgoRunConfig.model_validate(config.model_dump(exclude={"egos"}))
         return cls(
             path=folder,
             config=config,
-            egos={name: configs.get(name, config) for name in ego["id"].unique()},
+            egos={name: configs.get(name, unnamed) for name in ego["id"].unique()},
             ego=ego,
             trajectories=trajectories,
             pedestrians=_table(folder / "pedestrians.csv", ()),

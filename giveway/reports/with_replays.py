@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from giveway.errors import GivewayError
 from giveway.replays import write_replay
 from giveway.reports import write_report
-from giveway.studies.rerun import rerun
+from giveway.studies.rerun import checked_run, rerun
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,7 +55,8 @@ def _replay(study: StudyFolder, run: str) -> Path | None:
     with tempfile.TemporaryDirectory(prefix="giveway-replay-") as temporary:
         folder = Path(temporary) / run
         try:
-            rerun(study, run, folder, predictions=True, pictures=False)
+            checked = checked_run(study, run, predictions=True)
+            rerun(study, run, folder, checked=checked, pictures=False)
         except GivewayError:
             return None  # its scenario has changed or gone: the report goes without
         target = study.path / REPLAYS / f"{run}.html"

@@ -12,7 +12,7 @@ import numpy as np
 
 from giveway.errors import ResultsError
 from giveway.records.scene import SCENE_FILE
-from giveway.results.names import FILES, SUMO_FOLDER, TABLES
+from giveway.results.names import FILES, SUMO_FOLDER
 from giveway.results.scene import scene_of
 
 if TYPE_CHECKING:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.errors import ResultsError
 from giveway.figures import (
     crowd_view_figure,
     influence_figure,
@@ -13,7 +14,6 @@ from giveway.figures import (
     state_figure,
     top_view_figure,
 )
-from giveway.errors import ResultsError
 from giveway.results.names import MARKS
 from pedestrian_model import Vehicles, vehicle_influence
 

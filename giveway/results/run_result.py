@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig, RunConfig
     from giveway.recording.recorded import RecordedRows
     from sumo_scenarios import Scenario
 
@@ -48,7 +48,7 @@ class EgoResult:
     """What one ego leaves behind.
 
     Attributes:
-        config: of this ego alone.
+        config: of the ego.
         id: in SUMO.
         shape: its body.
         goal: the distance [m] after which it is done.
@@ -59,7 +59,7 @@ class EgoResult:
         predictions: what its controller expected of the crowd, if that was to be recorded.
     """
 
-    config: RunConfig
+    config: EgoRunConfig
     id: str
     shape: VehicleShape
     goal: float

@@ -6,11 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from giveway.config.loading import load
-from giveway.cosimulation.assembly import control_step
-from giveway.crowd.zone import Zone
-from giveway.ego.vehicle import require_vehicles
+from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, GivewayError
-from giveway.scenario_files import read_scenario
 from giveway.studies.design import design
 from giveway.studies.identity import cell_digest, input_hashes, run_key, software_identity
 from giveway.studies.record import Task, run_id
@@ -142,10 +139,7 @@ def _planned(cell: Cell, definition: StudyDefinition, origin: str) -> PlannedCel
     try:
         config, scenario = load([cell.layer(origin, definition)])
         config = config.model_copy(update={"seed": definition.first_seed})
-        files = read_scenario(scenario.config_file)
-        files.require_inputs()
-        Zone(config.crowd.zone, config.crowd.zone_margin)
-        require_vehicles(config.each_ego(), control_step(config, files))
+        preflight(config, scenario)
         inputs = input_hashes(config, scenario)
     except GivewayError as error:
         where = f"{origin}: cell {cell.number} ({cell.label})"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from giveway.api import run_layers
-from giveway.config.layers import Layer
+from giveway.api import run_checked
 from giveway.config.loading import load
+from giveway.cosimulation.preflight import preflight
 from giveway.errors import GivewayError
 from giveway.records.progress import Ending
 from giveway.studies.execution.perform import rows_of
@@ -15,7 +15,7 @@ from giveway.studies.execution.perform import rows_of
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from giveway.config import RunConfig
+    from giveway.cosimulation.preflight import CheckedRun
     from giveway.records.progress import Watcher
     from giveway.results.run_result import RunResult
     from giveway.studies.folder import StudyFolder
@@ -29,16 +29,24 @@ class OtherNumbersError(GivewayError):
     """A run that was made again does not give the study's row; its results are written."""
 
 
-def config_of(study: StudyFolder, run_id: str) -> RunConfig:
-    """The effective configuration of a run.
+def checked_run(study: StudyFolder, run_id: str, *, predictions: bool = False) -> CheckedRun:
+    """A run of a study, ready to be made again.
+
+    Args:
+        study: whose.
+        run_id: such as ``c2-s17``.
+        predictions: the predicted positions are to be kept, for the replay.
 
     Raises:
         GivewayError: there is no such run, or its scenario is no longer there.
     """
     cell, seed = study.cell_of(run_id)
     origin = str(study.path / "study.toml")
-    config, _ = load([cell.layer(origin, study.definition)])
-    return config.model_copy(update={"seed": seed})
+    config, scenario = load([cell.layer(origin, study.definition)])
+    changes: dict[str, Any] = {"seed": seed}
+    if predictions:
+        changes["record"] = config.record.model_copy(update={"predictions": PREDICTIONS})
+    return preflight(config.model_copy(update=changes), scenario)
 
 
 def rerun(
@@ -46,7 +54,7 @@ def rerun(
     run_id: str,
     out: Path | None,
     *,
-    predictions: bool = False,
+    checked: CheckedRun | None = None,
     force: bool = False,
     pictures: bool = True,
     watcher: Watcher | None = None,
@@ -58,7 +66,7 @@ def rerun(
         study: whose.
         run_id: such as ``c2-s17``.
         out: folder for its results; None writes nothing.
-        predictions: keep the predicted positions, for the replay.
+        checked: the run, where it is known already; None: as :func:`checked_run` gives it.
         force: replace the results that are there.
         pictures: also draw the state figure and the top view.
         watcher: told of every control step.
@@ -68,12 +76,8 @@ def rerun(
         OtherNumbersError: its numbers are not the study's.
         GivewayError: it cannot be made, or fails.
     """
-    config = config_of(study, run_id)
-    values = config.model_dump()
-    if predictions:
-        values["record"]["predictions"] = PREDICTIONS
-    result = run_layers(
-        [Layer(f"{study.path}: run {run_id}", values)],
+    result = run_checked(
+        checked or checked_run(study, run_id),
         results=out,
         force=force,
         pictures=pictures,

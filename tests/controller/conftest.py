@@ -8,7 +8,9 @@ either way; everything beyond is exact.
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import daqp
@@ -16,7 +18,11 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, nnls
 
-from controller import LongitudinalModel, MpcParameters, quadratic_program
+from controller import LongitudinalModel, MpcParameters
+from controller.speed_problem import CANNOT_HOLD_SPEED, CANNOT_STOP, UNDECIDED, SpeedProblem
+
+sys.path[:0] = [str(Path(__file__).parents[2] / "benchmarks"), str(Path(__file__).parent)]
+from paper_qp import quadratic_program  # noqa: E402 - files beside this one and in benchmarks/
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -156,3 +162,26 @@ def draw() -> Callable[[np.random.Generator, LongitudinalModel, MpcParameters], 
         return Reference(model, parameters, position, speed, previous, position + x_p)
 
     return problem
+
+
+@pytest.fixture
+def problems(draw):
+    """Yields (reference, speed problem with its bounds set), those that no single row refutes."""
+
+    model, parameters = LongitudinalModel(), MpcParameters()
+
+    def some(count, seed):
+        generator, speeds = np.random.default_rng(seed), SpeedProblem(model, parameters)
+        while count > 0:
+            reference = draw(generator, model, parameters)
+            code = speeds.update(
+                reference.position,
+                reference.speed,
+                reference.previous_force,
+                reference.obstacle_positions,
+            )
+            if code in (UNDECIDED, CANNOT_STOP, CANNOT_HOLD_SPEED):
+                count -= 1
+                yield reference, speeds
+
+    return some

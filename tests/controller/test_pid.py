@@ -10,7 +10,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from controller import (
-    CONSISTENT_PID,
     PRINTED_PID,
     LongitudinalModel,
     ParameterError,
@@ -64,7 +63,7 @@ def test_closed_loop_is_the_analytic_recursion(K_p, K_i, K_d, speed, gap):
 
 @pytest.mark.parametrize(
     ("parameters", "errors"),
-    [(PRINTED_PID, (0.81, 0.86, 0.68)), (CONSISTENT_PID, (0.157, 0.154, 0.148))],
+    [(PRINTED_PID, (0.81, 0.86, 0.68)), (PidParameters(), (0.157, 0.154, 0.148))],
 )
 def test_errors_after_5_10_and_20_s_from_the_reference_speed(parameters, errors):
     speeds = drive(Pid(parameters), 4.0, 400)
@@ -73,7 +72,7 @@ def test_errors_after_5_10_and_20_s_from_the_reference_speed(parameters, errors)
 
 
 def test_40_m_take_10_39_s_with_the_consistent_gain():
-    positions = np.cumsum(drive(Pid(CONSISTENT_PID), 4.0, 300)) * MODEL.time_step
+    positions = np.cumsum(drive(Pid(), 4.0, 300)) * MODEL.time_step
     k = int(np.argmax(positions >= 40.0))  # positions[k] is x_1(k+1)
     time = MODEL.time_step * (k + (40.0 - positions[k - 1]) / (positions[k] - positions[k - 1]))
     assert time == pytest.approx(10.39, abs=0.01)
@@ -86,7 +85,7 @@ def test_without_integrator_an_error_remains(K_p, v_r):
     assert v_r - drive(pid, v_r, 4000)[-1] == pytest.approx(100.0 * v_r / (K_p + 100.0), rel=1e-6)
 
 
-@pytest.mark.parametrize(("K_p", "error"), [(PRINTED_PID.K_p, 1.0), (CONSISTENT_PID.K_p, 0.16)])
+@pytest.mark.parametrize(("K_p", "error"), [(PRINTED_PID.K_p, 1.0), (PidParameters().K_p, 0.16)])
 def test_that_error_for_the_two_presets(K_p, error):
     speed = drive(Pid(PidParameters(K_p=K_p, K_i=0.0)), 4.0, 1000)[-1]
     assert 4.0 - speed == pytest.approx(error, abs=1e-6)

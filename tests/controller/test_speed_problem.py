@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from paper_qp import prediction_matrices, quadratic_program
 
-from controller import LongitudinalModel, MpcParameters, quadratic_program
+from controller import LongitudinalModel, MpcParameters
 from controller.mpc import check_plan
 from controller.speed_problem import SLACK, UNDECIDED, SpeedProblem
 
@@ -19,6 +20,7 @@ def test_plans_are_feasible_in_speeds_if_and_only_if_in_forces(horizon, model):
         horizon=horizon, force_limit=8.0 * model.mass, force_rate_limit=2.0 * model.mass
     )
     problem, generator = SpeedProblem(model, parameters), np.random.default_rng(horizon)
+    S_x, S_u = prediction_matrices(model, horizon)
     assert problem.rows.shape == (4 * horizon - 4, horizon)
     seen = set()
     for _ in range(1500):
@@ -27,7 +29,7 @@ def test_plans_are_feasible_in_speeds_if_and_only_if_in_forces(horizon, model):
         U = previous + np.cumsum(generator.uniform(-1.05, 1.05, horizon)) * 2.0 * model.mass
         x_p = 8.0 + np.full(horizon, generator.uniform(0.0, 3.0) * horizon * model.time_step * 2)
         qp = quadratic_program(model, parameters, np.array([0.0, speed]), previous, x_p)
-        V = model.S_x(horizon)[1::2] @ [0.0, speed] + model.S_u(horizon)[1::2] @ U
+        V = S_x[1::2] @ [0.0, speed] + S_u[1::2] @ U
         code = problem.update(0.0, speed, previous, x_p)
         values = problem.rows @ V
         within = code == UNDECIDED and bool(
@@ -43,12 +45,12 @@ def test_plans_are_feasible_in_speeds_if_and_only_if_in_forces(horizon, model):
 def test_cost_is_the_papers_up_to_a_constant():
     model, parameters = LongitudinalModel(), MpcParameters()
     problem, generator = SpeedProblem(model, parameters), np.random.default_rng(0)
-    x_k = np.array([3.0, 2.0])
+    x_k, (S_x, S_u) = np.array([3.0, 2.0]), prediction_matrices(model, 15)
     qp = quadratic_program(model, parameters, x_k, 0.0, np.full(15, np.inf))
     differences = []
     for _ in range(5):
         U = generator.uniform(-8000.0, 8000.0, 15)
-        V = model.S_x(15)[1::2] @ x_k + model.S_u(15)[1::2] @ U
+        V = S_x[1::2] @ x_k + S_u[1::2] @ U
         differences.append(((V - problem.target) ** 2).sum() - (0.5 * U @ qp.P @ U + qp.q @ U))
     np.testing.assert_allclose(differences, differences[0], rtol=1e-9)
 
@@ -84,12 +86,13 @@ def test_a_plan_is_judged_by_its_worst_constraint_over_its_tolerance(counted, ra
     tolerances = np.full(3, 1e15)
     tolerances[counted] = (1e-6, 1e-6, 1e-2)[counted]
     generator, violated = np.random.default_rng(2), 0
+    S_x, S_u = prediction_matrices(model, 5)
     for _ in range(300):
         speed, previous = generator.uniform(0.0, 20.0), generator.uniform(-8000.0, 8000.0)
         U = previous + np.cumsum(generator.uniform(-rate, rate, 5))
         x_p = generator.uniform(5.0, 15.0, 5)
         qp = quadratic_program(model, parameters, np.array([0.0, speed]), previous, x_p)
-        V = model.S_x(5)[1::2] @ [0.0, speed] + model.S_u(5)[1::2] @ U
+        V = S_x[1::2] @ [0.0, speed] + S_u[1::2] @ U
         excess = np.maximum(qp.lower - qp.G @ U, qp.G @ U - qp.upper)
         expected = (excess / np.repeat(tolerances[[2, 2, 1, 0]], 5)).max()
         forces = np.empty(5)

@@ -16,7 +16,7 @@ from controller import (
     Observation,
     ParameterError,
     ReferenceParameters,
-    Regulator,
+    SpeedController,
     TunedPid,
     TunedPidParameters,
 )
@@ -275,8 +275,8 @@ def test_without_acceleration_feed_forward_it_lags_but_arrives():
     assert worst(feed_forward=True) < 0.01 < 0.2 < worst(feed_forward=False)
 
 
-def test_the_regulator_calls_it_as_the_papers():
-    decision = Regulator(None, TunedPid()).control(Observation(0.0, 4.0, math.inf, EMPTY))
+def test_the_controller_calls_it_as_the_papers():
+    decision = SpeedController(None, TunedPid()).control(Observation(0.0, 4.0, math.inf, EMPTY))
     assert (decision.acting, decision.reason, decision.plan) == ("pid", "selected", None)
     assert decision.force == pytest.approx(400.0)
     assert decision.reference_speed == 4.0

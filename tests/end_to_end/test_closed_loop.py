@@ -13,11 +13,11 @@ from controller import (
     Observation,
     Pid,
     PidParameters,
-    Regulator,
+    SpeedController,
 )
 from giveway.api import RunResult
 from giveway.records.progress import Ending, Progress
-from pedestrian_model import SIM, Crowd, CrowdModel, Predictor, Vehicles, constant_speed
+from pedestrian_model import SIM, Crowd, CrowdModel, Predictor, Vehicles
 
 Run = Callable[..., RunResult]
 LENGTH, WIDTH, TIME_STEP = 5.0, 2.0, 0.05
@@ -98,7 +98,7 @@ def in_front(position: np.ndarray, front: float) -> float:
 
 def test_the_controller_acts_on_the_state_at_t_k_without_lag(mpc_run: RunResult) -> None:
     # Everything is predicted here, without the loop's gate, which must not change a bit.
-    regulator = Regulator(
+    regulator = SpeedController(
         Mpc(LongitudinalModel(), MpcParameters()), Pid(PidParameters(), TIME_STEP)
     )
     predictor = Predictor(SIM, TIME_STEP, 15)
@@ -109,7 +109,8 @@ def test_the_controller_acts_on_the_state_at_t_k_without_lag(mpc_run: RunResult)
         present, position, velocity = positions(mpc_run, k)
         goals = [start[i][None] + (0, 30) for i in present]
         crowd = Crowd.create(position, velocity, desired_speed[present], goals)
-        vehicles = constant_speed(ego_vehicle(mpc_run, k), TIME_STEP, 15)
+        vehicles = np.repeat(ego_vehicle(mpc_run, k).array[None], 15, axis=0)
+        vehicles[:, :, 0] += ego.speed[k] * TIME_STEP * np.arange(15)[:, None]  # it drives along +x
         predicted = predictor.predict(crowd, vehicles)
         front, speed = ego.position[k] + 2.5, ego.speed[k]
         x_p = [in_front(predicted[i], front + speed * TIME_STEP * (i + 1)) for i in range(15)]

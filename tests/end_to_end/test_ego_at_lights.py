@@ -9,8 +9,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from giveway.config import RunConfig
-from giveway.ego.controllers import make_driver, make_regulator
+from giveway.config import EgoRunConfig
+from giveway.ego.controllers import make_controller, make_driver
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
 from giveway.geometry.bodies import VehicleShape
@@ -27,7 +27,7 @@ TOO_LATE = 2.0  # [s] of red in which who cannot stop passes
 
 
 def drive(
-    config: RunConfig, line: float, yellow_at: float, every: int
+    config: EgoRunConfig, line: float, yellow_at: float, every: int
 ) -> list[tuple[float, float, str]]:
     """Front [m], speed [m/s] and colour at each step until the red is over.
 
@@ -41,7 +41,7 @@ def drive(
     path = EgoPath.through([(0.0, 0.0), (2000.0, 0.0)])
     rows = []
     with ExitStack() as stack:
-        driver = make_driver(config, make_regulator(config, STEP), STEP, stack)
+        driver = make_driver(config, make_controller(config, STEP), STEP, stack)
         driver.start(config.ego.initial_speed or 0.0)
         lights = Lights([Light(line, "tls", 0)], comfortable=2.0, hardest=8.0)
         ego = Ego(driver, path, DEPARTURE, shape, lights, 1900.0, STEP)
@@ -54,7 +54,7 @@ def drive(
                 lights.update({"tls": colour}, ego.front, ego.vehicle.speed)
             rows.append((ego.front, ego.vehicle.speed, colour))
             ego.corridor.fill_poses(poses, 0, ego.front, ego.vehicle.speed)
-            ego.decide(k, ego.look(0, poses, nobody, OPEN_GROUND))
+            ego.decide(k, time, ego.look(0, poses, nobody, OPEN_GROUND))
             ego.advance()
     return rows
 
@@ -80,7 +80,7 @@ def test_an_ego_stands_before_the_line_or_passes_and_never_halts_beyond(
     gap_from: Literal["bumper", "centre"],
     safe_distance: float,
 ) -> None:
-    config = RunConfig.model_validate(
+    config = EgoRunConfig.model_validate(
         {
             "controller": controller,
             "ego": {"initial_speed": speed * share},

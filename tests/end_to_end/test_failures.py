@@ -12,6 +12,7 @@ from giveway.config.layers import Layer
 from giveway.config.loading import load
 from giveway.cosimulation.assembly import Parts, assemble
 from giveway.cosimulation.loop import Loop
+from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, GivewayError, SumoError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import Pose
@@ -27,7 +28,7 @@ PLAZA = find("shared_space").config_file
 
 
 def parts_of(stack: ExitStack, **settings: object) -> Parts:
-    return assemble(*load([Layer("test", settings)]), stack)
+    return assemble(preflight(*load([Layer("test", settings)])), stack)
 
 
 def session(step_length: float | None = None) -> SumoSession:
@@ -42,7 +43,7 @@ def test_a_nan_in_the_crowd_is_named_by_id_and_step() -> None:
         loop = Loop(parts, recorder)
         parts.roster.crowd.position[3] = np.nan
         with pytest.raises(GivewayError, match=r"ped3.*step 0"):
-            loop.run(None, lambda: False)
+            loop.run(None, DeferredInterrupt())
         assert recorder.steps == 1
 
 

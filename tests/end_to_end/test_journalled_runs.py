@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from giveway.api import run_layers
-from giveway.config.loading import as_layer
+from giveway.api import run_checked
+from giveway.config.loading import as_layer, load
+from giveway.cosimulation.preflight import preflight
 from giveway.processes.heartbeat import Phase, Pulse
 from giveway.processes.supervisor import Verdict
 from giveway.recording.journal import ROWS_FILE
@@ -14,7 +15,9 @@ SHORT = {"crowd": {"pedestrians": 3}, "ego": {"travel_distance": 8.0}}
 
 
 def test_a_journal_that_cannot_be_written_is_told_to_the_user(tmp_path: Path) -> None:
-    result = run_layers([as_layer(SHORT)], results=None, journal=tmp_path / "gone")
+    result = run_checked(
+        preflight(*load([as_layer(SHORT)])), results=None, journal=tmp_path / "gone"
+    )
     assert result.completed
     assert any("the journal cannot be written" in remark for remark in result.remarks)
     assert result.manifest["remarks"] == list(result.remarks)
@@ -23,7 +26,9 @@ def test_a_journal_that_cannot_be_written_is_told_to_the_user(tmp_path: Path) ->
 def test_after_a_crash_an_ego_that_had_arrived_has_arrived(tmp_path: Path) -> None:
     far = {"ego": {"id": "far", "depart_position": 12.0, "travel_distance": 30.0}}
     egos = ({"ego": {"id": "near"}}, far)
-    result = run_layers([as_layer(SHORT | {"egos": egos})], results=None, journal=tmp_path)
+    result = run_checked(
+        preflight(*load([as_layer(SHORT | {"egos": egos})])), results=None, journal=tmp_path
+    )
     arrived = [ego for ego in result.egos if ego.id == "near"]
     assert len(arrived[0].track.time) < len(result.time)
     rows = tmp_path / ROWS_FILE

@@ -7,9 +7,9 @@ from contextlib import ExitStack
 import numpy as np
 import pytest
 
-from controller.planning import Manoeuvre
-from giveway.config import RunConfig
-from giveway.ego.controllers import make_driver, make_regulator
+from controller import Manoeuvre
+from giveway.config import EgoRunConfig
+from giveway.ego.controllers import make_controller, make_driver
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
 from giveway.geometry.bodies import VehicleShape
@@ -17,8 +17,8 @@ from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, Crowd
 
 BEND = [(-50.0, 0.0), (0.0, 0.0), (30.0, 0.0), (60.0, 20.0), (100.0, 60.0)]
-CONFIG = RunConfig(controller="mpc-paper")
-PLANNING = RunConfig(controller="mpc")
+CONFIG = EgoRunConfig(controller="mpc-paper")
+PLANNING = EgoRunConfig(controller="mpc")
 
 
 def crowd(rng: np.random.Generator, widest: float = 60.0) -> Crowd:
@@ -43,7 +43,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
         for predict_all in (150, 10**9):
             monkeypatch.setattr("giveway.ego.ego._PREDICT_ALL", predict_all)
             with ExitStack() as stack:
-                driver = make_driver(CONFIG, make_regulator(CONFIG, 0.05), 0.05, stack)
+                driver = make_driver(CONFIG, make_controller(CONFIG, 0.05), 0.05, stack)
                 driver.start(speed)
                 lights = Lights((), comfortable=2.0, hardest=8.0)
                 ego = Ego(driver, EgoPath.through(BEND), 50.0, shape, lights, 100.0, 0.05)
@@ -73,7 +73,7 @@ def test_who_is_left_out_changes_nothing_that_a_manoeuvre_would_lead_to(
         for predict_all in (150, 10**9):
             monkeypatch.setattr("giveway.ego.ego._PREDICT_ALL", predict_all)
             with ExitStack() as stack:
-                driver = make_driver(PLANNING, make_regulator(PLANNING, 0.05), 0.05, stack)
+                driver = make_driver(PLANNING, make_controller(PLANNING, 0.05), 0.05, stack)
                 driver.start(speed)
                 lights = Lights((), comfortable=2.0, hardest=8.0)
                 ego = Ego(driver, EgoPath.through(BEND), 50.0, shape, lights, 100.0, 0.05)

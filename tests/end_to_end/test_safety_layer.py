@@ -7,7 +7,7 @@ import pytest
 
 from controller import Decision, SafetyParameters
 from giveway.api import RunResult
-from giveway.config import RunConfig
+from giveway.config import EgoRunConfig
 from giveway.ego.safety import Guard
 from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
@@ -85,7 +85,7 @@ def test_where_it_does_not_act_not_a_bit_is_changed(run_once: Run, controller: s
 def test_it_is_on_but_not_for_the_papers_controllers(
     controller: str, enabled: bool | None, on: bool
 ) -> None:
-    config = RunConfig.model_validate({"controller": controller, "safety": {"enabled": enabled}})
+    config = EgoRunConfig.model_validate({"controller": controller, "safety": {"enabled": enabled}})
     assert config.safety_layer is on
 
 
@@ -104,7 +104,7 @@ def quarter_turn(radius: float) -> EgoPath:
 
 
 def guard(path: EgoPath) -> Guard:
-    config = RunConfig.model_validate({"controller": "mpc"})
+    config = EgoRunConfig.model_validate({"controller": "mpc"})
     return Guard(SafetyParameters(), config, path, VehicleShape(5.0, 2.0), 0.05)
 
 
@@ -138,11 +138,11 @@ def test_in_a_bend_it_brakes_for_who_is_round_the_corner_not_for_who_is_straight
     front = 20.0 + 0.25 * np.pi * 5.0  # half way round
     on_it, heading = path.pose(front + 1.8), path.pose(front, 5.0).heading
     here = path.pose(front)
-    assert guard(path).watch(ASKED, front, 4.0, person_at(on_it.x, on_it.y)).acting == "safety"
+    assert guard(path).overrule(ASKED, front, 4.0, person_at(on_it.x, on_it.y)).acting == "safety"
     tangent = here.x + 4.0 * np.cos(heading), here.y + 4.0 * np.sin(heading)
-    assert guard(path).watch(ASKED, front, 4.0, person_at(*tangent)) is ASKED
+    assert guard(path).overrule(ASKED, front, 4.0, person_at(*tangent)) is None
 
 
 def test_who_is_in_sight_of_nobody_keeps_the_very_decision() -> None:
     path = EgoPath.through([(0.0, 0.0), (100.0, 0.0)])
-    assert guard(path).watch(ASKED, 10.0, 4.0, person_at(40.0, 0.0)) is ASKED
+    assert guard(path).overrule(ASKED, 10.0, 4.0, person_at(40.0, 0.0)) is None

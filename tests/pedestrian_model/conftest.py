@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -10,16 +10,14 @@ import pytest
 
 from pedestrian_model import Crowd, Vehicles
 
+sys.path.insert(0, str(Path(__file__).parent))
+import vci_reference
+
 
 @pytest.fixture(scope="session")
 def reference():
     """The independent re-implementation beside this file."""
-    spec = importlib.util.spec_from_file_location(
-        "vci_reference", Path(__file__).with_name("reference.py")
-    )
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return vci_reference
 
 
 @pytest.fixture(scope="session")

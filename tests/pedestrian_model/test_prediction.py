@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from crowd_forces import constant_speed
 
 from pedestrian_model import (
     CrowdModel,
@@ -12,7 +13,6 @@ from pedestrian_model import (
     Predictor,
     VehicleError,
     Vehicles,
-    constant_speed,
 )
 
 
@@ -61,14 +61,6 @@ def test_the_buffer_is_reused_and_the_size_of_the_crowd_may_change(random_crowd,
     np.testing.assert_array_equal(predictor.predict(random_crowd(30, 0), poses), kept)
 
 
-def test_constant_speed_goes_straight_on():
-    poses = constant_speed(Vehicles.create([0.0, 1.0], 2.0, [0.0, np.pi / 2], [4.0, -1.0]), 0.5, 3)
-    assert poses.shape == (3, 2, 7)
-    np.testing.assert_allclose(poses[:, 0, :2], [(0.0, 2.0), (2.0, 2.0), (4.0, 2.0)], atol=1e-15)
-    np.testing.assert_allclose(poses[:, 1, :2], [(1.0, 2.0), (1.0, 1.5), (1.0, 1.0)], atol=1e-15)
-    np.testing.assert_array_equal(poses[:, :, 2:], np.broadcast_to(poses[0, :, 2:], (3, 2, 5)))
-
-
 def test_a_moving_car_is_avoided_in_the_prediction(walkers):
     crowd = walkers([(8.0, -1.5)], [(8.0, 9.0)])
     predictor = Predictor(horizon=30)
@@ -89,8 +81,6 @@ def test_bad_trajectories_horizons_and_states_are_named(random_crowd):
         predictor.predict(crowd, np.zeros((4, 1, 7), dtype=np.float32))
     with pytest.raises(ParameterError, match="horizon = 0"):
         Predictor(horizon=0)
-    with pytest.raises(ParameterError, match="horizon = 0"):
-        constant_speed(Vehicles.empty(), 0.05, 0)
     crowd.position[3, 0] = np.nan
     with pytest.raises(DivergenceError, match="pedestrian 3"):
         predictor.predict(crowd, np.zeros((4, 0, 7)))

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from crowd_forces import constant_speed, forces_apart
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -22,7 +23,6 @@ from pedestrian_model import (
     Vehicles,
     Walls,
     arrived,
-    constant_speed,
 )
 
 NOBODY = Vehicles.empty()
@@ -170,7 +170,7 @@ def test_beyond_the_half_width_or_before_the_line_nothing_is_passed():
 
 def test_the_aim_is_the_nearest_point_of_the_line_a_body_away_from_its_ends():
     crowd = abreast([-9.0, -1.0, 0.3, 2.0], 2.0)
-    target = CrowdModel().forces(crowd, NOBODY).target
+    target = forces_apart(CrowdModel(), crowd, NOBODY).target
     np.testing.assert_allclose(target, [(8.0, -1.73), (8.0, -1.0), (8.0, 0.3), (8.0, 1.73)])
 
 
@@ -310,7 +310,7 @@ def test_a_signal_beyond_those_given_is_named_not_read():
     with pytest.raises(SurroundingsError, match=message):
         CrowdModel().step(crowd, NOBODY, short)
     with pytest.raises(SurroundingsError, match=message):
-        CrowdModel().forces(crowd, NOBODY, short)
+        forces_apart(CrowdModel(), crowd, NOBODY, short)
     with pytest.raises(SurroundingsError, match=message):
         Predictor().predict(crowd, np.zeros((15, 0, 7)), short)
     with pytest.raises(SurroundingsError, match="has 0: give one for each signal"):

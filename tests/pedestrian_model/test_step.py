@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from crowd_forces import forces_apart
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -120,7 +121,7 @@ def test_waypoints_within_reach_are_passed_together():
 
 def test_an_empty_crowd_stays_empty():
     assert len(CrowdModel().step(Crowd.empty(), Vehicles.create(0.0, 0.0, 0.0, 1.0))) == 0
-    assert len(CrowdModel().forces(Crowd.empty(), NOBODY).total) == 0
+    assert len(forces_apart(CrowdModel(), Crowd.empty(), NOBODY).total) == 0
 
 
 @pytest.mark.parametrize("cell_list_from", [0, 1000])
@@ -132,7 +133,7 @@ def test_a_state_that_is_not_finite_is_named(random_crowd, cell_list_from, value
     with pytest.raises(DivergenceError, match="pedestrian 7"):
         model.step(crowd, NOBODY)
     with pytest.raises(DivergenceError, match="pedestrian 7"):
-        model.forces(crowd, NOBODY)
+        forces_apart(model, crowd, NOBODY)
 
 
 def test_a_vehicle_that_is_not_finite_is_named(random_crowd):

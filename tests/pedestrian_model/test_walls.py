@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from crowd_forces import forces_apart
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -51,7 +52,7 @@ def standing(points):
 
 def force_at(points, walls, parameters=SIM):
     alone = replace(parameters, interaction_radius=1e-3)
-    return CrowdModel(alone).forces(standing(points), NOBODY, Surroundings(walls)).wall
+    return forces_apart(CrowdModel(alone), standing(points), NOBODY, Surroundings(walls)).wall
 
 
 FLOOR = Walls.create([(-50.0, 0.0, 50.0, 0.0)])  # walkable above
@@ -286,7 +287,8 @@ def test_the_wall_is_part_of_the_total_but_not_of_beta(random_crowd, random_vehi
     crowd, vehicles = random_crowd(30, 1), random_vehicles(1)
     walls = Surroundings(Walls.create([(-9.0, 4.0, 19.0, 4.0)]))
     open_, walled = (
-        CrowdModel().forces(crowd, vehicles, *surroundings) for surroundings in ((), (walls,))
+        forces_apart(CrowdModel(), crowd, vehicles, *surroundings)
+        for surroundings in ((), (walls,))
     )
     assert np.any(walled.wall)
     assert not np.any(open_.wall)

@@ -15,6 +15,7 @@ import numpy as np
 from fmus.text import printable
 from giveway.api import simulate
 from giveway.config import RunConfig
+from giveway.cosimulation.preflight import preflight
 from giveway.errors import GivewayError
 from giveway.processes.heartbeat import Phase
 from giveway.recording.journal import Journal
@@ -45,7 +46,8 @@ def perform(
     journal = journal or Journal(None)
     config = RunConfig.model_validate_json(task.config)
     try:
-        result = simulate(config, find(config.scenario), journal=journal, native_log=native_log)
+        checked = preflight(config, find(config.scenario))
+        result = simulate(checked, journal=journal, native_log=native_log)
         if result.error is not None:
             raise result.error
     except GivewayError as error:

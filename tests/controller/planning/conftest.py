@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from controller import LongitudinalModel, PlannerParameters
-from controller.planning import Prospect
+from controller import LongitudinalModel, PlannerParameters, Prospect
 from controller.planning.smoothing import nodes_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
+
+sys.path.insert(0, str(Path(__file__).parent))  # smoothing_cases
 
 
 @dataclass(frozen=True)

@@ -2,77 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import daqp
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-
-from controller import LongitudinalModel, Planner, PlannerParameters
-from controller.active_set import solve_exactly
-from controller.planning import Prospect
-from controller.planning.smoothing import WIDER, SmoothingProblem, nodes_of
-
-N = 60
-FREE = np.full(N, np.inf)
-MODEL = LongitudinalModel()
-FOLLOWING = PlannerParameters(gap_choice=False)  # its QP depends on nothing but its input
-D_SAFE = FOLLOWING.safe_distance
-
-speeds = st.one_of(st.sampled_from([0.0, 4.0, 20.0]), st.floats(0.0, 20.0))
-forces = st.one_of(st.sampled_from([-8000.0, 0.0, 8000.0]), st.floats(-8000.0, 8000.0))
-rooms = st.tuples(
-    st.integers(0, N - 1),
-    st.integers(1, N),
-    st.floats(-20.0, 40.0),
-    st.floats(-3.0, 5.0),
+from smoothing_cases import (
+    FOLLOWING,
+    FREE,
+    MODEL,
+    bounded,
+    drawn,
 )
 
-
-def room_of(first: int, length: int, room: float, pace: float) -> np.ndarray:
-    """Free, but for some steps in which somebody who moves along takes the room [m]."""
-    corridor = FREE.copy()
-    steps = np.arange(first, min(first + length, N))
-    corridor[steps] = room + pace * 0.05 * (steps - first)
-    return corridor
-
-
-class Fixed:
-    """A crowd that moves with the ego: as far from it under each manoeuvre."""
-
-    def __init__(self, room):
-        self.room = room
-
-    def prospect(self, manoeuvre):
-        gap = self.room + D_SAFE - manoeuvre.distance[1:]
-        return Prospect(gap, np.zeros(N), FREE)
-
-    def prefer(self):
-        pass
-
-
-def drawn(plain_problem, seed, *, parameters=FOLLOWING):
-    """A random problem with somebody in the way."""
-    g = np.random.default_rng(seed)
-    speed = float(g.choice([0.0, 4.0, g.uniform(0.0, 12.0)]))
-    cruise = MODEL.friction * speed
-    force = float(g.choice([cruise, g.uniform(-8000.0, 8000.0)])) if speed > 0.0 else 0.0
-    room = room_of(g.integers(N), g.integers(1, N), g.uniform(-2.0, 1.2 * speed * 3), 0.0)
-    before = (force - cruise) / MODEL.mass if speed > 0.0 else 0.0
-    wanted = np.full(len(nodes_of(N, parameters.block_growth)), 4.0)
-    return plain_problem(speed, force, before, wanted, 4.0, room, MODEL, parameters)
-
-
-def bounded(plain, *, soft=True):
-    """The room's own problem for a plain one, and whether it has a plan."""
-    problem = SmoothingProblem(plain.model, plain.parameters)
-    problem.aim_at(plain.wanted, plain.speed, plain.acceleration)
-    found = problem.bound(
-        plain.speed, plain.previous_force, plain.fastest, plain.room, FREE, soft=soft
-    )
-    return problem, found
+from controller import PlannerParameters
+from controller.planning.smoothing import WIDER, SmoothingProblem, nodes_of
 
 
 def any_plan(g, plain, lower, upper):
@@ -162,73 +104,6 @@ def test_no_plan_is_better_under_a_penalty_beyond_the_largest_multiplier(plain_p
         other = any_plan(g, plain, lower, upper)
         nearer = v + 10.0 ** g.uniform(-4.0, 0.0) * (other - v)  # the limits are convex
         assert penalised(nearer) >= best - 1e-5
-
-
-@pytest.mark.parametrize("seed", range(60))
-@pytest.mark.parametrize("solver", ["osqp", "daqp"])
-def test_the_force_is_that_of_the_plain_problems_optimum(plain_problem, seed, solver):
-    plain = drawn(plain_problem, seed, parameters=replace(FOLLOWING, solver=solver))
-    G, lower, upper = plain.rows()
-    D, room = plain.distances()
-    each, _ = plain.unavoidable()
-    P, q = plain.quadratic()
-    v, _, flag, _ = daqp.solve(
-        P,
-        q,
-        np.concatenate([G, D]),
-        np.concatenate([upper, np.minimum(room + each, 1e30)]) + 1e-7,
-        np.concatenate([lower, np.full(len(room), -1e30)]) - 1e-7,
-        np.zeros(len(G) + len(D), dtype=np.int32),
-        primal_tol=1e-9,
-    )
-    assert flag == 1
-    plan = Planner(MODEL, plain.parameters).plan(
-        plain.speed, plain.previous_force, 4.0, None, Fixed(plain.room)
-    )
-    assert plan.status == "solved"
-    wanted = (v[0] - MODEL.decay * plain.speed) / MODEL.speed_per_force
-    assert plan.force == pytest.approx(np.clip(wanted, -8000.0, 8000.0), abs=0.1)
-
-
-@given(speed=speeds, force=forces, room=rooms, calm=st.floats(0.0, 25.0))
-@settings(max_examples=150, deadline=None)
-def test_a_soft_corridor_always_leaves_a_plan(speed, force, room, calm):
-    problem = SmoothingProblem(MODEL, FOLLOWING)
-    problem.aim_at(np.full(len(problem.nodes), 4.0), speed, 0.0)
-    corridor = room_of(*room)
-    assert problem.bound(speed, force, 4.0, corridor, np.full(N, calm), soft=True)
-    multipliers, z = np.zeros(len(problem.rows)), np.zeros(len(problem.nodes))
-    bounds = (problem.rows, problem.lower, problem.upper, problem.target)
-    assert solve_exactly(*bounds, multipliers, z) >= 0
-    reached = problem.rows @ z
-    assert (reached >= problem.lower - 1e-9).all()
-    assert (reached <= problem.upper + 1e-9).all()
-    for gap_choice in (True, False):
-        planner = Planner(MODEL, replace(FOLLOWING, gap_choice=gap_choice))
-        plan = planner.plan(speed, force, 4.0, None, Fixed(corridor))
-        assert plan.found
-        assert "no QP solution" not in plan.status
-        assert abs(plan.force) <= 8000.0
-        assert speed <= 1e-3 or abs(plan.force - force) <= 1000.0
-
-
-@given(speed=speeds, force=forces, room=rooms)
-@settings(max_examples=60, deadline=None)
-def test_a_hard_corridor_is_refused_if_and_only_if_braking_cannot_keep_it(
-    plain_problem, speed, force, room
-):
-    parameters = replace(FOLLOWING, soft=False)
-    wanted = np.full(len(nodes_of(N, parameters.block_growth)), 4.0)
-    plain = plain_problem(speed, force, 0.0, wanted, 4.0, room_of(*room), MODEL, parameters)
-    each, _ = plain.unavoidable()
-    _, found = bounded(plain, soft=False)
-    plan = Planner(MODEL, parameters).plan(speed, force, 4.0, None, Fixed(plain.room))
-    if each.max() > 1e-6:
-        assert not found
-        assert plan.status == "infeasible: cannot keep the distance"
-    elif bounded(replace(plain, room=plain.room - 1e-6), soft=False)[1]:  # else rounding decides
-        assert found
-        assert plan.found
 
 
 def test_the_calm_speed_is_kept_as_far_as_braking_allows():

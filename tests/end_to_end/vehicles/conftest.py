@@ -15,7 +15,7 @@ import pytest
 import tomlkit
 
 from fmus.isolation import IsolatedVehicle
-from fmus.profile import make_profile
+from fmus.profile.vehicle_profile import make_profile
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -9,7 +9,7 @@ from __future__ import annotations
 import pytest
 
 from fmus import FmuError, open_vehicle
-from fmus.profile import make_profile
+from fmus.profile.vehicle_profile import make_profile
 
 H = 0.05  # [s]
 FORCES = [900.0] * 30 + [-2500.0] * 40 + [700.0] * 20 + [0.0] * 10  # drive, stop and stand, go on

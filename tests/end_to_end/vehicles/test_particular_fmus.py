@@ -8,7 +8,7 @@ from math import exp
 import pytest
 
 from fmus import FmuPlatformError, FmuVariableError, open_vehicle
-from fmus.profile import make_profile
+from fmus.profile.vehicle_profile import make_profile
 
 H = 0.05  # [s]
 VERSIONS = ("1.0", "2.0", "3.0")

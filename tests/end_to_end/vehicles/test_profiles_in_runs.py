@@ -10,7 +10,7 @@ import tomlkit
 import giveway as library
 from giveway.config.layers import Layer, read_toml
 from giveway.config.loading import load
-from giveway.ego.controllers import make_regulator
+from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ConfigError, VehicleError
 
@@ -184,8 +184,10 @@ def test_files_named_in_flags_or_python_are_relative_to_here(profile, zoo, tmp_p
 def test_the_mpc_keeps_what_the_model_is_wrong_by(profile):
     config, _ = load([flags(profile=str(profile(**IDENTIFIED)))])
     plain, _ = load([flags(profile=str(profile("plain.toml")))])
-    config, plain = (c.model_copy(update={"controller": "mpc-paper"}) for c in (config, plain))
-    kept, usual = (make_regulator(c, H).mpc.parameters.safe_distance for c in (config, plain))
+    config, plain = (
+        c.model_copy(update={"controller": "mpc-paper"}).each_ego()[0] for c in (config, plain)
+    )
+    kept, usual = (make_controller(c, H).mpc.parameters.safe_distance for c in (config, plain))
     margin = model_margin(config, H)
     assert margin >= 0.7
     assert kept == pytest.approx(usual + margin)
@@ -197,7 +199,7 @@ def test_the_margin_grows_with_a_longer_horizon(profile):
     margins = []
     for horizon in (10, 20, 40):
         layer = Layer("test", {"vehicle": {"profile": path}, "mpc": {"horizon": horizon}})
-        margins.append(model_margin(load([layer])[0], H))
+        margins.append(model_margin(load([layer])[0].each_ego()[0], H))
     assert margins == pytest.approx([0.7, 0.7, 4 * 0.7])
 
 

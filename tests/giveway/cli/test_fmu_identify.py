@@ -7,7 +7,7 @@ import tomllib
 import pytest
 
 from fmus import bundled_fmu
-from fmus.profile import read_profile
+from fmus.profile.vehicle_profile import read_profile
 from giveway.cli import main
 
 

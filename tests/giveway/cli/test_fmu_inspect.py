@@ -8,7 +8,7 @@ import zipfile
 import pytest
 
 from fmus import bundled_fmu
-from fmus.profile import read_profile
+from fmus.profile.vehicle_profile import read_profile
 from giveway.cli.fmu_inspect import inspect_command
 
 

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from giveway.cosimulation.paths_ahead import Ways, gaps_ahead, sort_people
+from giveway.cosimulation.lane_paths import LanePathPool, gaps_ahead, sort_pedestrians
 from giveway.ego.in_front import closest_in_front
 from giveway.geometry.path import EgoPath
 from giveway.sumo.lanes import Lanes
@@ -29,12 +29,12 @@ def winding(seed: int, corners: int) -> np.ndarray:
     return np.cumsum(length[:, None] * np.column_stack([np.cos(heading), np.sin(heading)]), axis=0)
 
 
-def pooled(lanes: list[np.ndarray]) -> Ways:
+def pooled(lanes: list[np.ndarray]) -> LanePathPool:
     """Each lane a way of its own."""
     along = [
         np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(lane, axis=0).T))]) for lane in lanes
     ]
-    return Ways(
+    return LanePathPool(
         np.concatenate(lanes),
         np.concatenate(along),
         np.cumsum([0, *map(len, lanes)]).astype(np.int64),
@@ -76,7 +76,7 @@ def test_the_first_in_each_cars_way_is_found(seed: int, corners: int, sight: flo
         np.full(3, sight),
         np.full(3, HALF_WIDTH),
         people,
-        sort_people(people),
+        sort_pedestrians(people),
         gaps,
     )
     found = [gap if gap <= sight else math.inf for gap in gaps]
@@ -96,7 +96,7 @@ def test_a_car_on_no_lane_and_one_at_the_end_of_its_way_see_nobody() -> None:
         np.full(2, 100.0),
         np.full(2, HALF_WIDTH),
         people,
-        sort_people(people),
+        sort_pedestrians(people),
         gaps,
     )
     assert gaps.tolist() == [math.inf, math.inf]
@@ -105,7 +105,7 @@ def test_a_car_on_no_lane_and_one_at_the_end_of_its_way_see_nobody() -> None:
 @pytest.mark.parametrize("count", [0, 1, 7, 1000])
 def test_everybody_is_in_exactly_one_bucket(count: int) -> None:
     people = np.random.default_rng(count).normal(0.0, 500.0, (count, 2))
-    grid = sort_people(people)
+    grid = sort_pedestrians(people)
     buckets = max(1, count)
     assert sorted(grid[buckets + 1 :]) == list(range(count))
     assert (np.diff(grid[: buckets + 1]) >= 0).all()

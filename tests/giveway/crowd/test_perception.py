@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from giveway.config import RunConfig
+from giveway.config import EgoRunConfig
 from giveway.crowd.perception import Perception
 from pedestrian_model import Crowd, CrowdModel, Vehicles
 
@@ -18,7 +18,7 @@ def make_crowd(n: int = 40) -> Crowd:
 
 
 def eyes(seed: int = 1, ego: str = "ego", **perception) -> Perception:
-    return Perception(RunConfig(seed=seed, perception=perception, ego={"id": ego}))
+    return Perception(EgoRunConfig(seed=seed, perception=perception, ego={"id": ego}))
 
 
 def test_without_errors_the_very_crowd_is_seen():
@@ -49,7 +49,8 @@ def test_the_truth_is_not_touched_and_the_rest_is_seen_as_it_is():
     assert (seen.position != crowd.position).all()
     assert (seen.velocity == crowd.velocity).all()
     assert (seen.desired_speed == crowd.desired_speed).all()
-    assert (seen.target == crowd.target).all()
+    assert (seen.waypoints == crowd.waypoints).all()
+    assert (seen.waypoint_index == crowd.waypoint_index).all()
 
 
 def test_a_crowd_that_has_been_stepped_is_seen_where_it_is_now():

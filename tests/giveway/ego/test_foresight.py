@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 import shapely
 
-from controller import LongitudinalModel, SafetyLayer, SafetyParameters
-from controller.planning import Manoeuvre
-from giveway.ego.foresight import PASSED, CrowdForesight, assess
+from controller import LongitudinalModel, Manoeuvre, SafetyLayer, SafetyParameters
+from giveway.ego.foresight import PASSED, CrowdForesight, View, assess
 from giveway.ego.threats import Alarm, is_threat
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
@@ -18,7 +17,7 @@ N, DT = 20, 0.05
 LENGTH, WIDTH, RADIUS = 5.0, 2.0, SIM.body_radius
 HALF_WIDTH, CONFLICT_TIME = 1.25, 1.5
 FRONT = 20.0  # [m]
-ALARM = Alarm(RADIUS, 0.05, SIM.max_acceleration, 8.0, heeded=True)
+ALARM = Alarm(RADIUS, 0.05, SIM.max_acceleration, SIM.max_speed, 8.0, heeded=True)
 EDGE = 1e-6
 
 angles = np.linspace(-np.pi / 2, np.pi / 2, 200)
@@ -53,12 +52,7 @@ def assessed(path, people, m, *, growth=0.0, alarm=ALARM):
         FRONT,
         m.distance,
         m.speed,
-        LENGTH,
-        WIDTH,
-        HALF_WIDTH,
-        growth,
-        CONFLICT_TIME,
-        DT,
+        View(LENGTH, WIDTH, HALF_WIDTH, growth, CONFLICT_TIME, DT),
         alarm,
         *out,
     )

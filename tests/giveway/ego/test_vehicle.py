@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from giveway.config import RunConfig
+from giveway.config import EgoRunConfig
 from giveway.ego.vehicle import model_remark
 
 PROFILE = """
@@ -29,7 +29,7 @@ def remark(tmp_path):
         path = tmp_path / "car.toml"
         path.write_text(PROFILE.format(mass=mass), encoding="utf-8")
         vehicle = {"profile": str(path), "mass": mass, "friction": 100.0}
-        return model_remark(RunConfig.model_validate({"vehicle": vehicle, **tables}), 0.05)
+        return model_remark(EgoRunConfig.model_validate({"vehicle": vehicle, **tables}), 0.05)
 
     return of
 

@@ -9,10 +9,10 @@ import pytest
 # A run of three committed steps that then does what `body` says, where SUMO would step.
 CHILD = """
 import atexit, ctypes, os, signal, sys, time
-from giveway.heartbeat import Phase
-from giveway.interrupts import DeferredInterrupt
-from giveway.journal import Journal
-from giveway.supervised import Supervised, take_journal_folder
+from giveway.processes.heartbeat import Phase
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.journal import Journal
+from giveway.processes.child import Supervised, take_journal_folder
 
 def step_sumo():
 {body}

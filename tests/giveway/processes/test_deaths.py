@@ -112,9 +112,9 @@ def test_slow_is_not_hanging(fate: Callable[..., Verdict]) -> None:
 SUMO_RUN = """
 import os
 import libsumo
-from giveway.heartbeat import Phase
-from giveway.journal import Journal
-from giveway.supervised import Supervised, take_journal_folder
+from giveway.processes.heartbeat import Phase
+from giveway.recording.journal import Journal
+from giveway.processes.child import Supervised, take_journal_folder
 from sumo_scenarios import find
 
 folder = take_journal_folder()
@@ -160,9 +160,9 @@ def test_sumo_killed_in_the_middle_of_a_simulation(tmp_path: Path, journal: Path
 # SUMO 1.28 dies of moves that are pending when a simulation is closed, in the next simulation.
 SUMO_CRASH = """
 import libsumo
-from giveway.heartbeat import Phase
-from giveway.journal import Journal
-from giveway.supervised import Supervised, take_journal_folder
+from giveway.processes.heartbeat import Phase
+from giveway.recording.journal import Journal
+from giveway.processes.child import Supervised, take_journal_folder
 from sumo_scenarios import find
 
 ids = [f"p{i}" for i in range(50)]

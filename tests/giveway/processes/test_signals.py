@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the deaths here
 PARENT = """
 import dataclasses, json, signal, sys
 from pathlib import Path
-from giveway import supervisor
+from giveway.processes import supervisor
 
 supervisor._PATIENCE = 0.3
 script, journal, hang_limit, hangup = sys.argv[1:]
@@ -105,7 +105,7 @@ def test_ctrl_c_while_python_starts_is_heard_later(tmp_path: Path, journal: Path
 import sys, time
 print("STARTING", flush=True)
 time.sleep(0.5)
-from giveway.supervised import Supervised, take_journal_folder
+from giveway.processes.child import Supervised, take_journal_folder
 with Supervised(take_journal_folder()) as supervised:
     try:
         supervised.listen()

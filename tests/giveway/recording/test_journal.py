@@ -187,7 +187,7 @@ def test_a_folder_that_is_gone_costs_the_journal_and_not_the_run(tmp_path: Path)
 FULL_DISK = """
 import resource, sys
 from pathlib import Path
-from giveway.journal import Journal
+from giveway.recording.journal import Journal
 
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # as if the disk were full
 journal = Journal(Path(sys.argv[1]))

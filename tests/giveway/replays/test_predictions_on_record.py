@@ -9,9 +9,10 @@ import pandas as pd
 import pytest
 
 from giveway import run
-from giveway.api import run_layers
-from giveway.config.loading import as_layer
+from giveway.api import run_checked
+from giveway.config.loading import as_layer, load
 from giveway.cosimulation.loop import looks_ahead
+from giveway.cosimulation.preflight import preflight
 from giveway.recording.journal_reader import read_journal
 from giveway.recording.recorded import RecordedRows
 
@@ -93,7 +94,7 @@ def test_the_pid_alone_predicts_nothing() -> None:
 
 def test_a_journal_has_it_too(tmp_path: Path) -> None:
     layer = as_layer({**SETTINGS, "time_limit": 6.0, "record": {"predictions": 0.25}})
-    result = run_layers([layer], results=None, journal=tmp_path)
+    result = run_checked(preflight(*load([layer])), results=None, journal=tmp_path)
     contents = read_journal(tmp_path)
     (drive,) = RecordedRows(contents.tables, contents.names).egos()
     mine = result.egos[0].predictions

@@ -189,7 +189,7 @@ def test_what_the_planning_mpc_chose_is_told_in_words(reason: str, text: str) ->
 
 
 def test_events_are_stops_fallbacks_and_encounters(recorded: Path) -> None:
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig
 
     time = np.arange(6) * 0.5
     rows = pd.DataFrame(
@@ -208,7 +208,7 @@ def test_events_are_stops_fallbacks_and_encounters(recorded: Path) -> None:
             "time_of_minimum_clearance": [1.0, 2.0],
         }
     )
-    told = [(e["kind"], e["from"], e["to"]) for e in events(rows, people, RunConfig())]
+    told = [(e["kind"], e["from"], e["to"]) for e in events(rows, people, EgoRunConfig())]
     assert told == [
         ("pid", 0.5, 1.5),
         ("stop", 0.5, 1.5),
@@ -219,7 +219,7 @@ def test_events_are_stops_fallbacks_and_encounters(recorded: Path) -> None:
 
 @pytest.mark.parametrize("controller", ["pid-tuned", "mpc-paper"])
 def test_the_safety_layers_braking_is_an_event_whoever_drives(controller: str) -> None:
-    from giveway.config import RunConfig
+    from giveway.config import EgoRunConfig
 
     acting = ["pid", "safety", "safety", "pid", "safety", "safety"]
     rows = pd.DataFrame(
@@ -231,7 +231,7 @@ def test_the_safety_layers_braking_is_an_event_whoever_drives(controller: str) -
             "solver_status": "infeasible: too close",
         }
     )
-    found = events(rows, pd.DataFrame(), RunConfig(controller=controller))
+    found = events(rows, pd.DataFrame(), EgoRunConfig(controller=controller))
     assert [(e["from"], e["to"], e["text"]) for e in found if e["kind"] == "safety"] == [
         (0.5, 1.5, "the safety layer brakes: a stop must stay possible"),
         (2.0, 2.5, "the safety layer brakes: no braking is surely enough"),

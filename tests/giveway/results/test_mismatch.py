@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from giveway.config import RunConfig
+from giveway.config import EgoRunConfig
 from giveway.results.mismatch import remark
 
 H = 0.05  # [s]
@@ -34,7 +34,7 @@ def drive(mass, friction, *, exact=False, force=FORCE, start=4.0):
         acceleration=acceleration,
         force=np.append(force, 0.0),
     )
-    return SimpleNamespace(id="ego", track=track, config=RunConfig())
+    return SimpleNamespace(id="ego", track=track, config=EgoRunConfig())
 
 
 @pytest.mark.parametrize("exact", [False, True])
@@ -63,7 +63,7 @@ def test_an_identified_vehicle_is_not_sent_to_be_identified_again():
 
 def test_the_pid_has_no_model():
     ego = drive(1500.0, 100.0)
-    ego.config = RunConfig(controller="pid")
+    ego.config = EgoRunConfig(controller="pid")
     assert remark(ego, H, 0.0) == ""
 
 

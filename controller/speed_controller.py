@@ -1,0 +1,87 @@
+"""The MPC where it has a plan, else the PID (Yang & Özgüner 2019, algorithm 1); or a PID alone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from controller.defaults import STANDSTILL
+from controller.protocol import Decision
+
+if TYPE_CHECKING:
+    from controller.mpc import Mpc
+    from controller.pid import Pid
+    from controller.protocol import Observation
+    from controller.tuned_pid import TunedPid
+
+
+class SpeedController:
+    """The MPC with the PID as its fallback, or the PID alone; looks at one prediction at most.
+
+    Args:
+        mpc: None to let the PID drive alone.
+        pid: the fallback.
+    """
+
+    foresees = False
+
+    def __init__(self, mpc: Mpc | None, pid: Pid | TunedPid) -> None:
+        self.mpc = mpc
+        self.pid = pid
+        self._previous_force = 0.0
+
+    @property
+    def horizon(self) -> int:
+        """Steps that the MPC looks ahead; 0 for the PID alone."""
+        return 0 if self.mpc is None else self.mpc.parameters.horizon
+
+    def reset(self) -> None:
+        """Forget the past of both controllers."""
+        self._previous_force = 0.0
+        self.pid.reset()
+        if self.mpc is not None:
+            self.mpc.reset()
+
+    def control(self, observation: Observation) -> Decision:
+        """Decide on the force at t_k."""
+        speed, gap, limit = observation.speed, observation.gap, observation.speed_limit
+        if self.mpc is None:
+            decision = self._by_pid(speed, gap, limit, "selected", "", 0)
+        else:
+            # At a standstill the force is a brake that holds: a plan may start from none, while
+            # c2 would tie it to the braking before and c5 would then have no solution.
+            previous = 0.0 if speed <= STANDSTILL else self._previous_force
+            reference = min(self.mpc.parameters.reference_speed, limit)
+            solution = self.mpc.solve(
+                observation.position, speed, previous, observation.obstacle_positions, reference
+            )
+            if solution.found:
+                self.pid.track(speed, gap, limit)
+                decision = Decision(
+                    solution.force,
+                    "mpc",
+                    "optimal",
+                    solution.status,
+                    solution.iterations,
+                    reference,
+                    solution.forces,
+                )
+            else:
+                infeasible = solution.status.startswith("infeasible")
+                reason = "infeasible" if infeasible else f"solver: {solution.status}"
+                decision = self._by_pid(
+                    speed, gap, limit, reason, solution.status, solution.iterations
+                )
+        self._previous_force = decision.force
+        return decision
+
+    def applied(self, force: float) -> None:
+        """Another force [N] than the last one asked for acts: the next is asked for from there."""
+        self._previous_force = force
+        self.pid.applied(force)
+
+    def _by_pid(
+        self, speed: float, gap: float, limit: float, reason: str, status: str, iterations: int
+    ) -> Decision:
+        force = self.pid.control(speed, gap, limit)
+        reference = self.pid.reference_speed(gap, limit)
+        return Decision(force, "pid", reason, status, iterations, reference, None)

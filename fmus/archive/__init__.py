@@ -1,0 +1,1 @@
+"""Zip archives: what may be unpacked of a foreign FMU, and archives with reproducible bytes."""

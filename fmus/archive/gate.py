@@ -1,0 +1,310 @@
+"""The gate: an FMU's archive is examined as a whole before anything of it is unpacked or loaded.
+
+An FMU is a zip file from somebody else. It is refused if unpacking it could write outside its
+folder, fill the memory or the disk, or read other files. Everything else passes, including FMUs of
+several hundred megabytes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import re
+import stat
+import struct
+import unicodedata
+import zipfile
+import zlib
+from collections import deque
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import lru_cache
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final
+
+from fmus.archive.markup import check_xml
+from fmus.errors import FmuArchiveError, FmuFileError
+from fmus.text import printable
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterator, Mapping, Sequence
+    from pathlib import Path
+
+DESCRIPTION: Final = "modelDescription.xml"
+ROOT: Final = "fmiModelDescription"
+MAX_MEMBERS: Final = 50_000
+MAX_DIRECTORY: Final = 5 << 20  # [bytes] of the archive's own list of members
+MAX_TOTAL: Final = 4 << 30  # [bytes] unpacked
+MAX_DESCRIPTION: Final = 64 << 20  # [bytes]; 50,000 variables take about 15 MB
+MAX_RATIO: Final = 100  # unpacked to packed; tables of numbers reach 10, program text 5
+RATIO_COUNTS_FROM: Final = 16 << 20  # [bytes] unpacked; small members do no harm
+CHECKED_AT_ONCE: Final = 64 << 20  # [bytes] unpacked: up to this size check sums are compared
+MAX_NAME: Final = 1024
+CHUNK: Final = 1 << 20  # [bytes]
+READABLE: Final = frozenset({zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED})
+DRIVE: Final = re.compile(r"[A-Za-z]:")
+LOCAL_HEADER: Final = 30  # [bytes] before the name of a member in the archive
+
+
+@dataclass(frozen=True)
+class Archive:
+    """An FMU's archive that has passed the gate."""
+
+    path: Path
+    members: Mapping[str, zipfile.ZipInfo]  # files only, by their name
+    description: bytes = field(repr=False)  # modelDescription.xml
+    sha256: str  # of the whole file
+
+
+def open_archive(path: Path) -> Archive:
+    """Examine an FMU's archive; only its model description is read into memory.
+
+    Recent results are kept until the file changes, because preparing a vehicle asks repeatedly.
+
+    Raises:
+        FmuArchiveError: the archive is hostile, damaged or too large.
+        FmuFileError: it is missing, unreadable, no zip archive or without a model description.
+    """
+    status = _require_file(path)
+    return _open(path, (status.st_ino, status.st_size, status.st_mtime_ns))
+
+
+@lru_cache(maxsize=2)
+def _open(path: Path, _state: tuple[int, int, int]) -> Archive:
+    with _reading(path) as archive:
+        members = _examined(path, archive.infolist())
+        info = members.get(DESCRIPTION)
+        if info is None:
+            raise FmuFileError(_no_description(path, members))
+        if info.file_size > MAX_DESCRIPTION:
+            msg = f"{path}: {DESCRIPTION} of {_megabytes(info.file_size)}"
+            raise _beyond(msg, _megabytes(MAX_DESCRIPTION))
+        description = b"".join(_chunks(archive, info))  # read() would inflate beyond that size
+        check_xml(description, f"{path}: {DESCRIPTION}", ROOT)
+        if sum(member.file_size for member in members.values()) <= CHECKED_AT_ONCE:
+            for member in members.values():
+                deque(_chunks(archive, member), maxlen=0)  # at its end the check sum is compared
+    with path.open("rb") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+    return Archive(path, MappingProxyType(members), description, digest)
+
+
+def extract(archive: Archive, folder: Path, prefixes: Sequence[str]) -> None:
+    """Unpack the members whose names begin with one of the prefixes.
+
+    Args:
+        archive: from :func:`open_archive`.
+        folder: exists; nothing is written outside it, and nothing in it replaced.
+        prefixes: such as ``"binaries/linux64/"``, ``"resources/"``.
+
+    Raises:
+        FmuArchiveError: a member is damaged.
+        FmuFileError: the file has changed since, or cannot be read or written.
+    """
+    beginnings = tuple(prefixes)
+    with _reading(archive.path) as source:
+        for name, info in archive.members.items():
+            if not name.startswith(beginnings):
+                continue
+            target = folder.joinpath(*name.split("/"))
+            try:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                with target.open("xb") as out:
+                    for chunk in _chunks(source, info):
+                        out.write(chunk)
+            except OSError as error:
+                reason = error.strerror or printable(error)
+                msg = f"{archive.path}: {printable(name)} cannot be unpacked: {reason}"
+                raise FmuFileError(f"{msg}; make room in, or name another, TMPDIR") from error
+
+
+def read_start(archive: Archive, name: str, size: int) -> bytes:
+    """The first bytes of a member.
+
+    Raises:
+        FmuArchiveError: it is damaged there.
+    """
+    with _reading(archive.path) as source, source.open(archive.members[name]) as member:
+        return member.read(size)
+
+
+# ---- opening ----
+
+
+class _CautiousFile(io.FileIO):
+    """A file whose reads are bounded: an archive may claim that its list of members is huge."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        wanted = MAX_DIRECTORY if size is None or size < 0 else size
+        if wanted > MAX_DIRECTORY:
+            msg = f"{self.name}: a list of members of {_megabytes(wanted)}"
+            raise _beyond(msg, _megabytes(MAX_DIRECTORY))
+        return super().read(wanted) or b""
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[zipfile.ZipFile]:
+    """Open the zip file; whatever zipfile raises becomes one of our errors."""
+    try:
+        with _CautiousFile(path) as file, zipfile.ZipFile(file) as archive:
+            yield archive
+    except (zipfile.BadZipFile, EOFError, zlib.error) as error:
+        what = printable(error)
+        if what == "File is not a zip file":
+            msg = f"{path}: not a zip archive, or cut off; expected an FMU; copy or export it again"
+            raise FmuFileError(msg) from None
+        msg = f"{path}: the zip archive is damaged: {what}; copy or export it again"
+        raise FmuArchiveError(msg) from None
+    except (NotImplementedError, RuntimeError, ValueError, OverflowError, struct.error) as error:
+        msg = f"{path}: the zip archive cannot be read: {printable(error)}; export the FMU again"
+        raise FmuArchiveError(msg) from None
+    except OSError as error:
+        reason = error.strerror or printable(error)
+        msg = f"{path}: cannot be read: {reason}; expected an FMU (.fmu)"
+        raise FmuFileError(msg) from None
+
+
+def _require_file(path: Path) -> os.stat_result:
+    try:
+        status = path.stat()
+    except (OSError, ValueError) as error:
+        missing = isinstance(error, (FileNotFoundError, NotADirectoryError, ValueError))
+        reason = "no such file" if missing else getattr(error, "strerror", "") or "cannot be read"
+        raise FmuFileError(f"{path}: {reason}; expected an FMU (.fmu)") from None
+    if stat.S_ISDIR(status.st_mode):
+        msg = f"{path}: a folder; expected an FMU: a zip archive of its contents (.fmu)"
+    elif not stat.S_ISREG(status.st_mode):
+        msg = f"{path}: not a regular file; expected an FMU (.fmu)"
+    elif status.st_size == 0:
+        msg = f"{path}: empty; expected an FMU; copy or export it again"
+    else:
+        return status
+    raise FmuFileError(msg)
+
+
+# ---- examining ----
+
+
+def _examined(path: Path, infos: Sequence[zipfile.ZipInfo]) -> dict[str, zipfile.ZipInfo]:
+    """The members that are files, by name; refuses the archive for its first bad member."""
+    if len(infos) > MAX_MEMBERS:
+        raise _beyond(f"{path}: {len(infos)} members", str(MAX_MEMBERS))
+    members: dict[str, zipfile.ZipInfo] = {}
+    folded: dict[str, str] = {}
+    for info in infos:
+        fault = _fault(info)
+        if fault:
+            raise _refused(path, info, fault)
+        if info.is_dir():
+            continue
+        plain = unicodedata.normalize("NFC", info.filename).casefold()
+        other = folded.setdefault(plain, info.filename)
+        if info.filename in members or other != info.filename:
+            what = "twice in the archive (capitals and how accents are coded do not count)"
+            raise _refused(path, info, what)
+        members[info.filename] = info
+    for name, info in members.items():
+        parents = unicodedata.normalize("NFC", name).casefold().split("/")[:-1]
+        if any("/".join(parents[: n + 1]) in folded for n in range(len(parents))):
+            raise _refused(path, info, "lies in a folder that is also a file")
+    _require_sane_sizes(path, members)
+    _require_separate_places(path, infos)
+    return members
+
+
+def _fault(info: zipfile.ZipInfo) -> str:
+    """What is wrong with a member; empty if nothing is."""
+    name = info.orig_filename  # zipfile cuts it at a NUL
+    file_type = stat.S_IFMT(info.external_attr >> 16)
+    parts = name.removesuffix("/").split("/")
+    if not name.isprintable() or len(name) > MAX_NAME:
+        return "a name with control characters, or too long"
+    if "\\" in name:
+        return "a name with a backslash"
+    if name.startswith("/") or any(DRIVE.match(part) for part in parts):
+        return "an absolute path"
+    if ".." in parts:
+        return "a path that leads out of the archive"
+    if not all(part.strip(". ") for part in parts):  # ".. " is ".." on Windows
+        return "not a plain path"
+    if file_type not in (0, stat.S_IFREG, stat.S_IFDIR):
+        return "a symbolic link" if file_type == stat.S_IFLNK else "a special file"
+    if info.flag_bits & 0x41:
+        return "encrypted"
+    if info.compress_type not in READABLE:
+        return f"packed with method {info.compress_type}; FMI allows stored and deflated only"
+    return ""
+
+
+def _require_sane_sizes(path: Path, members: Mapping[str, zipfile.ZipInfo]) -> None:
+    total = sum(info.file_size for info in members.values())
+    packed = sum(info.compress_size for info in members.values())
+    if total > MAX_TOTAL:
+        raise _beyond(f"{path}: {_megabytes(total)} unpacked", _megabytes(MAX_TOTAL))
+    for info in members.values():
+        if _inflated(info.file_size, info.compress_size):
+            raise _bomb(f"{path}: member {_quoted(info)}", info.file_size, info.compress_size)
+    if _inflated(total, packed):
+        raise _bomb(f"{path}: its members together", total, packed)
+
+
+def _inflated(size: int, packed: int) -> bool:
+    return size > RATIO_COUNTS_FROM and size > MAX_RATIO * packed
+
+
+def _require_separate_places(path: Path, infos: Sequence[zipfile.ZipInfo]) -> None:
+    """Refuse members that share bytes of the archive, as zip bombs and disguised files do."""
+    end = 0
+    for info in sorted(infos, key=lambda info: info.header_offset):
+        if info.header_offset < end:
+            raise _refused(path, info, "overlaps another member")
+        end = info.header_offset + LOCAL_HEADER + info.compress_size
+
+
+def _chunks(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> Iterator[bytes]:
+    with archive.open(info) as member:
+        left = info.file_size
+        while chunk := member.read(CHUNK):
+            left -= len(chunk)
+            yield chunk
+    if left:
+        msg = f"{printable(info.filename)} is cut off"
+        raise zipfile.BadZipFile(msg)
+
+
+# ---- words ----
+
+
+def _refused(path: Path, info: zipfile.ZipInfo, fault: str) -> FmuArchiveError:
+    msg = f"{path}: member {_quoted(info)}: {fault}; refused; export the FMU again"
+    return FmuArchiveError(msg)
+
+
+def _bomb(where: str, size: int, packed: int) -> FmuArchiveError:
+    what = f"a zip bomb: {_megabytes(packed)} unpacks to {_megabytes(size)}"
+    return FmuArchiveError(f"{where}: {what}; if meant so, pack it without compression (zip -0)")
+
+
+def _quoted(info: zipfile.ZipInfo) -> str:
+    return printable(repr(info.orig_filename), 100)
+
+
+def _beyond(what: str, limit: str) -> FmuArchiveError:
+    return FmuArchiveError(f"{what}: beyond all measure; expected at most {limit}")
+
+
+def _no_description(path: Path, members: Mapping[str, zipfile.ZipInfo]) -> str:
+    msg = f"{path}: no {DESCRIPTION} in the archive"
+    inside = [name for name in members if name.endswith(f"/{DESCRIPTION}")]
+    fmus = [name for name in members if name.endswith(".fmu")]
+    if inside:
+        folder = printable(inside[0].removesuffix(DESCRIPTION), 100)
+        return f"{msg}, but in its folder {folder}; zip the contents of that folder instead"
+    if fmus:
+        return f"{msg}, but {printable(fmus[0], 100)}; unpack it and use that FMU"
+    return f"{msg}; expected an FMU; export the model again"
+
+
+def _megabytes(size: int) -> str:
+    return f"{size / (1 << 20):.4g} MB"

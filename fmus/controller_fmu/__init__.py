@@ -1,1 +1,0 @@
-"""The controller as an FMU of C code, for other co-simulation masters."""

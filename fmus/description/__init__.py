@@ -1,0 +1,1 @@
+"""What an FMU says of itself: its variables, units, interfaces and binaries."""

@@ -1,0 +1,144 @@
+"""From the names in a profile to the variables of an FMU, and the start values for them."""
+
+from __future__ import annotations
+
+import re
+from difflib import get_close_matches
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from fmus.description.model import Channel
+from fmus.errors import FmuVariableError
+from fmus.text import listed
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from fmus.description.model import Model, Value, Variable
+
+_ELEMENT = re.compile(r"(?P<name>.*)\[(?P<number>[0-9]{1,9})\]")
+
+
+def find_channel(model: Model, place: str, name: str) -> Channel:
+    """The variable, or the element of an array, that is called ``name``.
+
+    Args:
+        model: of the FMU.
+        place: where the name stands, for errors.
+        name: ``x``, or ``x[2]`` for an array's second element.
+
+    Raises:
+        FmuVariableError: there is none, or it is a whole array.
+    """
+    here, variables = f"{model.path}: {place}", model.variables
+    if name in variables:
+        variable = variables[name]
+        if variable.size == 1:
+            return Channel(variable)
+        if variable.size == 0:
+            msg = f"{here} variable '{name}' is an array without elements; name another variable"
+            raise FmuVariableError(msg)
+        msg = (
+            f"{here} variable '{name}' is an array of {variable.size}; name one element, "
+            f"'{name}[1]' to '{name}[{variable.size}]'"
+        )
+        raise FmuVariableError(msg)
+    element = _ELEMENT.fullmatch(name)
+    if element is not None and element["name"] in variables:
+        return _element(here, name, variables[element["name"]], int(element["number"]))
+    close = get_close_matches(name, variables, n=1)
+    hint = f"did you mean '{close[0]}'?" if close else f"it has {known_names(variables)}"
+    msg = f"{here} no variable '{name}' in the FMU; {hint}"
+    raise FmuVariableError(msg)
+
+
+def _element(here: str, name: str, variable: Variable, number: int) -> Channel:
+    if variable.shape and 1 <= number <= variable.size:
+        return Channel(variable, number - 1)
+    what = (
+        f"'{variable.name}' has {variable.size} element(s), counted from 1"
+        if variable.shape
+        else f"'{variable.name}' is no array; leave out the brackets"
+    )
+    msg = f"{here} variable '{name}': {what}"
+    raise FmuVariableError(msg)
+
+
+def known_names(names: Iterable[str]) -> str:
+    """The first of the names that a message could have meant, and how many more there are."""
+    return listed(list(names), 8) or "the FMU has none"
+
+
+# ---- start values ----
+
+
+def start_channels(model: Model, values: Mapping[str, Value]) -> dict[Channel, Value]:
+    """The start values by channel; a whole array stands as its first element.
+
+    Raises:
+        FmuVariableError: one is missing, cannot be set, or not to this value.
+    """
+    return {_start_channel(model, name, value): value for name, value in values.items()}
+
+
+def _start_channel(model: Model, name: str, value: Value) -> Channel:
+    whole = name in model.variables and isinstance(value, list)
+    channel = Channel(model.variables[name]) if whole else find_channel(model, "start value:", name)
+    variable = channel.variable
+    if not variable.settable:
+        problem = f"'{name}' is {variable.causality}; expected a parameter or an input"
+    elif whole:
+        problem = _misfit_list(variable, value)
+    else:
+        problem = _misfit(variable, value)
+    if problem:
+        msg = f"{model.path}: start value {name} = {str(value)[:60]}: {problem}"
+        raise FmuVariableError(msg)
+    return channel
+
+
+def _misfit_list(variable: Variable, values: Value) -> str:
+    """What is wrong with the values of a whole array; empty if nothing is."""
+    assert isinstance(values, list)
+    if len(values) != variable.size:
+        return f"expected {variable.size} value(s)"
+    for number, value in enumerate(values, start=1):
+        # A profile's lists are numbers; some of an array of whole numbers are floats then.
+        whole = variable.is_integer and isinstance(value, float) and value.is_integer()
+        problem = _misfit(variable, int(value) if whole else value)
+        if problem:
+            return f"{problem} as value {number}"
+    return ""
+
+
+def _misfit(variable: Variable, value: object) -> str:
+    """What is wrong with a start value; empty if nothing is."""
+    if variable.is_boolean:
+        return "" if isinstance(value, bool) else "expected true or false"
+    if variable.kind == "String":
+        return "" if isinstance(value, str) else "expected text"
+    if not (variable.is_integer or variable.is_real):
+        return f"'{variable.name}' is {variable.kind}; expected a number, text, true or false"
+    number = value if isinstance(value, int | float) and not isinstance(value, bool) else None
+    if variable.is_integer and not isinstance(number, int):
+        return "expected a whole number"
+    if number is None or not _representable(number):
+        return "expected a finite number"
+    return _out_of_range(variable, number)
+
+
+def _representable(number: float) -> bool:
+    try:
+        return isfinite(number)
+    except OverflowError:  # a whole number beyond all floats
+        return False
+
+
+def _out_of_range(variable: Variable, value: float) -> str:
+    low, high = variable.minimum, variable.maximum
+    allowed = ""
+    if low is not None and value < low:
+        allowed = f"at least {low:g}"
+    elif high is not None and value > high:
+        allowed = f"at most {high:g}"
+    return f"expected {allowed} {variable.unit}".rstrip() if allowed else ""

@@ -1,0 +1,168 @@
+"""What an FMU says about itself: its interfaces, its variables, their units."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+
+class Kind(enum.StrEnum):
+    """How an FMU is stepped."""
+
+    CO_SIMULATION = "co-simulation"  # it brings its own solver
+    MODEL_EXCHANGE = "model-exchange"  # it gives derivatives; the solver is ours
+
+
+REAL_TYPES = frozenset({"Real", "Float64", "Float32"})
+INTEGER_TYPES = frozenset(
+    {"Integer", "Enumeration"}
+    | {f"{sign}Int{bits}" for sign in ("", "U") for bits in (8, 16, 32, 64)}
+)
+NUMERIC_TYPES = REAL_TYPES | INTEGER_TYPES
+
+
+Value = bool | int | float | str | list[float]
+"""A start value of a variable, as a profile writes it."""
+
+Dimension = tuple[int, int, int, int, int, int, int, int]
+"""Exponents of kg, m, s, A, K, mol, cd, rad."""
+
+
+@dataclass(frozen=True)
+class FmuDescription:
+    """What identifies an FMU in the record of a run."""
+
+    name: str  # the model's name
+    fmi_version: str  # e.g. "2.0"
+    guid: str  # FMI 2's GUID, FMI 3's instantiation token
+    generation_tool: str  # empty where the FMU does not say
+    sha256: str  # of the .fmu file
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit as an FMU defines it: SI = factor * raw + offset.
+
+    Attributes:
+        name: as the FMU writes it.
+        dimension: None: the FMU does not tell.
+    """
+
+    name: str
+    factor: float = 1.0
+    offset: float = 0.0
+    dimension: Dimension | None = None
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of an FMU."""
+
+    name: str
+    reference: int
+    kind: str  # FMI's type: "Real", "Float64", "Boolean", ...
+    causality: str  # "input", "output", "parameter", "local", ...
+    variability: str = "continuous"
+    start: str = ""  # as it is written; empty without one
+    shape: tuple[int, ...] = ()  # of an FMI 3 array, from its dimensions' start values
+    unit: str = ""  # name of its unit; empty without one
+    description: str = ""
+    minimum: float | None = None  # in its unit
+    maximum: float | None = None
+    settable: bool = False  # before the start
+    negated: bool = False  # FMI 1's negatedAlias: what stands under the reference, times -1
+
+    @property
+    def scalar(self) -> bool:
+        """Not an array."""
+        return not self.shape
+
+    @property
+    def is_real(self) -> bool:
+        """A floating-point variable."""
+        return self.kind in REAL_TYPES
+
+    @property
+    def is_integer(self) -> bool:
+        """A whole number or an enumeration."""
+        return self.kind in INTEGER_TYPES
+
+    @property
+    def is_boolean(self) -> bool:
+        """True or false."""
+        return self.kind == "Boolean"
+
+    @property
+    def size(self) -> int:
+        """How many values it has."""
+        size = 1
+        for extent in self.shape:
+            size *= extent
+        return size
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One number that goes into, or comes out of, an FMU at every step."""
+
+    variable: Variable
+    element: int = 0  # of an array, row by row from 0
+
+    @property
+    def name(self) -> str:
+        """As a user would write it: ``x``, or ``x[2]`` for an array's second element."""
+        return (
+            f"{self.variable.name}[{self.element + 1}]"
+            if self.variable.shape
+            else self.variable.name
+        )
+
+
+@dataclass(frozen=True)
+class Interface:
+    """One of the kinds in which an FMU can run.
+
+    Attributes:
+        identifier: the name of its binaries.
+        flags: its capability flags that are numbers or text or true, as the FMU writes them.
+    """
+
+    kind: Kind
+    identifier: str
+    saves_state: bool = False  # canGetAndSetFMUState
+    needs_execution_tool: bool = False
+    variable_step: bool = True  # canHandleVariableCommunicationStepSize
+    fixed_internal_step: float | None = None  # [s]
+    completed_step_needed: bool = True  # Model Exchange: completedIntegratorStep
+    flags: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Model:
+    """An FMU's model description, and where its binary for this platform is."""
+
+    path: Path
+    fmi_version: str  # "1.0", "2.0" or "3.0"
+    name: str
+    guid: str
+    generation_tool: str
+    description: str
+    interfaces: Mapping[Kind, Interface]
+    variables: Mapping[str, Variable]
+    units: Mapping[str, Unit]
+    platforms: tuple[str, ...]  # folders of the archive that hold binaries
+    states: int  # continuous ones
+    event_indicators: int
+    default_step: float | None  # [s] of its default experiment
+    default_tolerance: float | None
+
+    def unit_of(self, variable: Variable) -> Unit | None:
+        """The unit of a variable; None without one."""
+        if not variable.unit:
+            return None
+        return self.units.get(variable.unit, Unit(variable.unit))

@@ -1,0 +1,239 @@
+"""A vehicle whose longitudinal motion is an FMU: a force in; position, speed, acceleration out."""
+
+from __future__ import annotations
+
+import tempfile
+from contextlib import ExitStack
+from math import isclose, isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn, Self
+
+from fmus.driving.motion import Motion
+from fmus.driving.starting import reach, require_position, start_values
+from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
+from fmus.fmi import load
+from fmus.fmi.status import STATUS_NAMES, WARNING
+from fmus.interfaces.vehicle import Drivable
+from fmus.profile.pace import between, step_to_run_with
+from fmus.profile.preparation import Prepared, prepare, unpack
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+
+    from fmus.description.model import Value
+    from fmus.profile.vehicle_profile import VehicleProfile
+
+
+class VehicleFmu(Drivable):
+    """Runs a vehicle FMU in this process, in steps of fixed size.
+
+    Its position, speed, acceleration and time are those of :class:`Vehicle`.
+
+    Args:
+        path: the .fmu file.
+        step_size: of the controller [s].
+        profile: which variable plays which part; None: the shipped FMUs' own, or a draft from
+            names and units if it leaves no doubt.
+        start_values: further start values by variable name, set at every :meth:`start`.
+
+    Raises:
+        FmuFileError: the file is missing, or no readable FMU.
+        FmuInterfaceError: it has no interface that can be run here.
+        FmuPlatformError: it has no binary for this platform, or none that can be loaded.
+        FmuVariableError: a variable is missing, or is not what it is used for.
+        FmuProfileError: the profile does not fit, or there is none where one is needed.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        step_size: float,
+        profile: VehicleProfile | None = None,
+        start_values: Mapping[str, Value] | None = None,
+    ) -> None:
+        prepared = prepare(path, step_size=step_size, profile=profile, start_values=start_values)
+        with ExitStack() as stack:  # if a later part fails, the earlier ones are undone
+            folder = stack.enter_context(
+                tempfile.TemporaryDirectory(prefix="vehicle-fmu-", ignore_cleanup_errors=True)
+            )
+            unpack(prepared, Path(folder))
+            self._set_up(prepared, Path(folder), stack)
+
+    @classmethod
+    def unpacked(cls, prepared: Prepared, folder: Path) -> Self:
+        """The vehicle of an FMU that has been unpacked into ``folder``, which stays."""
+        vehicle = cls.__new__(cls)
+        with ExitStack() as stack:
+            vehicle._set_up(prepared, folder, stack)
+        return vehicle
+
+    def _set_up(self, prepared: Prepared, folder: Path, stack: ExitStack) -> None:
+        super().__init__(prepared.path)
+        self.prepared = prepared
+        self.step_size = prepared.step_size
+        self._pace = prepared.pace
+        self._command = prepared.command
+        self._motion = Motion(prepared)
+        self.warnings = self._motion.warnings
+        self._ends = ((0.0, 0.0), (0.0, 0.0))  # position, speed at both ends of a longer FMU step
+        self._steps = self._earlier = 0  # since time 0, and during the run-up before it
+        self._closed = False
+        self._instance = load(
+            prepared.model,
+            prepared.wiring.interface,
+            folder,
+            prepared.binary,
+            solver=prepared.profile.fmu.solver,
+            tolerance=prepared.profile.fmu.tolerance,
+            rewinds=not prepared.ours,  # keeping the state costs time at every step
+        )
+        stack.callback(self._instance.close)
+        self._resources = stack.pop_all()
+
+    # --- start ---------------------------------------------------------------------------------
+
+    def start(self, *, position: float = 0.0, speed: float = 0.0) -> None:
+        """Begin (again) at time 0 with a new instance of the FMU.
+
+        Args:
+            position: [m].
+            speed: [m/s]; an FMU without a parameter for it is driven up to it before time 0.
+
+        Raises:
+            FmuStartError: the FMU refuses its start values, or does not start at this speed.
+            FmuOutputError: an output is not a number that a car can have.
+            FmuStateError: the vehicle has been closed.
+        """
+        if self._closed:
+            raise FmuStateError(self._refusal)
+        for quantity, value in (("position", position), ("speed", speed)):
+            if not isfinite(value):
+                msg = f"{self.path}: start at a {quantity} of {value}; expected a finite number"
+                raise FmuStartError(msg)
+        self._instance.stop()
+        self._refuse("has not started; call start() again")
+        self._steps = self._earlier = 0
+        self.time = 0.0
+        wiring = self.prepared.wiring
+        self._instance.start(
+            start_values(self.prepared, position, speed),
+            [wire.channel for wire in wiring.inputs],
+            [wire.channel for wire in wiring.outputs],
+        )
+        self._inputs = self._instance.inputs
+        self._outputs = self._instance.outputs
+        self._tick = self._instance.tick
+        self._motion = motion = Motion(self.prepared)
+        self.warnings = motion.warnings
+        motion.begin(self._outputs)
+        self._refusal = ""
+        self._show(motion)
+        try:
+            self._reach(position, speed)
+        except BaseException:
+            self._fail()
+            raise
+        self._ends = ((0.0, 0.0), (self.position, self.speed))
+
+    def _reach(self, position: float, speed: float) -> None:
+        """Check the first position and speed, or drive up to the speed before time 0."""
+        duration = reach(self, speed)
+        if duration is not None:
+            self._earlier, self._steps = self._steps, 0
+            self.time = 0.0
+            self.warnings.append(
+                f"{self.path.name}: no parameter for the initial speed: driven up to "
+                f"{self.speed:.3g} m/s in {duration:.3g} s before the start"
+            )
+        wiring = self.prepared.wiring
+        if wiring.initial_position is None or wiring.output("position") is None or self._earlier:
+            self._motion.count_from(position)
+        else:
+            require_position(self, position)
+        self._show(self._motion)
+
+    @property
+    def between_steps(self) -> bool:
+        """Not within a step of the FMU that is longer than the controller's."""
+        return (self._earlier + self._steps) % self._pace.stretch == 0
+
+    # --- steps ---------------------------------------------------------------------------------
+
+    def step(self, force: float) -> None:
+        """Hold ``force`` [N] for one step; the results are in the attributes.
+
+        Raises:
+            FmuStepError: the force is not a finite number, or the FMU does not do the step.
+            FmuOutputError: an output is not a number that a car can have.
+            FmuStateError: the vehicle is not running.
+        """
+        self._require_step(force)
+        motion, done, stretch = self._motion, self._earlier + self._steps, self._pace.stretch
+        if stretch == 1 or done % stretch == 0:
+            self._drive(force, done)
+        self._steps += 1
+        self.time = self._steps * self.step_size
+        self.acceleration = motion.acceleration
+        if stretch == 1:
+            self.position, self.speed = motion.position, motion.speed
+        else:
+            share = (done % stretch + 1) / stretch
+            self.position, self.speed = between(*self._ends, self._pace.step, share)
+
+    def _drive(self, force: float, done: int) -> None:
+        """Do the FMU's steps of one control step, or the FMU's one step if that is longer."""
+        pace, motion, tick = self._pace, self._motion, self._tick
+        self._command.apply(force, motion.speed, self._inputs)
+        if self.prepared.bounds:
+            motion.keep_bounds(self._inputs)
+        h, substeps = pace.step, pace.substeps
+        first = done // pace.stretch * substeps
+        for number in range(first, first + substeps):
+            status = tick(number * h, h)
+            if status > WARNING:
+                self._step_failed(force, status)
+        end = (self._steps + pace.stretch) * self.step_size
+        try:
+            motion.follow(self._outputs, force, substeps * h, end)
+        except FmuOutputError:
+            self.time = end
+            self._show(motion)
+            self._fail()
+            raise
+        if pace.stretch > 1:
+            self._ends = (self._ends[1], (motion.position, motion.speed))
+
+    def _show(self, motion: Motion) -> None:
+        self.position, self.speed, self.acceleration = motion.state
+
+    # --- end -----------------------------------------------------------------------------------
+
+    def close(self) -> None:
+        """Free everything, including the temporary folder; nothing happens the second time."""
+        if not self._closed:
+            self._closed = True
+            self._refuse("has been closed; make a new one")
+            self._instance.stop()
+            self._resources.close()
+
+    def _own_step(self) -> str:
+        """Advice for an FMU that does steps of one length only: the end of a message, or empty."""
+        wanted, interface = self.prepared.model.default_step, self.prepared.wiring.interface
+        if interface.variable_step or wanted is None or isclose(wanted, self._pace.step):
+            return ""
+        return (
+            "; it does steps of one length only, and its default experiment's is "
+            f"{wanted:g} s: add step = {wanted:g} to [fmu]{step_to_run_with(wanted)}"
+        )
+
+    def _step_failed(self, force: float, status: int) -> NoReturn:
+        self._fail()
+        said = self._instance.messages.take() or "without a message"
+        end = (self._steps + self._pace.stretch) * self.step_size
+        msg = (
+            f"{self.path}: no step from {self.time:.10g} s to {end:.10g} s under {force:g} N: the "
+            f"FMU returned '{STATUS_NAMES[status]}', {said}{self._own_step()}"
+        )
+        raise FmuStepError(msg)

@@ -1,0 +1,17 @@
+"""What FMPy's validation says of an FMU."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fmus.text import printable
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def findings(path: Path) -> list[str]:
+    """What FMPy's validation finds fault with; each a line. FMUs of well-known tools have some."""
+    from fmpy.validation import validate_fmu
+
+    return [printable(problem) for problem in validate_fmu(str(path))]

@@ -1,0 +1,1 @@
+"""What the floors above may expect of a vehicle, wherever its FMU runs."""

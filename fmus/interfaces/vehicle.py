@@ -1,0 +1,102 @@
+"""What any vehicle offers, wherever its FMU runs."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from math import isfinite
+from typing import TYPE_CHECKING, Self
+
+from fmus.errors import FmuStateError, FmuStepError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+    from types import TracebackType
+
+    from fmus.profile.preparation import Prepared
+
+
+class Vehicle(ABC):
+    """What giveway drives, in this process or in one of its own.
+
+    Args:
+        path: of the FMU.
+
+    Attributes:
+        position: [m] as of the last step.
+        speed: [m/s] as of the last step.
+        acceleration: [m/s2] as of the last step.
+        time: [s] the number of steps times the step size, never a running sum.
+        step_size: of the controller [s].
+        warnings: what the user should know of this FMU, since its last start.
+    """
+
+    step_size: float
+    warnings: list[str]
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.position = self.speed = self.acceleration = self.time = 0.0
+        self._failed = False  # at the last start or step
+        self._refusal = ""  # why no step can be done; empty while the vehicle is running
+        self._refuse("has not been started; call start() first")
+
+    @abstractmethod
+    def start(self, *, position: float = 0.0, speed: float = 0.0) -> None:
+        """Begin (again) at time 0, at a position [m] and a speed [m/s]."""
+
+    @abstractmethod
+    def step(self, force: float) -> None:
+        """Hold ``force`` [N] for one step; the results are in the attributes."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Free everything; nothing happens the second time."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _require_step(self, force: float) -> None:
+        """Refuse a step that cannot be done.
+
+        Raises:
+            FmuStateError: the vehicle is not running.
+            FmuStepError: the force is not a finite number.
+        """
+        if self._refusal:
+            raise FmuStateError(self._refusal)
+        if not isfinite(force):
+            msg = f"{self.path}: force {force} N at {self.time:.10g} s; expected a finite number"
+            raise FmuStepError(msg)
+
+    def _refuse(self, reason: str) -> None:
+        """Have all steps refused for this reason until the next start."""
+        self._failed = False
+        self._refusal = f"{self.path}: the vehicle {reason}"
+
+    def _fail(self) -> None:
+        """Have all steps refused because the last start or step has failed."""
+        self._refuse(f"failed at {self.time:.10g} s; start it again")
+        self._failed = True
+
+
+class Drivable(Vehicle):
+    """A vehicle whose FMU has been prepared and whose steps can be counted.
+
+    Attributes:
+        prepared: its FMU, with the wiring of the profile.
+    """
+
+    prepared: Prepared
+
+    @property
+    @abstractmethod
+    def between_steps(self) -> bool:
+        """Not within a step of the FMU that is longer than the controller's."""

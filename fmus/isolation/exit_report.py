@@ -1,0 +1,98 @@
+"""How an FMU's process ended, in numbers and in words."""
+
+from __future__ import annotations
+
+import json
+import signal
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Final
+
+from fmus.isolation.wire import CONNECTION_LOST
+from fmus.text import printable
+
+_WORDS: Final = {
+    "SIGSEGV": "a segmentation fault (SIGSEGV: a bad address, or the stack overflowed)",
+    "SIGBUS": "a bus error (SIGBUS: a bad address, or the stack overflowed)",
+    "SIGABRT": "abort (SIGABRT: it gave up itself, or its memory is corrupted)",
+    "SIGFPE": "an arithmetic trap (SIGFPE: division by zero or a floating-point exception)",
+    "SIGILL": "an illegal instruction (SIGILL: built for another processor, or a trap)",
+}
+_TAIL: Final = 4096  # [bytes]
+
+
+@dataclass(frozen=True)
+class ExitReport:
+    """How a process ended.
+
+    Attributes:
+        code: its exit status, or minus the signal that killed it; None: unknown, because the
+            watchdog is dead too.
+        killed: giveway killed it.
+        oom: meanwhile the system killed some process for lack of memory.
+        printed: the last line that it printed; empty without one.
+    """
+
+    code: int | None
+    killed: bool
+    oom: bool
+    printed: str
+
+    def encoded(self) -> bytes:
+        """The report as bytes, for :func:`decode_report`."""
+        return json.dumps(asdict(self)).encode()
+
+    @property
+    def cause(self) -> str:
+        """A predicate such as 'died of ...', to follow a subject."""
+        if self.code is None:
+            return "killed the process that watches over it"
+        if self.killed or self.code == CONNECTION_LOST:
+            return "closed files that are not its own, or ended giveway's Python"
+        if self.code >= 0:
+            return f"ended itself: exit({self.code}) was called"
+        try:
+            name = signal.Signals(-self.code).name
+        except ValueError:
+            name = f"signal {-self.code}"
+        if name == "SIGKILL" and self.oom:
+            return "was killed by the system for lack of memory (SIGKILL)"
+        return f"died of {_WORDS.get(name, name)}"
+
+    @property
+    def after_printing(self) -> str:
+        """A clause ', after printing ...'; empty if nothing was printed."""
+        return f", after printing '{self.printed}'" if self.printed else ""
+
+
+def decode_report(message: bytes) -> ExitReport:
+    """The report that :meth:`ExitReport.encoded` turned into bytes."""
+    return ExitReport(**json.loads(message))
+
+
+class PrintedTail:
+    """Keeps the end of what a process has printed."""
+
+    def __init__(self) -> None:
+        self._end = b""
+
+    def add(self, piece: bytes) -> None:
+        """Take in another piece of output."""
+        self._end = (self._end + piece)[-_TAIL:]
+
+    def last_line(self) -> str:
+        """The last line that is not blank, fit for a message; empty if there is none."""
+        lines = (
+            printable(line) for line in reversed(self._end.decode("utf-8", "replace").splitlines())
+        )
+        return next((line for line in lines if line.strip()), "")
+
+
+def out_of_memory_kills() -> int:
+    """How many processes this system has killed for lack of memory; 0 where it does not say."""
+    try:
+        text = Path("/proc/vmstat").read_text(encoding="ascii")
+    except OSError:
+        return 0
+    counts = (line.split() for line in text.splitlines() if line.startswith("oom_kill "))
+    return next((int(count[1]) for count in counts), 0)

@@ -1,0 +1,54 @@
+"""Starting and ending the FMU's processes, as seen from the vehicle."""
+
+from __future__ import annotations
+
+import pickle
+import sys
+from typing import TYPE_CHECKING, Protocol
+
+from fmus.isolation.cleanup import scratch_of
+from fmus.isolation.linux_host import LinuxHost
+from fmus.isolation.portable_host import PortableHost
+from fmus.isolation.worker import Order
+
+if TYPE_CHECKING:
+    import socket
+    from pathlib import Path
+
+    from fmus.isolation.exit_report import ExitReport
+    from fmus.profile.preparation import Prepared
+
+
+class ProcessHost(Protocol):
+    """Starts and ends the processes of one FMU."""
+
+    def start_process(self) -> socket.socket:
+        """Start a new process for the FMU and return the connection to it.
+
+        Raises:
+            FmuCrashError: it cannot be started.
+        """
+
+    def end_process(self, patience: float = 0.0) -> ExitReport:
+        """End the FMU's process and everything that it has started; return how it ended.
+
+        Args:
+            patience: time that it has to end by itself first [s].
+        """
+
+    def close(self) -> None:
+        """End everything and wait until it has ended."""
+
+
+def make_process_host(prepared: Prepared, folder: Path) -> ProcessHost:
+    """The process host for this platform.
+
+    Args:
+        prepared: the vehicle.
+        folder: temporary, for the host to write to; by the time that a process starts, the
+            unpacked FMU is in its folder ``fmu``.
+    """
+    order = Order(prepared, folder / "fmu")
+    (folder / "order").write_bytes(pickle.dumps(order))
+    scratch_of(folder).mkdir()
+    return (LinuxHost if sys.platform == "linux" else PortableHost)(prepared.path, folder)

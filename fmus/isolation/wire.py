@@ -1,0 +1,124 @@
+"""The messages between the vehicle and its FMU's process.
+
+Requests and replies have a fixed head, so that a step costs one write and one read on each side.
+Replies of the FMU's process are not trusted, because an FMU can write into any open file: nothing
+is unpickled, every head must carry the number of its request, and the text that follows it is JSON
+of bounded size.
+"""
+
+from __future__ import annotations
+
+import json
+import socket
+import struct
+import weakref
+from time import monotonic
+from typing import Any, Final
+
+LOAD: Final = b"load"  # 0, 0
+START: Final = b"strt"  # position [m], speed [m/s]
+STEP: Final = b"step"  # force [N], 0
+QUIT: Final = b"quit"  # 0, 0
+DONE: Final = b"done"  # position [m], speed [m/s], acceleration [m/s2]
+FAILED: Final = b"fail"  # the same values; the text is the error
+REQUEST: Final = struct.Struct("<4sIdd")  # what, number, two values
+REPLY: Final = struct.Struct("<4sIIddd")  # what, number of the request, size of the text, values
+TEXT_LIMIT: Final = 1 << 16  # [bytes]
+START_WORKER: Final = b"fork"  # to the watchdog, with the worker's end of the connection
+END_WORKER: Final = b"end"  # with a patience [ms], before it is killed; answered by its report
+MESSAGE: Final = 4096  # [bytes] from and to the watchdog at most
+CONNECTION_LOST: Final = 113  # exit status of a process whose connection has been closed
+
+Text = dict[str, Any]
+Reply = tuple[bool, float, float, float, Text]
+"""Whether the request was done, three values, the text."""
+
+
+class GarbledError(Exception):
+    """The bytes received are no reply."""
+
+
+class Client:
+    """The vehicle's end of the connection.
+
+    Args:
+        connection: a stream socket, owned by the client from now on.
+    """
+
+    def __init__(self, connection: socket.socket) -> None:
+        self._connection = connection
+        self._closing = weakref.finalize(self, connection.close)
+        self._number = 0
+        self._timeout: float | None = None
+        self._head = bytearray(REPLY.size)
+
+    def ask(self, what: bytes, first: float, second: float, timeout: float) -> Reply:
+        """Send one request and return its reply, which must come within ``timeout`` [s].
+
+        Raises:
+            TimeoutError: no reply came.
+            EOFError: no reply will come, because the process has ended.
+            GarbledError: the bytes received are no reply.
+        """
+        connection = self._connection
+        if timeout != self._timeout:  # saves a system call in every step
+            connection.settimeout(timeout)
+            self._timeout = timeout
+        self._number = number = (self._number + 1) & 0xFFFFFFFF
+        try:
+            connection.send(REQUEST.pack(what, number, first, second))
+            size = connection.recv_into(self._head)
+            if size != REPLY.size:
+                self._fill(self._head, size, timeout)
+            kind, echo, length, x, v, a = REPLY.unpack(self._head)
+            if echo != number or length > TEXT_LIMIT or (kind != DONE and kind != FAILED):
+                raise GarbledError
+            return kind == DONE, x, v, a, self._text(length, timeout) if length else {}
+        except TimeoutError:
+            raise
+        except OSError as error:
+            raise EOFError from error
+
+    def close(self) -> None:
+        """Close the connection; the process ends when it notices."""
+        self._closing()
+
+    def _text(self, length: int, timeout: float) -> Text:
+        buffer = bytearray(length)
+        self._fill(buffer, self._connection.recv_into(buffer), timeout)
+        try:
+            text = json.loads(buffer)
+        except (ValueError, RecursionError):
+            raise GarbledError from None
+        if not isinstance(text, dict):
+            raise GarbledError
+        return text
+
+    def _fill(self, buffer: bytearray, got: int, timeout: float) -> None:
+        """Fill a buffer whose first ``got`` bytes have come, within ``timeout`` [s]."""
+        end, have = monotonic() + timeout, got
+        self._timeout = None  # changed below
+        while have < len(buffer):
+            if got == 0:
+                raise EOFError
+            self._connection.settimeout(max(end - monotonic(), 1e-3))
+            got = self._connection.recv_into(memoryview(buffer)[have:])
+            have += got
+
+
+def receive(connection: socket.socket) -> tuple[bytes, int, float, float] | None:
+    """The next request, received in the FMU's process; None: the connection has been closed."""
+    head = connection.recv(REQUEST.size, socket.MSG_WAITALL)
+    return REQUEST.unpack(head) if len(head) == REQUEST.size else None
+
+
+def reply(
+    connection: socket.socket,
+    kind: bytes,
+    number: int,
+    state: tuple[float, float, float],
+    text: Text | None = None,
+) -> None:
+    """Answer a request with DONE or FAILED."""
+    body = json.dumps(text).encode() if text else b""
+    connection.sendall(REPLY.pack(kind, number, len(body), *state) + body)

@@ -1,0 +1,1 @@
+"""Which variables play the vehicle's roles, and all preparation before native code runs."""

@@ -1,0 +1,134 @@
+"""From the force that the controller wants to what an FMU's inputs are set to: the inverse maps.
+
+The controller's model is M v' + alpha v = u (Yang & Özgüner 2019, eq. (2)). An FMU that takes no
+force gets what makes this model's car move the same way; M and alpha are the profile's
+``inverse_map``.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fmus.profile.vehicle_profile import VehicleProfile
+    from fmus.profile.wiring import Wire
+
+
+class Command(ABC):
+    """Turns a force into the values of the FMU's inputs."""
+
+    @abstractmethod
+    def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
+        """Fill the inputs, in the FMU's units.
+
+        Args:
+            force: u [N], forwards positive.
+            speed: v [m/s] now.
+            inputs: to be filled.
+        """
+
+
+@dataclass(frozen=True)
+class ForceCommand(Command):
+    """u itself; at a standstill a brake holds and does not push backwards."""
+
+    scale: float
+    shift: float
+    block_reverse: bool
+
+    def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
+        """As for :class:`Command`."""
+        if self.block_reverse and force < 0.0 and speed <= 0.0:
+            force = 0.0
+        inputs[0] = (force - self.shift) / self.scale
+
+
+@dataclass(frozen=True)
+class SplitForceCommand(Command):
+    """max(u, 0) for the drive, max(-u, 0) for the brake."""
+
+    drive: Wire
+    brake: Wire
+
+    def apply(self, force: float, _speed: float, inputs: memoryview[float], /) -> None:
+        """As for :class:`Command`."""
+        inputs[0] = self.drive.to_raw(max(force, 0.0))
+        inputs[1] = self.brake.to_raw(max(-force, 0.0))
+
+
+@dataclass(frozen=True)
+class AccelerationCommand(Command):
+    """(u - alpha v) / M."""
+
+    wire: Wire
+    mass: float  # M [kg]
+    friction: float  # alpha [N.s/m]
+    block_reverse: bool
+
+    def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
+        """As for :class:`Command`."""
+        acceleration = (force - self.friction * speed) / self.mass
+        if self.block_reverse and acceleration < 0.0 and speed <= 0.0:
+            acceleration = 0.0
+        inputs[0] = self.wire.to_raw(acceleration)
+
+
+@dataclass(frozen=True)
+class PedalCommand(Command):
+    """The share of the force at full throttle or full brake, up to 1."""
+
+    throttle: Wire
+    brake: Wire
+    full_drive: float  # [N]
+    full_brake: float  # [N]
+
+    def apply(self, force: float, _speed: float, inputs: memoryview[float], /) -> None:
+        """As for :class:`Command`."""
+        inputs[0] = self.throttle.to_raw(min(max(force / self.full_drive, 0.0), 1.0))
+        inputs[1] = self.brake.to_raw(min(max(-force / self.full_brake, 0.0), 1.0))
+
+
+@dataclass(frozen=True)
+class SetpointCommand(Command):
+    """v + T (u - alpha v) / M, never below 0.
+
+    A speed loop v' = (v_set - v) / T then accelerates as the controller's model does.
+    """
+
+    wire: Wire
+    mass: float  # M [kg]
+    friction: float  # alpha [N.s/m]
+    lead: float  # T [s]
+
+    def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
+        """As for :class:`Command`."""
+        acceleration = (force - self.friction * speed) / self.mass
+        inputs[0] = self.wire.to_raw(max(0.0, speed + self.lead * acceleration))
+
+
+def make_command(profile: VehicleProfile, wires: Sequence[Wire], step_size: float) -> Command:
+    """The inverse map for the inputs that a profile names.
+
+    Args:
+        profile: of the FMU.
+        wires: of its inputs, in the order of :func:`fmus.profile.wiring.wire`.
+        step_size: of the controller [s].
+    """
+    inputs, M, alpha = profile.inputs, profile.inverse_map.mass, profile.inverse_map.friction
+    if inputs.force is not None:
+        wire = wires[0]
+        return ForceCommand(wire.scale, wire.shift, inputs.block_reverse)
+    if inputs.drive_force is not None:
+        return SplitForceCommand(wires[0], wires[1])
+    if inputs.acceleration is not None:
+        return AccelerationCommand(wires[0], M, alpha, inputs.block_reverse)
+    if inputs.throttle is not None and inputs.brake is not None:
+        full_drive, full_brake = inputs.throttle.full_force, inputs.brake.full_force
+        return PedalCommand(wires[0], wires[1], full_drive, full_brake)
+    assert inputs.speed_setpoint is not None  # the profile has one of the five
+    lead = inputs.speed_setpoint.lead or step_size
+    return SetpointCommand(wires[0], M, alpha, lead)

@@ -1,0 +1,290 @@
+"""A vehicle profile drafted from what an FMU says about itself.
+
+What is certain is written as a setting; what is open is written as a question, in lines that begin
+with ``# ?``. A draft without questions is a profile that runs.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+from fmus.description.model import Kind
+from fmus.errors import FmuProfileError
+from fmus.profile.draft import Draft, Entry, Line, toml_value
+from fmus.profile.matching import ROLES, guesses, unambiguous
+from fmus.profile.pace import divides
+from fmus.profile.questions import (
+    axis_question,
+    channel_name,
+    contradiction,
+    numbers,
+    unit_question,
+)
+from fmus.profile.vehicle_profile import make_profile
+from fmus.text import listed, printable
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from pathlib import Path
+
+    from fmus.description.model import Model, Variable
+    from fmus.profile.matching import Guess
+    from fmus.profile.vehicle_profile import VehicleProfile
+
+PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}  # [N] of a car of 1000 kg
+CONTROL_STEP: Final = 0.05  # [s] the usual one
+NAMED: Final = 3  # doubts in an error
+
+
+def draft_profile(model: Model) -> Draft:
+    """Guess a profile from names, units and causality."""
+    inputs = [v for v in model.variables.values() if v.causality == "input"]
+    entries, used = _inputs(model, inputs) if numbers(inputs) else _without_inputs(model)
+    idle = [v.name for v in inputs if v.name not in used]
+    entries = [_fmu(model), *entries, *_outputs(model), *_initial(model)]
+    return Draft(model, tuple(entries), tuple(_remarks(model, idle if used else [])))
+
+
+def require_confident(draft: Draft, path: Path) -> VehicleProfile:
+    """The profile of a draft in which nothing is open.
+
+    Raises:
+        FmuProfileError: something is open; the message says what, and the lines to write.
+    """
+    doubts = draft.doubts
+    if doubts:
+        more = f"; and {len(doubts) - NAMED} more" if len(doubts) > NAMED else ""
+        msg = (
+            f"{path}: needs a vehicle profile: {'; '.join(doubts[:NAMED])}{more}; 'giveway fmu "
+            f"inspect {path} --draft car.toml' writes the rest"
+        )
+        raise FmuProfileError(msg)
+    return make_profile(draft.values, f"{path}: drafted profile")
+
+
+# ---- how it is stepped ----
+
+
+def _fmu(model: Model) -> Entry:
+    kinds = list(model.interfaces)
+    kind = Kind.CO_SIMULATION if Kind.CO_SIMULATION in kinds else kinds[0]
+    others = ", ".join(other for other in kinds if other != kind)
+    lines = [Line("kind", str(kind), f"the FMU offers {others}, too" if others else "")]
+    interface, step = model.interfaces[kind], model.default_step
+    if interface.fixed_internal_step is not None:
+        lines.append(Line("step", interface.fixed_internal_step, "s, its fixed internal step"))
+    elif kind is Kind.CO_SIMULATION and not interface.variable_step and step is not None:
+        comment = "s, of its default experiment; it takes steps of one length only"
+        lines.append(Line("step", step, comment, sure=divides(step, CONTROL_STEP)))
+    return Entry("fmu", tuple(lines))
+
+
+# ---- inputs ----
+
+WAYS: Final = (
+    ("force",),
+    ("drive_force", "brake_force"),
+    ("acceleration",),
+    ("throttle", "brake"),
+    ("speed_setpoint",),
+)
+
+
+def _inputs(model: Model, inputs: Sequence[Variable]) -> tuple[list[Entry], set[str]]:
+    """The tables of the way in which the vehicle is driven, and the variables that they use."""
+    ranked = {role: guesses(model, role, inputs) for way in WAYS for role in way}
+    ways = sorted(
+        (way for way in WAYS if all(ranked[role] for role in way) and _distinct(ranked, way)),
+        key=lambda way: -_merit(ranked, way),
+    )
+    if not ways:
+        return [_no_input(model, ranked, inputs)], set()
+    way = ways[0]
+    rivals = [other for other in ways[1:] if _merit(ranked, other) == _merit(ranked, way)]
+    entries = [_axis("inputs", role, ranked[role]) for role in way]
+    if rivals:
+        doubt = _choice(ranked, (way, *rivals))
+        entries = [_open(entry, doubt) for entry in entries]
+        entries += [_axis("inputs", role, ranked[role], alternative=True) for role in rivals[0]]
+    return entries, {ranked[role][0].channel.variable.name for role in way}
+
+
+def _choice(ranked: dict[str, list[Guess]], ways: tuple[tuple[str, ...], ...]) -> str:
+    """The question which of several ways to drive is meant."""
+    names = [" and ".join(f"'{ranked[role][0].channel.name}'" for role in way) for way in ways]
+    roles = [" and ".join(way) for way in ways]
+    if len(set(names)) == 1:
+        return f"{printable(names[0], 60)} has no unit: is it {' or '.join(roles)}? Add its unit"
+    what = "; ".join(f"{role}: {name}" for role, name in zip(roles, names, strict=True))
+    return f"{printable(what)}? Choose one way to drive"
+
+
+def _distinct(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> bool:
+    names = {ranked[role][0].channel.name for role in way}
+    return len(names) == len(way)
+
+
+def _merit(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> float:
+    """How well a way to drive fits: its weakest guess counts; two good ones beat a single one."""
+    weakest = min(ranked[role][0].score for role in way)
+    fits = min(-1 if ranked[role][0].fits is False else 0 for role in way)
+    both = 1 if len(way) > 1 and way != ("throttle", "brake") else 0
+    return fits * 100.0 + weakest + both
+
+
+def _without_inputs(model: Model) -> tuple[list[Entry], set[str]]:
+    """The way to drive by tunable parameters, which some tools export in place of inputs."""
+    tunable = [
+        v
+        for v in model.variables.values()
+        if v.causality == "parameter" and v.variability == "tunable"
+    ]
+    entries, _ = _inputs(model, tunable)
+    if not tunable or "?" in {line.value for entry in entries for line in entry.lines}:
+        return _inputs(model, [])
+    names = " and ".join(f"'{printable(str(entry.lines[0].value), 40)}'" for entry in entries)
+    doubt = f"the FMU has no input; is it driven by {names}, tunable? Then take the lines"
+    return [_open(entry, doubt) for entry in entries], set()
+
+
+def _no_input(model: Model, ranked: dict[str, list[Guess]], inputs: Sequence[Variable]) -> Entry:
+    for one, other in (("throttle", "brake"), ("drive_force", "brake_force")):
+        for present, missing in ((one, other), (other, one)):
+            if ranked[present] and not ranked[missing]:
+                name = ranked[present][0].channel.name
+                doubt = f"'{name}' is a {present}, but no input is a {missing}; name it"
+                line = Line("variable", "?", "an input of the FMU", sure=False)
+                return Entry(f"inputs.{missing}", (line,), "", printable(doubt), sure=False)
+    names = numbers(inputs)
+    hint = axis_question(model, inputs)
+    if hint is not None:
+        name, line, doubt = hint
+        return Entry("inputs.force", (Line("variable", name, sure=False), line), "", doubt, False)
+    has = f"its inputs are {listed(names)}" if names else "it has no numeric input"
+    doubt = f'no input that drives a vehicle; {has}; add [inputs.force] variable = "..."'
+    lines = (
+        Line("variable", names[0] if len(names) == 1 else "?", listed(names), sure=False),
+        Line("unit", "?", "N, kN; or another table: docs/vehicles.md", sure=False),
+    )
+    return Entry("inputs.force", lines, "", doubt, sure=False)
+
+
+# ---- outputs ----
+
+
+def _outputs(model: Model) -> list[Entry]:
+    outputs = [v for v in model.variables.values() if v.causality == "output"]
+    inner = [
+        v
+        for v in model.variables.values()
+        if v.causality == "local" and v.variability in {"continuous", "discrete"}
+    ]
+    entries = []
+    speed = guesses(model, "speed", outputs)
+    if speed and speed[0].fits is not False:
+        entries.append(_axis("outputs", "speed", speed))
+    elif hidden := [g for g in guesses(model, "speed", inner) if g.name_score >= 9]:
+        entry = _axis("outputs", "speed", hidden)
+        name = printable(hidden[0].channel.name, 60)
+        doubt = f"no output is a speed; is it the local variable '{name}'? Then write variable = "
+        entries.append(_open(entry, f"{doubt}{toml_value(hidden[0].channel.name)}"))
+    elif speed:
+        entries.append(_axis("outputs", "speed", speed))
+    else:
+        names = numbers(outputs)
+        doubt = f"no output is a speed; its outputs are {listed(names) or 'none'}"
+        lines = (Line("variable", "?", listed(names), sure=False),)
+        entries.append(Entry("outputs.speed", lines, "", doubt, sure=False))
+    position = [g for g in guesses(model, "position", outputs) if g.fits is not False]
+    if position:
+        entries.append(_axis("outputs", "position", position))
+    acceleration = guesses(model, "measured_acceleration", outputs)
+    if unambiguous(acceleration) and acceleration[0].fits:  # optional: not worth a question
+        entries.append(_axis("outputs", "acceleration", acceleration))
+    return entries
+
+
+# ---- the start ----
+
+
+def _initial(model: Model) -> list[Entry]:
+    """The variables for the start; without an unambiguous one the vehicle is driven up to speed."""
+    free = [
+        v
+        for v in model.variables.values()
+        if v.settable and v.causality in {"parameter", "input", "structuralParameter"}
+    ]
+    states = [v for v in model.variables.values() if v.settable and v.causality == "output"]
+    entries = []
+    for quantity, table in (("speed", "initial.speed"), ("position", "initial.position")):
+        ranked = [g for g in guesses(model, f"initial_{quantity}", free) if g.fits is not False]
+        if not ranked:  # the output itself may have a start value
+            ranked = [g for g in guesses(model, quantity, states) if g.fits]
+        if not unambiguous(ranked) or ranked[0].name_score < 9:
+            continue
+        entries.append(_axis("initial", quantity, ranked))
+        assert entries[-1].table == table
+    return entries
+
+
+# ---- words ----
+
+
+def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = False) -> Entry:
+    """The table of a role, written for its best guess, which comes first."""
+    best = ranked[0]
+    variable, name = best.channel.variable, channel_name(best.channel)
+    place = f"{table}.{role}"
+    wanted = ROLES[_role_key(table, role)].dimension
+    lines = [Line("variable", name, variable.description)]
+    doubt = ""
+    sure = unambiguous(ranked) and not alternative
+    if not unambiguous(ranked):
+        ties = [g for g in ranked if g.score == best.score]
+        names = listed([f"'{printable(g.channel.name, 40)}'" for g in ties])
+        doubt = f"which of {names}? write variable = {toml_value(name)} or another"
+    elif variable.size > 1:
+        doubt = f"'{printable(variable.name, 60)}' is an array of {variable.size}; which element?"
+        sure = False
+    if variable.negated:
+        minus = f"'{printable(name, 60)}' is minus another variable: is it positive forwards?"
+        doubt = doubt or f"{minus} Then keep the line, else add gain = -1.0"
+    pedal = role in {"throttle", "brake"}
+    if best.fits is None:
+        line, question = unit_question(variable, wanted, pedal=pedal)
+        lines.append(line)
+        doubt = doubt or question
+    elif best.fits is False:
+        line, question = contradiction(best, variable, role)
+        lines.append(line)
+        doubt = doubt or question
+    else:
+        lines[0] = Line("variable", name, f"{variable.unit}: {variable.description}".rstrip(": "))
+    if pedal:
+        comment = "N at the wheels, fully pressed; giveway fmu identify measures it"
+        lines.append(Line("full_force", PEDAL_FORCE[role], comment, sure=False))
+        force = f"full_force = {PEDAL_FORCE[role]:g} or what it is [N]"
+        strength = f"the FMU does not say how strong it is; write {force}"
+        doubt = f"{doubt}; {strength}" if doubt else strength
+    if alternative:
+        return Entry(place, tuple(lines), "or else:", "", sure=False)
+    return Entry(place, tuple(lines), "", doubt, sure)
+
+
+def _role_key(table: str, role: str) -> str:
+    if table == "initial":
+        return f"initial_{role}"
+    return "measured_acceleration" if (table, role) == ("outputs", "acceleration") else role
+
+
+def _open(entry: Entry, doubt: str) -> Entry:
+    lines = tuple(Line(line.key, line.value, line.comment, sure=False) for line in entry.lines)
+    return Entry(entry.table, lines, entry.why, doubt, sure=False)
+
+
+def _remarks(model: Model, idle: Sequence[str]) -> Iterable[str]:
+    if idle:
+        names = listed([f"'{printable(name, 40)}'" for name in idle])
+        yield f"Inputs that keep their start values: {names}; [parameters] sets others."
+    if any(interface.needs_execution_tool for interface in model.interfaces.values()):
+        yield "The FMU needs the tool that made it, installed on this machine."

@@ -1,0 +1,247 @@
+"""Which of an FMU's variables may play which part, judged by name, unit and causality.
+
+A wrong guess could drive a car by its steering angle. So where two variables fit equally well, or a
+unit contradicts a name, the draft asks a question.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from fmus.description import units
+from fmus.description.model import Channel
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from fmus.description.model import Dimension, Model, Variable
+
+
+@dataclass(frozen=True)
+class Role:
+    """How the variables of a role are usually named.
+
+    Attributes:
+        dimension: of its quantity.
+        names: whole names (without separators and fillers), the strongest evidence.
+        words: parts of a name that point at the role.
+        never: parts of a name that exclude the role, besides those of :data:`OTHER_PARTS`.
+    """
+
+    dimension: Dimension
+    names: frozenset[str]
+    words: frozenset[str]
+    never: frozenset[str] = frozenset()
+
+
+def _set(words: str) -> frozenset[str]:
+    return frozenset(words.split())
+
+
+FILLERS: Final = _set(
+    "vehicle veh car ego body plant model chassis out output in input actual act current measured "
+    "meas cmd command control ctrl longitudinal long lon lng total net value val signal sig x si "
+    "mps ms kmh kph mph n kn m km percent pct the of i o real"
+)
+OTHER_PARTS: Final = _set(
+    "wind lateral lat y z vertical normal yaw roll pitch steer steering gear clutch slope grade "
+    "inclination angle disturbance disturb noise drag aero rolling resistance gravity error err "
+    "rel relative lead leader front rear wheel wheels engine motor angular rot rotational omega "
+    "rpm temperature gap headway max min limit lim lower upper bound ambient nominal mean average "
+    "spring damper support fixed vy vz ay az fy fz rev reverse reversed backward backwards"
+)
+WANTED: Final = _set(
+    "ref reference set setpoint sp target desired des demand dem request req cruise"
+)
+AT_START: Final = _set("0 start init initial begin")
+SHORT: Final = {"pdl": "pedal", "ped": "pedal", "accl": "accel", "trq": "torque"}
+DRIVE: Final = _set(
+    "drive driving traction tractive propulsion propulsive thrust engine motor accelerating"
+)
+BRAKE: Final = _set("brake braking brakes brk decel")
+
+ROLES: Final = {
+    "force": Role(
+        units.FORCE,
+        _set(
+            "force f fx u thrust tractiveforce traction tractionforce drivingforce fwheel "
+            "wheelforce"
+        ),
+        _set("force thrust tractive traction propulsion"),
+        BRAKE | AT_START,
+    ),
+    "drive_force": Role(
+        units.FORCE,
+        _set(
+            "driveforce drivingforce fdrive tractiveforce tractionforce traction thrust "
+            "propulsionforce forcedrive fd ftrac ftraction engineforce motorforce fengine fmotor"
+        ),
+        DRIVE,
+        BRAKE | AT_START,
+    ),
+    "brake_force": Role(
+        units.FORCE,
+        _set("brakeforce brakingforce fbrake forcebrake fb fbrk"),
+        BRAKE,
+        AT_START,
+    ),
+    "acceleration": Role(
+        units.ACCELERATION,
+        _set("acceleration accel acc a ax u aref ades acmd aset areq axref"),
+        _set("acceleration accel acc"),
+        _set("pedal position") | AT_START,
+    ),
+    "throttle": Role(
+        units.NONE,
+        _set(
+            "throttle accelerator acceleratorpedal accelpedal pedal gas gaspedal apps "
+            "throttleposition pedalposition accel throttlepedal"
+        ),
+        _set("throttle accelerator apps gas"),
+        BRAKE | AT_START,
+    ),
+    "brake": Role(
+        units.NONE,
+        _set("brake brakes brakepedal brkpedal brk brakeposition braking bpps"),
+        BRAKE | _set("bpps"),
+        _set("park parking") | AT_START,
+    ),
+    "speed_setpoint": Role(
+        units.SPEED,
+        _set(
+            "vref vset vdes vtarget vcmd vdem vsp speedref speedset speedsetpoint setspeed "
+            "targetspeed desiredspeed referencespeed cruisespeed speedtarget velocityref "
+            "velocitysetpoint targetvelocity desiredvelocity referencevelocity setvelocity "
+            "speeddemand v speed velocity"
+        ),
+        _set("speed velocity v setpoint"),
+        AT_START,
+    ),
+    "speed": Role(
+        units.SPEED,
+        _set("speed velocity v vx vel spd speedometer xdot sdot dx ds"),
+        _set("speed velocity vel spd v vx"),
+        WANTED | AT_START,
+    ),
+    "position": Role(
+        units.LENGTH,
+        _set("position pos s x distance dist odometer odo station displacement travelled traveled"),
+        _set("position pos distance odometer odo travelled traveled displacement s x"),
+        WANTED | AT_START | _set("throttle pedal length l base wheelbase"),
+    ),
+    "measured_acceleration": Role(
+        units.ACCELERATION,
+        _set("acceleration accel acc a ax vdot dv"),
+        _set("acceleration accel acc a ax"),
+        WANTED | AT_START,
+    ),
+    "initial_speed": Role(
+        units.SPEED,
+        _set(
+            "v0 vstart vinit vinitial speed0 speedstart speedinit startspeed initspeed "
+            "initialspeed initialvelocity startvelocity velocity0 velocitystart velocityinit vx0 "
+            "initvelocity speedinitial velocityinitial initv startv vbegin"
+        ),
+        frozenset(),
+    ),
+    "initial_position": Role(
+        units.LENGTH,
+        _set(
+            "s0 x0 sstart xstart sinit xinit position0 pos0 startposition initialposition "
+            "initposition positionstart positioninit positioninitial initialdistance sinitial "
+            "xinitial startdistance initpos startpos posinit posstart"
+        ),
+        frozenset(),
+    ),
+}
+GENERIC: Final = (["u"], ["x"], ["s"], ["a"], ["v"], ["f"])  # meaningless without their unit
+FORCES: Final = frozenset({"force", "drive_force", "brake_force"})
+
+
+@dataclass(frozen=True)
+class Guess:
+    """A variable that may play a role.
+
+    Attributes:
+        name_score: 10 for a name of the role, 9 with fillers, 6 for a part of it, 0 for the unit.
+        fits: whether its unit is of the role's dimension; None: it has no unit, or an unknown one.
+    """
+
+    channel: Channel
+    name_score: float
+    fits: bool | None
+    found: Dimension | None  # of its unit
+
+    @property
+    def score(self) -> float:
+        """Higher is better."""
+        return self.name_score + (5.0 if self.fits else 0.0)
+
+
+def guesses(model: Model, role: str, variables: Iterable[Variable]) -> list[Guess]:
+    """The variables that may play a role, the best first.
+
+    Variables whose unit contradicts their name are listed only if no other variable fits.
+    """
+    found = [
+        guess
+        for variable in variables
+        if variable.is_real or variable.is_integer
+        if (guess := _guess(model, role, variable)) is not None
+    ]
+    fitting = [guess for guess in found if guess.fits is not False]
+    contradictory = [guess for guess in found if guess.name_score >= 9]
+    return sorted(fitting or contradictory, key=lambda guess: -guess.score)
+
+
+def unambiguous(ranked: list[Guess]) -> bool:
+    """Whether the first guess is better than every other."""
+    return len(ranked) == 1 or (len(ranked) > 1 and ranked[0].score > ranked[1].score)
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name's last part: ``vehicle.tractiveForce_x`` -> tractive, force, x."""
+    return _words(_parts(name)[-1])
+
+
+def _parts(name: str) -> list[str]:
+    return re.split(r"\.(?![^(]*\))", name)
+
+
+def _words(text: str) -> list[str]:
+    spaced = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])|(?<=[a-zA-Z])(?=\d)", " ", text)
+    return [SHORT.get(word, word) for word in re.findall(r"[^\W_]+", spaced.lower())]
+
+
+def _guess(model: Model, role: str, variable: Variable) -> Guess | None:
+    wanted = ROLES[role]
+    unit = model.unit_of(variable)
+    found = units.to_si(unit).dimension if unit is not None else None
+    fits = None if found is None else found == wanted.dimension
+    name_score = _name_score(wanted, variable.name)
+    if name_score is None:
+        return None
+    if name_score == 0 and not (fits and wanted.dimension != units.NONE and wanted.words):
+        return None
+    if fits is False and words_of(variable.name) in GENERIC:
+        return None
+    return Guess(Channel(variable), name_score, fits, found)
+
+
+def _name_score(role: Role, name: str) -> float | None:
+    """How well a name fits a role; None: it excludes the role."""
+    *parents, last = _parts(name)
+    if name.startswith("der(") or any(OTHER_PARTS & set(_words(parent)) for parent in parents):
+        return None  # a derivative of another variable, or something of a part of the vehicle
+    words = _words(last)
+    plain = [word for word in words if word not in FILLERS]
+    shallow = 0.0 if parents else 0.5
+    for spelled, score in ((words, 10.0), (plain, 9.0)):
+        if "".join(spelled) in role.names:
+            return score + shallow
+    numbered = [word for word in words if not word.isdecimal()]
+    if numbered != ["y"] and set(words) & (OTHER_PARTS | role.never):  # y, y1: any output's name
+        return None
+    return 6.0 + shallow if set(words) & role.words else 0.0

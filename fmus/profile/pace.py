@@ -1,0 +1,91 @@
+"""How the controller's steps and an FMU's own steps fit together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fmus.errors import FmuProfileError
+
+_FIT = 1e-9  # relative error of a whole number of steps
+_MOST = 1_000_000  # substeps: more would take minutes
+
+
+@dataclass(frozen=True)
+class Pace:
+    """``substeps`` steps of the FMU per control step, or ``stretch`` control steps per FMU step.
+
+    Attributes:
+        step: of the FMU [s].
+        substeps: 1 unless the FMU's step is the shorter one.
+        stretch: 1 unless the FMU's step is the longer one: the force is then held over it.
+    """
+
+    step: float
+    substeps: int = 1
+    stretch: int = 1
+
+
+def make_pace(control_step: float, fmu_step: float | None) -> Pace:
+    """The pace for a control step [s] and the FMU's own step [s], None: the same.
+
+    Raises:
+        FmuProfileError: neither is a whole multiple of the other, or there are too many substeps.
+    """
+    if fmu_step is None:
+        return Pace(control_step)
+    if fmu_step * _MOST < control_step:
+        msg = (
+            f"an FMU step of {fmu_step:g} s is more than {_MOST} times smaller than the control "
+            f"step of {control_step:g} s; change step in [fmu]"
+        )
+        raise FmuProfileError(msg)
+    substeps = max(1, round(control_step / fmu_step))
+    if abs(substeps * fmu_step - control_step) <= _FIT * control_step:
+        return Pace(control_step / substeps, substeps=substeps)
+    stretch = max(1, round(fmu_step / control_step))
+    if abs(stretch * control_step - fmu_step) <= _FIT * fmu_step:
+        return Pace(stretch * control_step, stretch=stretch)
+    near = control_step / max(1, round(control_step / fmu_step))
+    msg = (
+        f"an FMU step of {fmu_step:g} s does not fit the control step of {control_step:g} s; "
+        f"expected a whole part or multiple of it: add step = {near:.6g} to [fmu], or change "
+        "--time-step"
+    )
+    raise FmuProfileError(msg)
+
+
+def divides(part: float, whole: float) -> bool:
+    """Whether ``whole`` is a multiple of ``part``, up to rounding."""
+    if part < 1e-9 * whole:
+        return True  # finer than floating-point numbers can tell
+    return part <= whole * (1 + 1e-9) and abs(round(whole / part) * part - whole) <= 1e-9 * whole
+
+
+def step_to_run_with(fmu_step: float, usual: float = 0.05) -> str:
+    """The flag that a run needs for an FMU's own step [s]; empty if the usual step fits."""
+    try:
+        make_pace(usual, fmu_step)
+    except FmuProfileError:
+        return f" and run with --time-step {fmu_step:g}"
+    return ""
+
+
+def between(
+    start: tuple[float, float], end: tuple[float, float], duration: float, share: float
+) -> tuple[float, float]:
+    """Position [m] and speed [m/s] within a step, from those at its ends (cubic Hermite).
+
+    Args:
+        start: position and speed.
+        end: position and speed.
+        duration: of the step [s].
+        share: of the step that has passed, 0 to 1.
+    """
+    (s_0, v_0), (s_1, v_1) = start, end
+    r, h = share, duration
+    position = (
+        s_0 * (1 + 2 * r) * (1 - r) ** 2
+        + s_1 * r * r * (3 - 2 * r)
+        + h * r * (1 - r) * (v_0 * (1 - r) - v_1 * r)
+    )
+    return position, v_0 + r * (v_1 - v_0)

@@ -1,0 +1,174 @@
+"""Preparing a vehicle: its FMU is read, a profile is chosen, and both are checked.
+
+Faults of a file or a profile are reported here, before native code is loaded. The result can be
+handed to another process.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, isfinite, isnan
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fmus.archive.gate import extract, open_archive
+from fmus.description.binaries import binary_of
+from fmus.description.reading import read_model
+from fmus.errors import FmuProfileError, FmuVariableError
+from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
+from fmus.profile.commands import Command, make_command
+from fmus.profile.draft_profile import draft_profile, require_confident
+from fmus.profile.pace import Pace, divides, make_pace
+from fmus.profile.wiring import Wiring, wire
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+
+    from fmus.description.model import Interface, Model, Value
+    from fmus.profile.vehicle_profile import VehicleProfile
+
+
+@dataclass(frozen=True)
+class Bound:
+    """The range that an FMU declares for an input, in the FMU's unit."""
+
+    index: int  # of the input
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A vehicle that is ready to be unpacked and loaded.
+
+    Attributes:
+        model: of the FMU.
+        profile: by which it is driven.
+        wiring: which variables it is driven and read by.
+        command: the inverse map.
+        pace: how the controller's steps and the FMU's fit together.
+        bounds: of the inputs.
+        step_size: of the controller [s].
+        binary: this platform's binary in the archive.
+        ours: a shipped FMU: its outputs are trusted, and its state need not be saved.
+    """
+
+    model: Model
+    profile: VehicleProfile
+    wiring: Wiring
+    command: Command
+    pace: Pace
+    bounds: tuple[Bound, ...]
+    step_size: float
+    binary: str
+    ours: bool
+
+    @property
+    def path(self) -> Path:
+        """Of the FMU."""
+        return self.model.path
+
+
+def prepare(
+    path: str | os.PathLike[str],
+    *,
+    step_size: float,
+    profile: VehicleProfile | None = None,
+    start_values: Mapping[str, Value] | None = None,
+) -> Prepared:
+    """Read an FMU through the archive's gate and fit a profile to it.
+
+    Args:
+        path: the .fmu file.
+        step_size: of the controller [s].
+        profile: which variable plays which part; None: the shipped FMUs' own, or a draft from
+            names and units if it leaves no doubt.
+        start_values: further start values by variable name.
+
+    Raises:
+        FmuFileError: the file is missing, or no readable FMU.
+        FmuInterfaceError: it has no interface that can be run here.
+        FmuPlatformError: it has no binary for this platform.
+        FmuVariableError: a variable is missing, or is not what it is used for.
+        FmuProfileError: the profile does not fit, or there is none where one is needed.
+    """
+    path = Path(path)
+    if not (isfinite(step_size) and step_size > 0.0):
+        msg = f"{path}: step size {step_size:g} s; expected a number above 0"
+        raise FmuVariableError(msg)
+    model = read_model(path)
+    profile = _chosen(model, profile)
+    wiring = wire(model, profile, start_values)
+    return Prepared(
+        model=model,
+        profile=profile,
+        wiring=wiring,
+        command=make_command(profile, wiring.inputs, step_size),
+        pace=_pace(path, profile.fmu.step, wiring.interface, step_size),
+        bounds=_bounds(wiring),
+        step_size=step_size,
+        binary=binary_of(model, wiring.interface),
+        ours=profile is BUNDLED_PROFILE,
+    )
+
+
+def choose_profile(path: Path, profile: VehicleProfile | None) -> VehicleProfile:
+    """The profile to drive an FMU by: the one given, the shipped FMUs' own, or a draft.
+
+    Raises:
+        FmuFileError: the file is missing, or no readable FMU.
+        FmuProfileError: there is doubt; the message says which lines to add.
+    """
+    return _chosen(read_model(path), profile)
+
+
+def _chosen(model: Model, profile: VehicleProfile | None) -> VehicleProfile:
+    if profile is not None:
+        return profile
+    if is_bundled(model.path):
+        return BUNDLED_PROFILE
+    return require_confident(draft_profile(model), model.path)
+
+
+def unpack(prepared: Prepared, folder: Path) -> None:
+    """Unpack what this platform needs of the FMU into ``folder``.
+
+    Raises:
+        FmuArchiveError: a member is damaged.
+    """
+    binaries = prepared.binary.rpartition("/")[0]
+    wanted = ("modelDescription.xml", f"{binaries}/", "resources/", "extra/")
+    extract(open_archive(prepared.path), folder, wanted)
+    (folder / "resources").mkdir(exist_ok=True)  # its path is given to the FMU even if it is empty
+
+
+def _pace(path: Path, wanted: float | None, interface: Interface, step_size: float) -> Pace:
+    fixed = interface.fixed_internal_step
+    if wanted is None and fixed is not None and not divides(fixed, step_size):
+        wanted = fixed
+        if not divides(step_size, fixed):
+            msg = (
+                f"{path}: the FMU has a fixed step of {fixed:g} s, which does not fit the control "
+                f"step of {step_size:g} s; expected a whole part or multiple of it: change "
+                "--time-step, or export the model with another step"
+            )
+            raise FmuProfileError(msg)
+    try:
+        return make_pace(step_size, wanted)
+    except FmuProfileError as error:
+        raise FmuProfileError(f"{path}: {error}") from None
+
+
+def _bounds(wiring: Wiring) -> tuple[Bound, ...]:
+    return tuple(
+        Bound(
+            index,
+            -inf if low is None or isnan(low) else low,
+            inf if high is None or isnan(high) else high,
+        )
+        for index, wired in enumerate(wiring.inputs)
+        for variable in (wired.channel.variable,)
+        for low, high in ((variable.minimum, variable.maximum),)
+        if (low is not None or high is not None) and (low is None or high is None or low <= high)
+    )

@@ -1,0 +1,97 @@
+"""The one check before a run: what is wrong with a request is said before anything is loaded."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from giveway.crowd.zone import Zone
+from giveway.ego.vehicle import require_vehicles
+from giveway.errors import ConfigError
+from giveway.scenario_files import read_scenario
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from giveway.config import EgoRunConfig, RunConfig
+    from giveway.scenario_files import ScenarioFiles
+    from sumo_scenarios import Scenario
+
+LONGEST_STEP = 0.05  # [s] of the co-simulation: the paper's, and what the crowd is stable at
+
+
+@dataclass(frozen=True)
+class CheckedRun:
+    """A run whose scenario, options and vehicles have been found to fit each other.
+
+    Attributes:
+        config: the effective configuration.
+        scenario: where its files are.
+        files: what the scenario's own configuration says.
+        egos: the configuration of each ego.
+        zone: where the scenario's own pedestrians are ours.
+        time_step: the control step [s].
+    """
+
+    config: RunConfig
+    scenario: Scenario
+    files: ScenarioFiles
+    egos: tuple[EgoRunConfig, ...]
+    zone: Zone
+    time_step: float
+
+
+def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
+    """Check everything that can be known before SUMO or a vehicle FMU is loaded.
+
+    Raises:
+        ScenarioError: a file of the scenario is missing or cannot be read.
+        ConfigError: the zone is none, or two egos have the same id.
+        VehicleError: a vehicle FMU cannot be read, or its profile does not fit.
+    """
+    files = read_scenario(scenario.config_file)
+    files.require_inputs()
+    zone = Zone(config.crowd.zone, config.crowd.zone_margin)
+    egos = config.each_ego()
+    _require_distinct(egos)
+    time_step = control_step(config, files)
+    require_vehicles(egos, time_step)
+    return CheckedRun(config, scenario, files, egos, zone, time_step)
+
+
+def control_step(config: RunConfig, files: ScenarioFiles) -> float:
+    """The control step [s]: as wanted, or 0.05 s, or the longest below that divides SUMO's."""
+    if config.time_step is not None:
+        return config.time_step
+    step_length = _whole_milliseconds(config.sumo.step_length or files.step_length)
+    return step_length / max(1, math.ceil(step_length / LONGEST_STEP - 1e-9))
+
+
+def substeps_of(time_step: float, step_length: float) -> int:
+    """How many control steps [s] make one SUMO step [s].
+
+    Raises:
+        ConfigError: they do not fit a whole number of times.
+    """
+    substeps = round(step_length / time_step)
+    if substeps < 1 or abs(substeps * time_step - step_length) > 1e-9:
+        msg = (
+            f"--time-step {time_step:g}: SUMO's step of {step_length:g} s is not a whole multiple "
+            "of it; choose another time step [s] or --sumo-step-length, or leave it out"
+        )
+        raise ConfigError(msg)
+    return substeps
+
+
+def _whole_milliseconds(step_length: float) -> float:
+    """SUMO's step [s] as it keeps it: half a millisecond is rounded up."""
+    return math.floor(1000.0 * step_length + 0.5) / 1000.0
+
+
+def _require_distinct(egos: Sequence[EgoRunConfig]) -> None:
+    names = [ego.ego_id for ego in egos]
+    for name in names:
+        if names.count(name) > 1:
+            msg = f"ego '{name}': two egos have this id; give each [[egos]] entry its own"
+            raise ConfigError(msg)

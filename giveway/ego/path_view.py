@@ -1,0 +1,62 @@
+"""An ego's path as its controller sees it: from the front bumper on, computed when asked for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from giveway.geometry.path import EgoPath
+
+    Array = NDArray[np.float64]
+
+_HALF = 2.5  # [m] before and behind a place, whose mean headings give the curvature there
+
+
+class PathView:
+    """A :class:`controller.PathAhead`.
+
+    Args:
+        path: the ego's.
+
+    Attributes:
+        station: of the front bumper [m]; the ego keeps it up to date.
+    """
+
+    def __init__(self, path: EgoPath) -> None:
+        self._path = path
+        headings = np.unwrap(path.headings)
+        beyond = 3.0 * _HALF  # it goes on straight
+        self._at = np.concatenate([[-beyond], path.stations, [path.length + beyond]])
+        steps = np.diff(self._at) * np.concatenate([headings[:1], headings, headings[-1:]])
+        self._turned = np.concatenate([[0.0], np.cumsum(steps)])  # the heading's integral
+        self.station = 0.0
+
+    def remaining(self) -> float:
+        """How much of the path is left [m]."""
+        return max(0.0, self._path.length - self.station)
+
+    def poses(self, distances: Array) -> Array:
+        """(k, 3) x, y [m] and heading [rad] at ``distances`` (k,) [m] ahead; straight beyond it."""
+        path, at = self._path, self.station + distances
+        segment = np.searchsorted(path.stations[1:-1], at, side="right")
+        along, heading = at - path.stations[segment], path.headings[segment]
+        x = path.vertices[segment, 0] + along * np.cos(heading)
+        y = path.vertices[segment, 1] + along * np.sin(heading)
+        return np.column_stack([x, y, heading])
+
+    def curvature(self, distances: Array) -> Array:
+        """(k,) [1/m] at ``distances`` (k,) [m] ahead, the mean over 5 m; positive to the left.
+
+        A polyline turns in its corners only: what counts is how the mean headings of the 2.5 m
+        before and behind a place differ.
+        """
+        at = np.clip(self.station + distances, -_HALF, self._path.length + _HALF)
+        before, here, behind = (
+            np.interp(at + shift, self._at, self._turned) for shift in (-_HALF, 0.0, _HALF)
+        )
+        curvature: Array = (before - 2.0 * here + behind) / _HALF**2
+        return curvature

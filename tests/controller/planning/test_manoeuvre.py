@@ -1,0 +1,228 @@
+"""Manoeuvres: what they do, what they cost, and that a plan stays admissible as time goes on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from controller import ControllerError, Manoeuvre, ManoeuvreParameters, PlannerParameters
+from controller.planning.manoeuvre import Weights, aim, corridor, cost, shift, stopping_need
+
+DT = 0.05
+FREE = np.inf
+
+
+def weights(*, terminal=True, **changes):
+    return Weights.of(PlannerParameters(terminal=terminal), ManoeuvreParameters(**changes))
+
+
+def aimed(speed, before, wanted, slowest, fastest, *, jerk=8.0, horizon=60):
+    m = Manoeuvre.empty(horizon)
+    aim(speed, before, wanted, slowest, fastest, jerk, DT, m.distance, m.speed, m.acceleration)
+    return m
+
+
+def costs(m, w, *, gap=FREE, conflicts=0.0, calm=FREE, allowed=FREE):
+    N = len(m.speed) - 1
+    full = [np.full(N, x, dtype=float) for x in (gap, conflicts, calm, allowed)]
+    return cost(m.distance, m.speed, m.acceleration, *full, DT, w)
+
+
+def steady(speed, horizon):
+    m = Manoeuvre.empty(horizon)
+    m.speed[:] = speed
+    m.distance[:] = DT * speed * np.arange(horizon + 1)
+    return m
+
+
+# --- what they do -------------------------------------------------------------------------------
+
+
+@given(
+    speed=st.floats(0.0, 20.0),
+    before=st.floats(-8.0, 8.0),
+    wanted=st.floats(-8.0, 5.0),
+    slowest=st.floats(0.0, 4.0),
+    fastest=st.floats(0.0, 20.0),
+    jerk=st.floats(1.0, 20.0),
+)
+@settings(deadline=None)
+def test_a_manoeuvre_is_the_vehicles_motion_within_the_jerk(
+    speed, before, wanted, slowest, fastest, jerk
+):
+    if speed > fastest:
+        before = min(before, 0.0)  # no faster than that is driven, whatever the jerk
+    m = aimed(speed, before, wanted, slowest, fastest, jerk=jerk)
+    assert (m.distance[0], m.speed[0]) == (0.0, speed)
+    assert (m.speed >= 0.0).all()
+    assert m.speed[1:] == pytest.approx(m.speed[:-1] + DT * m.acceleration[:-1], abs=1e-12)
+    assert m.distance[1:] == pytest.approx(m.distance[:-1] + DT * m.speed[:-1], abs=1e-9)
+    assert m.speed.max() <= max(speed, fastest) + 1e-12
+    a = np.concatenate([[before], m.acceleration[:-1]])
+    free = (m.speed[1:] > 1e-9) & (np.abs(m.speed[1:] - fastest) > 1e-9)
+    assert (np.abs(np.diff(a))[free] <= jerk * DT + 1e-9).all()  # but for the ends of the range
+
+
+@given(speed=st.floats(0.0, 20.0), wanted=st.floats(0.5, 3.0), fastest=st.floats(0.0, 20.0))
+@settings(deadline=None)
+def test_driving_on_ends_at_the_wanted_speed(speed, wanted, fastest):
+    m = aimed(speed, 0.0, wanted, 0.0, fastest, horizon=2000)
+    assert m.speed[-1] == pytest.approx(fastest, abs=1e-3)
+    if speed <= fastest:
+        assert (np.diff(m.speed) >= -1e-12).all()  # without overshoot
+
+
+@given(speed=st.floats(0.0, 8.0), wanted=st.floats(-6.0, -0.5), slowest=st.floats(0.0, 3.0))
+@settings(deadline=None)
+def test_braking_ends_at_the_slowest_speed(speed, wanted, slowest):
+    assume(speed >= slowest)
+    m = aimed(speed, 0.0, wanted, slowest, 8.0, horizon=2000)
+    assert m.speed[-1] == pytest.approx(slowest, abs=1e-3)
+    assert (np.diff(m.speed) <= 1e-12).all()
+    assert m.speed.min() >= slowest - 0.3  # jerk-limited: the brake is not let go at once
+
+
+def test_an_acceleration_is_approached_with_the_jerk_and_then_held():
+    m = aimed(10.0, 0.0, -2.0, 0.0, 20.0, jerk=10.0)
+    assert m.acceleration[:6] == pytest.approx([-0.5, -1.0, -1.5, -2.0, -2.0, -2.0])
+
+
+def test_a_shifted_plan_is_what_was_planned():
+    m = aimed(4.0, 0.0, -2.5, 1.4, 4.0)
+    later = Manoeuvre.empty(60)
+    later.copy_from(m)
+    shift(m.speed[1], True, 6.0, DT, later.distance, later.speed, later.acceleration)
+    assert np.array_equal(later.speed[:-1], m.speed[1:])
+    assert later.speed[-1] == m.speed[-1]  # held
+    assert later.distance[:-1] == pytest.approx(m.distance[1:] - m.distance[1], abs=1e-12)
+    assert later.acceleration[:-2] == pytest.approx(m.acceleration[1:-1], abs=1e-9)
+
+
+def test_a_shifted_plan_begins_at_the_speed_that_is():
+    m = steady(4.0, 60)
+    shift(3.5, False, 6.0, DT, m.distance, m.speed, m.acceleration)
+    assert (m.speed[0], m.speed[1], m.speed[-1]) == (3.5, 4.0, pytest.approx(4.0 - 6.0 * DT))
+    assert m.distance[1] == pytest.approx(3.5 * DT)
+
+
+# --- what they cost -----------------------------------------------------------------------------
+
+
+def test_what_a_stop_needs():
+    w = weights(minimum_distance=1.0, headway=0.1, deceleration=6.0)
+    assert stopping_need(0.0, w) == 1.0
+    assert stopping_need(4.0, w) == pytest.approx(1.0 + 0.4 + 16.0 / 12.0)
+    assert stopping_need(4.0, w._replace(terminal=False)) == pytest.approx(1.4)
+
+
+def test_the_cost_of_a_free_way_is_the_missing_speed_and_the_acceleration():
+    w = weights(time_weight=1.0, acceleration_weight=0.05, final_weight=1.0)
+    assert costs(steady(4.0, 20), w) == (0.0, 0.0, 0.0)
+    assert costs(steady(3.0, 20), w)[0] == pytest.approx(20 * DT * 0.25 + 0.25)
+    m = steady(4.0, 20)
+    m.acceleration[0] = 2.0
+    assert costs(m, w)[0] == pytest.approx(DT * 0.05 * 4.0)
+
+
+def test_the_cost_of_others_by_hand():
+    m, n = steady(2.0, 20), 20 * DT
+    own = costs(m, weights())[0]
+    w = weights(nearness_weight=0.3, closeness_weight=20.0, conflict_weight=0.6, threat_weight=1.0)
+    assert costs(m, w, conflicts=2.0)[1] == pytest.approx(n * 0.6 * 2)
+    assert costs(m, w, calm=1.0)[1] == pytest.approx(n * 1.0 / 4.0)
+    assert costs(m, w, gap=4.0)[1] == pytest.approx(n * 0.3 * 0.5 * 0.5)  # half d_safe, half v_r
+    assert costs(m, w, gap=8.0)[1] == 0.0
+    need = stopping_need(2.0, w)
+    whole, others, missing = costs(m, w, gap=need - 0.5)
+    nearness = 0.3 * (1.0 - (need - 0.5) / 8.0) * 0.5
+    assert (whole - own, missing) == (pytest.approx(others), pytest.approx(0.5))
+    assert others == pytest.approx(n * (nearness + 20.0 * 0.5 * 0.5))
+
+
+def test_beyond_what_is_allowed_each_metre_counts():
+    m = steady(4.0, 20)  # 0.2 m per step
+    _, others, missing = costs(m, weights(closeness_weight=20.0), allowed=3.8)
+    assert missing == pytest.approx(0.2)
+    assert others == pytest.approx(DT * 20.0 * 0.2)
+
+
+def test_who_stands_lacks_no_stopping_distance():
+    assert costs(steady(0.0, 20), weights(), gap=0.2)[2] == 0.0
+
+
+def test_the_corridor_ends_where_a_stop_behind_everybody_is_possible():
+    w, m, room = weights(), steady(2.0, 4), np.empty(4)
+    gap = np.array([5.0, 1.0, np.inf, 5.0])
+    allowed = np.array([np.inf, np.inf, 3.0, 0.1])
+    corridor(m.distance, m.speed, gap, allowed, True, w, room)
+    own = m.distance[2]  # never less than the manoeuvre itself
+    assert room == pytest.approx([0.1 + 5.0 - stopping_need(2.0, w), own, 3.0, 0.1])
+    corridor(m.distance, m.speed, gap, allowed, False, w, room)
+    assert room == pytest.approx([0.1 + 5.0 - 8.0, 0.2 + 1.0 - 8.0, 3.0, 0.4 + 5.0 - 8.0])
+
+
+# --- recursive feasibility ----------------------------------------------------------------------
+
+
+@given(
+    speeds=st.lists(st.floats(0.0, 8.0), min_size=5, max_size=20),
+    ahead=st.floats(0.0, 3.0),
+    pace=st.floats(0.0, 2.0),
+    headway=st.floats(DT, 0.5),
+    deceleration=st.floats(0.5, 10.0),
+)
+@settings(max_examples=300, deadline=None)
+def test_an_admissible_plan_is_admissible_one_step_later(
+    speeds, ahead, pace, headway, deceleration
+):
+    # docs/planner.md, "Why a stop stays possible": any plan, people who do not come closer
+    w = weights(headway=headway, deceleration=deceleration)
+    N = len(speeds) - 1
+    m = Manoeuvre.empty(N)
+    m.speed[:] = speeds
+    m.distance[1:] = DT * np.cumsum(m.speed[:-1])
+    need = np.array([stopping_need(v, w) for v in m.speed])
+    steps = np.arange(N + 2)
+    person = np.max(m.distance + need - pace * DT * steps[:-1]) + ahead + pace * DT * steps
+    gap = person[1:-1] - m.distance[1:]
+    assert cost_missing(m, gap, w) <= 1e-9
+    holds = gap[-1] - DT * m.speed[-1] >= need[-1]
+    later = Manoeuvre.empty(N)
+    later.copy_from(m)
+    shift(m.speed[1], holds, deceleration, DT, later.distance, later.speed, later.acceleration)
+    assert cost_missing(later, person[2:] - m.distance[1] - later.distance[1:], w) <= 1e-9
+
+
+def cost_missing(m, gap, w):
+    nothing, free = np.zeros(len(gap)), np.full(len(gap), FREE)
+    w = w._replace(safe_distance=100.0)  # all of the stopping distances lie within it
+    return cost(m.distance, m.speed, m.acceleration, gap, nothing, free, free, DT, w)[2]
+
+
+# --- parameters ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [
+        ({"accelerations": ()}, "accelerations"),
+        ({"accelerations": (-1.0,), "slowest": (0.0,)}, "accelerations"),
+        ({"slowest": (0.0,)}, "slowest"),
+        ({"jerk": 0.0}, "jerk"),
+        ({"deceleration": -1.0}, "deceleration"),
+        ({"conflict_weight": np.nan}, "conflict_weight"),
+    ],
+)
+def test_parameters_out_of_range_are_refused_by_name(changes, name):
+    with pytest.raises(ControllerError, match=name):
+        ManoeuvreParameters(**changes)
+
+
+@pytest.mark.parametrize(
+    "changes", [{"horizon": 3}, {"reference_speed": 0.0}, {"block_growth": -1.0}, {"solver": "x"}]
+)
+def test_a_planner_that_cannot_be_is_refused_by_name(changes):
+    with pytest.raises(ControllerError, match=next(iter(changes))):
+        PlannerParameters(**changes)

@@ -1,0 +1,108 @@
+"""The planner's force: that of the QP's optimum; with a soft corridor there always is one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import daqp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from smoothing_cases import (
+    FOLLOWING,
+    FREE,
+    MODEL,
+    N,
+    bounded,
+    drawn,
+    forces,
+    room_of,
+    rooms,
+    speeds,
+)
+
+from controller import Planner, Prospect
+from controller.active_set import solve_exactly
+from controller.planning.smoothing import SmoothingProblem, nodes_of
+
+
+class Fixed:
+    """A crowd that moves with the ego: as far from it under each manoeuvre."""
+
+    def __init__(self, room):
+        self.room = room
+
+    def prospect(self, manoeuvre):
+        gap = self.room + FOLLOWING.safe_distance - manoeuvre.distance[1:]
+        return Prospect(gap, np.zeros(N), FREE)
+
+    def prefer(self):
+        pass
+
+
+@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("solver", ["osqp", "daqp"])
+def test_the_force_is_that_of_the_plain_problems_optimum(plain_problem, seed, solver):
+    plain = drawn(plain_problem, seed, parameters=replace(FOLLOWING, solver=solver))
+    G, lower, upper = plain.rows()
+    D, room = plain.distances()
+    each, _ = plain.unavoidable()
+    P, q = plain.quadratic()
+    v, _, flag, _ = daqp.solve(
+        P,
+        q,
+        np.concatenate([G, D]),
+        np.concatenate([upper, np.minimum(room + each, 1e30)]) + 1e-7,
+        np.concatenate([lower, np.full(len(room), -1e30)]) - 1e-7,
+        np.zeros(len(G) + len(D), dtype=np.int32),
+        primal_tol=1e-9,
+    )
+    assert flag == 1
+    plan = Planner(MODEL, plain.parameters).plan(
+        plain.speed, plain.previous_force, 4.0, FREE, Fixed(plain.room)
+    )
+    assert plan.status == "solved"
+    wanted = (v[0] - MODEL.decay * plain.speed) / MODEL.speed_per_force
+    assert plan.force == pytest.approx(np.clip(wanted, -8000.0, 8000.0), abs=0.1)
+
+
+@given(speed=speeds, force=forces, room=rooms, calm=st.floats(0.0, 25.0))
+@settings(max_examples=150, deadline=None)
+def test_a_soft_corridor_always_leaves_a_plan(speed, force, room, calm):
+    problem = SmoothingProblem(MODEL, FOLLOWING)
+    problem.aim_at(np.full(len(problem.nodes), 4.0), speed, 0.0)
+    corridor = room_of(*room)
+    assert problem.bound(speed, force, 4.0, corridor, np.full(N, calm), soft=True)
+    multipliers, z = np.zeros(len(problem.rows)), np.zeros(len(problem.nodes))
+    bounds = (problem.rows, problem.lower, problem.upper, problem.target)
+    assert solve_exactly(*bounds, multipliers, z) >= 0
+    reached = problem.rows @ z
+    assert (reached >= problem.lower - 1e-9).all()
+    assert (reached <= problem.upper + 1e-9).all()
+    for gap_choice in (True, False):
+        planner = Planner(MODEL, replace(FOLLOWING, gap_choice=gap_choice))
+        plan = planner.plan(speed, force, 4.0, FREE, Fixed(corridor))
+        assert plan.found
+        assert "no QP solution" not in plan.status
+        assert abs(plan.force) <= 8000.0
+        assert speed <= 1e-3 or abs(plan.force - force) <= 1000.0
+
+
+@given(speed=speeds, force=forces, room=rooms)
+@settings(max_examples=60, deadline=None)
+def test_a_hard_corridor_is_refused_if_and_only_if_braking_cannot_keep_it(
+    plain_problem, speed, force, room
+):
+    parameters = replace(FOLLOWING, soft=False)
+    wanted = np.full(len(nodes_of(N, parameters.block_growth)), 4.0)
+    plain = plain_problem(speed, force, 0.0, wanted, 4.0, room_of(*room), MODEL, parameters)
+    each, _ = plain.unavoidable()
+    _, found = bounded(plain, soft=False)
+    plan = Planner(MODEL, parameters).plan(speed, force, 4.0, FREE, Fixed(plain.room))
+    if each.max() > 1e-6:
+        assert not found
+        assert plan.status == "infeasible: cannot keep the distance"
+    elif bounded(replace(plain, room=plain.room - 1e-6), soft=False)[1]:  # else rounding decides
+        assert found
+        assert plan.found

@@ -1,0 +1,57 @@
+"""Unpacking: what is asked for, and never outside."""
+
+from __future__ import annotations
+
+import zipfile
+
+from fmus.archive.gate import extract, open_archive
+from fmus.errors import FmuArchiveError, FmuFileError
+
+DESCRIPTION = b'<?xml version="1.0"?><fmiModelDescription fmiVersion="2.0"/>'
+MEGABYTE = 1 << 20
+
+
+# ---- unpacking ----
+
+
+def test_only_what_is_asked_for_is_unpacked(archive, tmp_path):
+    members = ("resources/a.txt", "resources/deep/b.txt", "binaries/linux64/c.so", "sources/d.c")
+    path = archive(*((name, name.encode()) for name in members))
+    folder = tmp_path / "out"
+    folder.mkdir()
+    extract(open_archive(path), folder, ["resources/", "binaries/linux64/"])
+    unpacked = {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*.*")}
+    assert unpacked == {name: name.encode() for name in members[:3]}
+
+
+def test_nothing_is_written_through_a_link_that_waits_there(archive, tmp_path, refused):
+    path = archive(("resources/a.txt", b"evil"))
+    folder, victim = tmp_path / "out", tmp_path / "victim"
+    (folder / "resources").mkdir(parents=True)
+    (folder / "resources" / "a.txt").symlink_to(victim)
+    with refused(FmuFileError, path, "resources/a.txt", "exists"):
+        extract(open_archive(path), folder, ["resources/"])
+    assert not victim.exists()
+
+
+def test_a_file_that_changed_since_it_was_examined(archive, tmp_path, refused):
+    path = archive(("resources/a.txt", b"good"))
+    examined = open_archive(path)
+    path.write_bytes(archive(("resources/b.txt", b"evil" * 100), name="other.fmu").read_bytes())
+    folder = tmp_path / "out"
+    folder.mkdir()
+    with refused(FmuArchiveError, path, "damaged"):
+        extract(examined, folder, ["resources/"])
+
+
+def test_damage_in_a_large_archive_shows_when_it_is_unpacked(
+    archive, tmp_path, monkeypatch, refused
+):
+    monkeypatch.setattr("fmus.archive.gate.CHECKED_AT_ONCE", 0)
+    info = zipfile.ZipInfo("resources/a.txt")
+    path = archive((info, b"good " * 20))
+    data = path.read_bytes()
+    assert b"good good" in data
+    path.write_bytes(data.replace(b"good good", b"evil good", 1))
+    with refused(FmuArchiveError, path, "resources/a.txt"):
+        extract(open_archive(path), tmp_path, ["resources/"])

@@ -1,0 +1,153 @@
+"""What the dry run says of cars that have something wrong, each with the line that mends it."""
+
+import pytest
+
+from fmus import bundled_fmu
+from fmus.checking import check, opener_of, without_guards
+from fmus.profile.bundled import BUNDLED_PROFILE
+from fmus.profile.vehicle_profile import make_profile
+
+
+def checked(zoo, path, isolated=False, **changes):
+    profile = make_profile(zoo.profile(path) | changes, "test")
+    guarded, unguarded = (
+        opener_of(path, step_size=0.05, profile=chosen, isolated=isolated)
+        for chosen in (profile, without_guards(profile))
+    )
+    return check(guarded, step_size=0.05, profile=profile, unguarded=unguarded)
+
+
+def finding(report, name):
+    return next(found for found in report.findings if found.name == name)
+
+
+def of(opener, **settings):
+    return check(opener, step_size=0.05, **settings)
+
+
+@pytest.mark.parametrize(
+    "role", ["force", "drive_brake", "acceleration", "throttle_brake", "speed_setpoint"]
+)
+def test_a_good_car_passes_in_every_role(zoo, role):
+    report = checked(zoo, zoo.car(role=role))
+    assert report.passed, [found for found in report.findings if found.verdict == "fail"]
+    assert set(report.traces) == {"idle", "response", "again", "rolling", "full"}
+
+
+def test_ours_passes_without_a_warning():
+    opener = opener_of(bundled_fmu(), step_size=0.05, profile=BUNDLED_PROFILE)
+    report = of(opener, profile=BUNDLED_PROFILE)
+    assert {found.verdict for found in report.findings} == {"pass"}
+
+
+@pytest.mark.parametrize(
+    ("spoken", "name", "remedy"),
+    [
+        ({"speed": (1 / 3.6, 0.0)}, "start speed", None),  # the parameter is named speed too
+        ({"position": (1000.0, 0.0)}, "speed and position", 'unit = "km"'),
+        ({"position": (0.3048, 0.0)}, "speed and position", 'unit = "ft"'),
+        ({"acceleration": (9.80665, 0.0)}, "acceleration", "gain = 9.80665"),
+        ({"acceleration": (-1.0, 0.0)}, "acceleration", "gain = -1.0"),
+        ({"position": (-1.0, 0.0)}, "speed and position", "gain = -1.0"),
+    ],
+)
+def test_an_output_in_another_unit_than_declared(zoo, spoken, name, remedy):
+    report = checked(zoo, zoo.car(spoken=spoken))
+    if remedy is None:
+        name, remedy = "speed and position", 'unit = "km/h"'
+    found = finding(report, name)
+    assert found.verdict == "fail"
+    assert remedy in found.remedy
+
+
+def test_a_force_in_kilonewtons(zoo):
+    report = checked(zoo, zoo.car(spoken={"force": (1000.0, 0.0)}))
+    assert not report.passed
+    assert finding(report, "controller's model").remedy == 'set `unit = "kN"` in [inputs.force]'
+
+
+def test_the_wrong_sign_of_the_force(zoo):
+    report = checked(zoo, zoo.car(spoken={"force": (-1.0, 0.0)}))
+    found = finding(report, "drives")
+    assert found.verdict == "fail"
+    assert "gain = -1.0" in found.remedy
+    assert "[inputs.force]" in found.remedy
+
+
+def test_a_car_that_is_not_in_gear(zoo):
+    report = checked(zoo, zoo.car(values={"engaged": 0.0}))
+    found = finding(report, "drives")
+    assert found.verdict == "fail"
+    assert "does not move" in found.text
+
+
+def test_brakes_that_reverse(zoo):
+    late = zoo.car(values={"holds": 0.0, "lag": 0.2})
+    assert finding(checked(zoo, late), "brakes").verdict == "warn"
+    holds = checked(zoo, zoo.car(values={"holds": 1.0}))
+    assert finding(holds, "brakes").verdict == "pass"
+
+
+def test_another_mass_is_a_warning_that_leads_to_identify(zoo):
+    report = checked(zoo, zoo.car(values={"mass": 1800.0}))
+    found = finding(report, "controller's model")
+    assert report.passed
+    assert found.verdict == "warn"
+    assert "M = 180" in found.text
+    assert "giveway fmu identify" in found.remedy
+
+
+def test_a_profile_with_the_model_passes_it(zoo):
+    model = {
+        "mass": 1804.5, "friction": 100.0, "r_squared": 1.0, "speed_error": 0.0,
+        "position_error": 0.0, "horizon": 0.75, "time_step": 0.05,
+    }  # fmt: skip
+    report = checked(zoo, zoo.car(values={"mass": 1800.0}), model=model)
+    assert finding(report, "controller's model").verdict == "pass"
+
+
+def test_lag_and_limits_are_seen(car):
+    report = of(car(lag=0.3, drive_limit=4000.0))
+    assert finding(report, "actuator lag").verdict == "warn"
+    assert "0.3 s late" in finding(report, "actuator lag").text
+    assert "run it with --mpc-force-limit" in finding(report, "force limits").remedy
+
+
+def test_noise_is_not_reproducible(car):
+    noisy = iter(range(10))
+
+    def opener(_step):
+        made = car(noise=0.01)(None)
+        seed = next(noisy)
+        start = made.start
+
+        def start_with_seed(**state):
+            start(**state)
+            made._random.bit_generator.advance(seed)
+
+        made.start = start_with_seed
+        return made
+
+    assert finding(of(opener), "reproducible").verdict == "warn"
+    assert finding(of(car(noise=0.01)), "reproducible").verdict == "pass"
+
+
+def test_a_coarse_solver_fails_with_the_step_that_mends_it(zoo):
+    report = checked(zoo, zoo.car(euler=True, values={"lag": 0.02}))
+    found = finding(report, "step halving")
+    assert found.verdict == "fail"
+    assert "step = 0.025" in found.remedy
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "phase"),
+    [("segfault", "step"), ("exit_0", "instantiate"), ("nan", "step"), ("error", "initialise"),
+     ("fatal", "step"), ("discard_always", "step"), ("message_control", "step")],
+)  # fmt: skip
+def test_a_hostile_fmu_is_a_failed_check_in_one_line(zoo, behaviour, phase):
+    ends_its_process = behaviour in {"segfault", "exit_0"}
+    path = zoo.car(behaviour=behaviour, phase=phase, at=0.0)
+    report = checked(zoo, path, isolated=ends_its_process)
+    assert report.passed == (behaviour == "message_control")
+    for found in report.findings:
+        assert (found.text + found.remedy).isprintable()

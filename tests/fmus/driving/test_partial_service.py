@@ -1,0 +1,73 @@
+"""FMUs and hosts that offer less than everything: what they lack is said, the rest works.
+
+Where it takes another FMU, it is the shipped one with a piece of its C source replaced, compiled
+for this platform.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+import fmus
+from fmus import VehicleFmu
+
+H = 0.05  # [s]
+
+
+@pytest.mark.parametrize("fmi_version", ["3.0"], indirect=True)
+def test_an_early_return_that_reached_the_end_is_a_step(rebuilt):
+    path = rebuilt("fmi3.c", "*earlyReturn = fmi3False;", "*earlyReturn = fmi3True;")
+    with VehicleFmu(path, step_size=H) as vehicle:
+        vehicle.start(speed=1.0)
+        vehicle.step(0.0)
+        assert vehicle.position == H
+
+
+@pytest.mark.parametrize("fmi_version", ["3.0"], indirect=True)
+def test_an_fmu_that_ends_the_simulation(rebuilt):
+    path = rebuilt(
+        "fmi3.c", "*terminateSimulation = fmi3False;", "*terminateSimulation = fmi3True;"
+    )
+    with VehicleFmu(path, step_size=H) as vehicle:
+        vehicle.start(speed=1.0)
+        with pytest.raises(fmus.FmuStepError, match="0 s"):
+            vehicle.step(0.0)
+
+
+def test_outputs_that_cannot_be_read(rebuilt):
+    line = "case SPEED: *value = current_state(self).speed; return STATUS_OK;"
+    fault = 'case SPEED: return instance_error(self, "no %s today", "speed");'
+    path = rebuilt("instance.c", line, fault)
+    with VehicleFmu(path, step_size=H) as vehicle, pytest.raises(fmus.FmuError, match="no speed"):
+        vehicle.start(speed=1.0)
+
+
+def test_an_fmu_that_fails_to_save_its_state_after_all(rebuilt):
+    line = "    **saved = self->now;\n"
+    path = rebuilt("instance.c", line, f'{line}    return instance_error(self, "none today");\n')
+    # A foreign FMU: its state is kept at every step.
+    with VehicleFmu(path, step_size=H, start_values={"alpha": 0.0}) as vehicle:
+        vehicle.start(speed=1.0)
+        for k in range(1, 4):
+            vehicle.step(0.0)
+            assert vehicle.position == k * H
+
+
+@pytest.mark.parametrize(
+    ("only", "said"),
+    [
+        (0.1, "add step = 0.1 to [fmu]"),
+        (0.02, "add step = 0.02 to [fmu] and run with --time-step 0.02"),
+    ],
+)
+def test_a_refused_step_names_the_one_of_the_default_experiment(zoo, only, said):
+    car = zoo.car(
+        only_step=only, step=only, flags={"canHandleVariableCommunicationStepSize": "false"}
+    )
+    values = zoo.profile(car)
+    values.get("fmu", {}).pop("step", None)
+    with VehicleFmu(car, step_size=0.05, profile=fmus.make_profile(values, "test")) as vehicle:
+        vehicle.start()
+        with pytest.raises(fmus.FmuStepError) as caught:
+            vehicle.step(100.0)
+    assert str(caught.value).endswith(said)

@@ -1,0 +1,318 @@
+"""A draft holds what is sure, and asks for the rest."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fmus import bundled_fmu
+from fmus.description import units
+from fmus.description.model import Interface, Kind, Model, Unit, Variable
+from fmus.description.reading import read_model
+from fmus.errors import FmuProfileError
+from fmus.profile.draft_profile import draft_profile, require_confident
+from fmus.profile.matching import words_of
+from fmus.profile.vehicle_profile import make_profile
+
+PATH = Path("car.fmu")
+CS = Interface(Kind.CO_SIMULATION, "car")
+
+
+def variable(text, causality, **more):
+    """``name [unit]`` as a variable."""
+    name, _, unit = text.partition(" [")
+    return Variable(name, 0, "Real", causality, unit=unit.rstrip("]"), **more)
+
+
+def a_model(inputs, outputs, parameters=(), interfaces=(CS,), default_step=None, more=()):
+    """Of texts such as ``speed [m/s]``, or variables."""
+    variables = [
+        v if isinstance(v, Variable) else variable(v, causality, settable=causality != "output")
+        for causality, group in (("input", inputs), ("output", outputs), ("parameter", parameters))
+        for v in group
+    ]
+    return Model(
+        path=PATH,
+        fmi_version="2.0",
+        name="Car",
+        guid="{}",
+        generation_tool="",
+        description="",
+        interfaces={interface.kind: interface for interface in interfaces},
+        variables={v.name: v for v in [*variables, *more]},
+        units={},
+        platforms=(),
+        states=0,
+        event_indicators=0,
+        default_step=default_step,
+        default_tolerance=None,
+    )
+
+
+def drafted(inputs, outputs, parameters=(), **more):
+    return draft_profile(a_model(inputs, outputs, parameters, **more))
+
+
+# ---- what is sure ----
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_our_own_fmu_leaves_no_doubt(version):
+    model = read_model(bundled_fmu(version))
+    profile = require_confident(draft_profile(model), model.path)
+    assert profile.inputs.force.variable == "force"
+    outputs = profile.outputs
+    assert (outputs.speed.variable, outputs.position.variable) == ("speed", "position")
+    assert outputs.acceleration.variable == "acceleration"
+    assert (profile.initial.speed.variable, profile.initial.position.variable) == ("v0", "s0")
+
+
+@pytest.mark.parametrize(
+    ("name", "role"),
+    [
+        *((name, "force") for name in ("force [N]", "F [N]", "F_x [kN]", "Fx [lbf]", "u [N]")),
+        *((name, "force") for name in ("tractiveForce [N]", "thrust [N]", "vehicle.F [N]")),
+        *((name, "force") for name in ("force_cmd [N]", "longitudinalForce [N]", "in1 [N]")),
+        *((name, "acceleration") for name in ("a_ref [m/s2]", "accel [m/s2]", "u [m/s2]")),
+        *((name, "acceleration") for name in ("desiredAcceleration [m.s-2]", "acc_cmd [g0]")),
+        *((name, "speed_setpoint") for name in ("v_ref [m/s]", "speedSetpoint [km/h]")),
+        *((name, "speed_setpoint") for name in ("target_speed [mph]", "vSet [m/s]", "u [km/h]")),
+    ],
+)
+def test_one_input_by_name_and_unit(name, role):
+    draft = drafted([name], ["v [m/s]"])
+    assert draft.confident
+    (way,) = draft.values["inputs"]
+    assert (way, draft.values["inputs"][way]["variable"]) == (role, name.partition(" [")[0])
+
+
+@pytest.mark.parametrize(
+    ("drive", "brake"),
+    [
+        ("F_drive [N]", "F_brake [N]"),
+        ("driveForce [kN]", "brakeForce [kN]"),
+        ("tractive_force [N]", "braking_force [N]"),
+        ("engine_force [N]", "brake [N]"),
+        ("traction [N]", "Fb [N]"),
+    ],
+)
+def test_a_drive_and_a_brake_force(drive, brake):
+    draft = drafted([drive, brake], ["v [m/s]"])
+    assert draft.confident
+    assert {role: axis["variable"] for role, axis in draft.values["inputs"].items()} == {
+        "drive_force": drive.partition(" [")[0],
+        "brake_force": brake.partition(" [")[0],
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "role"),
+    [
+        *((name, "speed") for name in ("speed [m/s]", "v [km/h]", "vx [m/s]", "v_x [mph]")),
+        *((name, "speed") for name in ("VehicleSpeed [m/s]", "body.velocity [m/s]", "Spd [kn]")),
+        *((name, "speed") for name in ("y1 [m/s]", "ego_velocity_kmh [km/h]")),
+        *((name, "position") for name in ("s [m]", "x [km]", "odometer [mi]", "car.pos [m]")),
+        *((name, "acceleration") for name in ("a [m/s2]", "accel [g0]", "a_x [m/s^2]")),
+    ],
+)
+def test_outputs_by_name_and_unit(name, role):
+    outputs = [name] if role == "speed" else ["speed [m/s]", name]
+    draft = drafted(["force [N]"], outputs)
+    assert draft.confident
+    assert draft.values["outputs"][role]["variable"] == name.partition(" [")[0]
+
+
+@pytest.mark.parametrize("name", ["v0", "v_0", "v_start", "vInit", "initial_speed", "speedStart"])
+def test_the_initial_speed(name):
+    draft = drafted(["force [N]"], ["speed [m/s]"], [f"{name} [km/h]", "mass [kg]", "v_max [m/s]"])
+    assert draft.values["initial"] == {"speed": {"variable": name}}
+
+
+def test_an_output_with_a_start_value_is_its_own_initial_value():
+    speed = variable("speed [m/s]", "output", start="0", settable=True)
+    assert drafted(["force [N]"], [speed]).values["initial"] == {"speed": {"variable": "speed"}}
+
+
+def test_of_several_the_best_name_wins():
+    speeds = ["wheel_speed [rad/s]", "wind_speed [m/s]", "v_lat [m/s]", "speed [m/s]", "vRef [m/s]"]
+    draft = drafted(["force [N]", "slope [rad]", "wind [m/s]"], speeds)
+    assert draft.confident
+    assert draft.values["outputs"]["speed"]["variable"] == "speed"
+    assert "slope" in draft.toml
+    assert "wind" in draft.toml
+
+
+def test_the_fmus_own_unit_counts_before_the_name():
+    model = a_model(["force [strange]"], ["speed [m/s]"])
+    model.units["strange"] = Unit("strange", 1000.0, 0.0, units.FORCE)
+    assert draft_profile(model).confident
+
+
+# ---- what is asked ----
+
+
+def questions(draft):
+    assert not draft.confident
+    with pytest.raises(FmuProfileError) as caught:
+        require_confident(draft, PATH)
+    message = str(caught.value)
+    assert message.startswith("car.fmu: ")
+    assert message.isprintable()
+    return message
+
+
+@pytest.mark.parametrize(
+    ("inputs", "outputs", "asked"),
+    [
+        (["force"], ["speed [m/s]"], "[inputs.force] 'force' has no unit; add unit = \"N\""),
+        (["force [N]"], ["speed"], "[outputs.speed] 'speed' has no unit; add unit = \"m/s\""),
+        (["force [N]"], ["speed_kmh"], 'add unit = "km/h"'),
+        (["force [N]"], ["v [m/s]", "x"], "[outputs.position] 'x' has no unit; add unit = \"m\""),
+        (["force [N]"], ["speed [warp]"], "'warp', an unknown unit"),
+    ],
+)
+def test_without_a_unit_nothing_is_sure(inputs, outputs, asked):
+    assert asked in questions(drafted(inputs, outputs))
+
+
+def test_a_force_in_kilograms_is_asked_about():
+    message = questions(drafted(["force [kg]"], ["speed [m/s]"]))
+    assert "in kg, a mass, not a force" in message
+
+
+def test_a_torque_asks_for_the_wheels():
+    message = questions(drafted(["traction [N.m]"], ["speed [m/s]"]))
+    assert "gain = 1 / (radius" in message
+
+
+@pytest.mark.parametrize(
+    ("outputs", "asked"),
+    [
+        (["speed [m/s]", "velocity [m/s]"], "which of 'speed', 'velocity'"),
+        (["v [m/s]", "s [m]", "x [m]"], "which of 's', 'x'"),
+    ],
+)
+def test_two_that_are_as_good_are_a_question(outputs, asked):
+    assert asked in questions(drafted(["force [N]"], outputs))
+
+
+def test_two_ways_to_drive_are_a_question():
+    message = questions(drafted(["force [N]", "speed_setpoint [m/s]"], ["speed [m/s]"]))
+    assert "Choose one way to drive" in message
+
+
+def test_pedals_have_a_strength_that_nobody_tells():
+    draft = drafted(["throttle [1]", "brake [%]"], ["speed [m/s]"])
+    message = questions(draft)
+    assert "[inputs.throttle]" in message
+    assert "full_force = 4000" in message
+    text = re.sub(r"# \? (full_force)", r"\1", draft.toml)
+    profile = make_profile(tomllib.loads(text), "edited draft")
+    assert profile.inputs.brake.full_force == 8000
+
+
+def test_a_throttle_without_a_brake():
+    message = questions(drafted(["throttle [1]"], ["speed [m/s]"]))
+    assert "'throttle' is a throttle, but no input is a brake" in message
+
+
+def test_an_inner_variable_is_not_taken_without_being_asked():
+    inner = variable("mass.v [m/s]", "local")
+    message = questions(drafted(["f [N]"], ["y"], more=[inner]))
+    assert "is it the local variable 'mass.v'" in message
+
+
+def test_nothing_to_drive():
+    message = questions(drafted(["k1", "on"], ["y [V]"]))
+    assert "its inputs are k1, on" in message
+    assert "its outputs are y" in message
+
+
+def test_an_array_asks_for_the_element():
+    states = Variable("speed", 0, "Float64", "output", unit="m/s", shape=(2,))
+    assert "which element" in questions(drafted(["force [N]"], [states]))
+
+
+def test_booleans_and_texts_are_no_candidates():
+    brake = Variable("brake", 0, "Boolean", "input")
+    force = Variable("force", 0, "String", "input")
+    assert "no numeric input" in questions(drafted([brake, force], ["speed [m/s]"]))
+
+
+# ---- how it is stepped ----
+
+FIXED = Interface(Kind.CO_SIMULATION, "car", fixed_internal_step=0.002)
+RIGID = Interface(Kind.CO_SIMULATION, "car", variable_step=False)
+ME = Interface(Kind.MODEL_EXCHANGE, "car")
+
+
+@pytest.mark.parametrize(
+    ("interfaces", "default_step", "table"),
+    [
+        ((CS,), 0.01, {"kind": "co-simulation"}),
+        ((ME,), None, {"kind": "model-exchange"}),
+        ((ME, CS), None, {"kind": "co-simulation"}),
+        ((FIXED,), None, {"kind": "co-simulation", "step": 0.002}),
+        ((RIGID,), 0.01, {"kind": "co-simulation", "step": 0.01}),
+        ((RIGID,), 0.02, {"kind": "co-simulation"}),  # does not fit into 0.05 s: a question
+        ((RIGID,), 1.0, {"kind": "co-simulation"}),
+        ((RIGID,), None, {"kind": "co-simulation"}),
+    ],
+)
+def test_kind_and_step(interfaces, default_step, table):
+    draft = drafted(["F [N]"], ["v [m/s]"], interfaces=interfaces, default_step=default_step)
+    assert draft.values["fmu"] == table
+    assert draft.confident
+
+
+# ---- the file ----
+
+NAMES = st.text(min_size=1, max_size=12)
+
+
+@given(NAMES, NAMES, NAMES, st.sampled_from(["", "m/s", "N", "kg", 'a"b']), st.text(max_size=30))
+def test_whatever_the_fmu_says_the_file_is_toml(one, other, third, unit, description):
+    model = a_model(
+        [Variable(one, 0, "Real", "input", unit=unit, description=description)],
+        [Variable(other, 1, "Real", "output", unit=unit, description=description)],
+        [Variable(third, 2, "Real", "parameter", unit=unit, start="1", settable=True)],
+    )
+    draft = draft_profile(model)
+    assert tomllib.loads(draft.toml) == draft.values
+    assert all(line.isprintable() for line in draft.toml.splitlines())
+
+
+@pytest.mark.parametrize(
+    ("inputs", "outputs"),
+    [
+        (["force [N]"], ["speed [m/s]", "x [km]", "a [m/s2]"]),
+        (["driveForce [N]", "brakeForce [N]"], ["speed [m/s]"]),
+        (["vehicle.v_ref [m/s]"], ["vehicle.v [m/s]"]),
+        (['odd "name\\' + " [N]"], ["speed [m/s]"]),
+    ],
+)
+def test_a_draft_without_questions_is_a_profile(inputs, outputs):
+    draft = drafted(inputs, outputs)
+    profile = make_profile(tomllib.loads(draft.toml), "draft")
+    assert profile == require_confident(draft, PATH)
+    assert "# ?" not in draft.toml
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("tractiveForce", ["tractive", "force"]),
+        ("F_x", ["f", "x"]),
+        ("v0", ["v", "0"]),
+        ("vehicle.body.v_ref", ["v", "ref"]),
+        ("APPSPosition", ["apps", "position"]),
+        ("Ego Speed (km/h)", ["ego", "speed", "km", "h"]),
+    ],
+)
+def test_words_of_a_name(name, words):
+    assert words_of(name) == words
