@@ -52,7 +52,7 @@ _load_support()
 pytest_plugins = [
     "support.clips",
     "support.commands",
-    "support.programs",
+    "support.running",
     "support.runs",
     "support.scenarios",
     "support.studies",

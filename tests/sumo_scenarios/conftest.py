@@ -12,7 +12,7 @@ from sumo_scenarios import Scenario, find
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-PROBES = Path(__file__).parents[1] / "support" / "scenario_probes.py"
+PROBES = Path(__file__).parents[1] / "support" / "programs" / "scenario_probes.py"
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 SUMO_HOME = Path(sumo.SUMO_HOME)
-RUN = Path(__file__).with_name("run_started.py")
+RUN = Path(__file__).parent / "programs" / "run_started.py"
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ import sumo
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-LOOKS = Path(__file__).parents[2] / "support" / "sumo_persons.py"
+LOOKS = Path(__file__).parents[2] / "support" / "programs" / "sumo_persons.py"
 GRID = ["--grid", "--grid.number", "4", "--grid.length", "100", "--no-turnarounds"]
 PAVED = ["--sidewalks.guess", "--crossings.guess", "--walkingareas"]
 CITIES = {

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 SUMO_HOME = Path(sumo.SUMO_HOME)
-WALKS = Path(__file__).parents[2] / "support" / "sumo_walks.py"
+WALKS = Path(__file__).parents[2] / "support" / "programs" / "sumo_walks.py"
 PAVED = ["--sidewalks.guess", "--crossings.guess", "--walkingareas"]
 NETWORKS = {
     # 3 x 3 signalised junctions, 120 m apart, A0 in the south-west, C2 in the north-east

@@ -1,4 +1,7 @@
-"""Running the programs beside this file, each in a process of its own."""
+"""Running the programs of the folder of that name, each in a process of its own.
+
+They lie in a folder of their own: Python looks for packages beside a program first.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ import pytest
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-SERVER = Path(__file__).with_name("fork_server.py")
+SERVER = Path(__file__).parent / "programs" / "fork_server.py"
 Done = subprocess.CompletedProcess[str]
 
 
