@@ -161,3 +161,12 @@ def test_every_folder_of_code_says_what_it_is_for(package: str) -> None:
         assert purpose, f"{folder}/__init__.py has no docstring"
         sentence = purpose.partition("\n\n")[0]
         assert sentence.endswith((".", ":", "?")), f"{folder}/__init__.py: {sentence!r}"
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_tests_lie_in_folders_of_the_names_of_the_products(package: str) -> None:
+    here = Path(__file__).parent / package
+    folders = {file.parent.relative_to(here) for file in here.rglob("test_*.py")}
+    assert folders
+    strange = [str(folder) for folder in folders if not (folder_of(package) / folder).is_dir()]
+    assert strange == []
