@@ -43,7 +43,7 @@ def baseline(result: RunResult) -> float:
     ]
     with ExitStack() as stack:
         parts = assemble(preflight(result.config, result.scenario), stack)
-        vehicle = parts.drivers[0].vehicle
+        vehicle = parts.egos[0].vehicle
         parts.departures.due()  # inserts the ego and starts its FMU
         move_ego, move_person = libsumo.vehicle.moveToXY, libsumo.person.moveToXY
         began = perf_counter()

@@ -227,7 +227,7 @@ def _result(
             parts.config,
             scenario,
             config_text=dump_toml(parts.config),
-            vehicles={driver.id: driver.description for driver in parts.drivers},
+            vehicles={ego.id: ego.description for ego in parts.egos},
             pedestrians=parts.roster.ledger,
             traffic={} if parts.yielding is None else parts.yielding.report,
             sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
@@ -244,7 +244,7 @@ def _result(
 
 def _mismatches(parts: Parts, egos: Sequence[EgoResult]) -> list[str]:
     """Of vehicles that are not ours and that the controller's model does not describe."""
-    foreign = {driver.id: driver for driver in parts.drivers if not driver.description["bundled"]}
+    foreign = {ego.id for ego in parts.egos if not ego.description["bundled"]}
     remarks = [
         mismatch.remark(ego, parts.time_step, model_margin(ego.config, parts.time_step))
         for ego in egos

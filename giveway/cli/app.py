@@ -10,7 +10,7 @@ import typer
 
 from giveway.cli.fmu import build_export, build_fmu
 from giveway.cli.studies import add_studies
-from giveway.cli.validation import add_recorded
+from giveway.cli.validation import add_validation
 
 HELP = """How should a vehicle drive through a crowd, and what happens to both?
 
@@ -35,7 +35,7 @@ def build_app(arguments: Sequence[str]) -> typer.Typer:
     app.callback()(_main)
     app.command("run")(_with_flags(_run, command))
     add_studies(app)
-    add_recorded(app)
+    add_validation(app)
     app.command("scenarios")(_scenarios)
     app.command("doctor")(_doctor)
     app.command("config")(_with_flags(_config, command))

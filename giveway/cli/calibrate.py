@@ -1,4 +1,4 @@
-"""``giveway calibrate``: parameters fitted to recorded trajectories, and what they are worth."""
+"""``giveway calibrate``: parameters fitted to recorded trajectories, judged on held-out clips."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from giveway.cli.counting import counting
+from giveway.cli.printing import print_place, writing
+from giveway.cli.progress import counting
 from giveway.config.presets import SUFFIX, parameters_of, preset_text
 from giveway.errors import ConfigError, ResultsError
 from giveway.precompile import compile_kernels_once
@@ -63,23 +64,15 @@ def calibrate_command(
             progress=lambda done, of, best: count(done, of, f"error {best:.4f} m"),
         )
     settings = {"start": start, "seed": seed, "own_pace": own_pace}
-    _write(out, preset_text(out.stem, found.parameters, _provenance(found, settings)))
-    _print(console, found)
-    where = f"Preset in [bold]{escape(str(out))}[/bold]"
-    console.print(where, highlight=False, soft_wrap=True)
-
-
-def _write(out: Path, text: str) -> None:
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
+    text = preset_text(out.stem, found.parameters, _provenance(found, settings))
+    with writing(out, "name another file with --out"):
         out.write_text(text, encoding="utf-8", newline="\n")
-    except OSError as error:
-        msg = f"{out}: cannot be written ({error.strerror}); name another file with --out"
-        raise ResultsError(msg) from error
+    _print(console, found)
+    print_place(console, "Preset", out)
 
 
 def _provenance(found: Calibration, settings: dict[str, Any]) -> dict[str, Any]:
-    """What a reader of the file wants to know."""
+    """How the preset was made, for readers of the file."""
     return {
         "made_by": "giveway calibrate",
         **settings,
@@ -139,7 +132,7 @@ def _gap(fit: Fit) -> str:
 
 
 def _remarks(found: Calibration) -> list[str]:
-    """What has to be said plainly."""
+    """Remarks on what the fit shows and does not show."""
     said = []
     if not found.held_out:
         said.append("No clip was held out: nothing is known of other recordings.")

@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.table import Table
-from rich.text import Text
 
+from giveway.cli.printing import findings_table
 from giveway.doctor import examine_environment, examine_scenario
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from rich.table import Table
 
     from giveway.doctor import Finding
 
@@ -40,17 +41,8 @@ def doctor_command(scenario: str | None) -> int:
 
 
 def _table(title: str, findings: Sequence[Finding]) -> Table:
-    table = Table(title=title, title_justify="left", show_header=False, box=None, pad_edge=False)
-    table.add_column(no_wrap=True)
-    table.add_column(no_wrap=True)
-    table.add_column(overflow="fold", ratio=1)
-    for finding in findings:
-        text = Text(finding.text)  # not markup: ids and paths may hold brackets
-        if finding.remedy:
-            text.append(f"\n-> {finding.remedy}", style="italic")
-        level = Text(finding.level, style=_STYLES[finding.level])
-        table.add_row(level, Text(finding.subject), text)
-    return table
+    rows = ((found.level, found.subject, found.text, found.remedy) for found in findings)
+    return findings_table(title, _STYLES, rows)
 
 
 def _verdict(errors: int, warnings: int) -> str:

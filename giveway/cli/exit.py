@@ -1,4 +1,4 @@
-"""How the command line ends: its exit codes and its one line of error."""
+"""Exit codes of the command line, and its errors, which are one line."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 
 
 def fail(message: str, code: int) -> int:
-    """Print one line on stderr and hand back the exit code."""
+    """Print one line on stderr, and return the exit code."""
     sys.stderr.write(f"error: {' '.join(message.split())}\n")
     return code

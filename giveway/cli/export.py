@@ -79,7 +79,7 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
 
 
 def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
-    """What giveway's own controller of one ego is set to."""
+    """The parameters of one ego's controller."""
     own = make_controller(config, time_step)
     if not isinstance(own, SpeedController) or not isinstance(own.pid, Pid):
         msg = f"controller = {config.controller}: only the paper's controllers can be exported"
@@ -132,11 +132,11 @@ def _check_file(out: Path, *, force: bool) -> None:
 
 
 def _show(out: Path, version: str, p: ControllerParameters) -> None:
-    who = f"MPC of {p.horizon} steps, PID as fallback" if p.mpc else "PID"
+    kind = f"MPC of {p.horizon} steps, PID as fallback" if p.mpc else "PID"
     places = "obstacle_position"
     if version == "2.0":
         places = f"{places}[1] ... {places}[{p.horizon}]"
-    head = f"{out}: FMI {version} Co-Simulation, {who}, every {p.time_step:g} s"
+    head = f"{out}: FMI {version} Co-Simulation, {kind}, every {p.time_step:g} s"
     console = Console(highlight=False, soft_wrap=True)
     console.print(head, markup=False, style="bold")
     console.print(f"  inputs   speed, position, gap, speed_limit, {places}", markup=False)

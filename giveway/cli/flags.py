@@ -34,8 +34,8 @@ _PANELS = {
 def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     """``command`` with one flag per configuration option; those given arrive as ``settings``.
 
-    Values arrive as text: the configuration's own validation judges them, in one voice with the
-    TOML file's.
+    Values arrive as text and are validated by the configuration, with the same messages as those
+    of a TOML file.
     """
     locations = {"__".join(o.location): o for o in options() if o.location != ("scenario",)}
 

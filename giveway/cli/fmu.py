@@ -8,8 +8,7 @@ from typing import Annotated
 
 import typer
 
-from giveway.cli.exit import fail
-from giveway.errors import ConfigError, GivewayError
+from giveway.errors import ConfigError
 
 _Fmu = Annotated[Path, typer.Argument(help="The FMU (.fmu).")]
 _Profile = Annotated[
@@ -113,8 +112,8 @@ def _identify(
     try:
         starts = [float(part) for part in speeds.split(",")]
     except ValueError:
-        message = f"--speeds {speeds}: expected numbers like 0,4,8 [m/s]"
-        raise typer.Exit(fail(message, ConfigError.exit_code)) from None
+        msg = f"--speeds {speeds}: expected numbers like 0,4,8 [m/s]"
+        raise ConfigError(msg) from None
     name = f"{fmu.stem}_identify"
     code = identify_command(
         fmu,
@@ -141,8 +140,4 @@ def _controller(
     """Write the controller (MPC with PID, or PID) as an FMU, with a run's settings."""
     from giveway.cli.export import export_command
 
-    try:
-        code = export_command(scenario, config, settings, out, fmi=fmi, force=force)
-    except GivewayError as error:
-        code = fail(str(error), error.exit_code)
-    raise typer.Exit(code)
+    raise typer.Exit(export_command(scenario, config, settings, out, fmi=fmi, force=force))

@@ -5,9 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
-from rich.text import Text
 
 from fmus import FmuError
 from fmus.checking import Finding, check, opener_of, without_guards
@@ -17,6 +14,7 @@ from fmus.profile.preparation import choose_profile, prepare
 from fmus.profile.vehicle_profile import Axis
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
+from giveway.cli.printing import findings_table, print_place
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -113,19 +111,8 @@ def _profile_found(path: Path, file: Path | None, profile: VehicleProfile) -> Fi
 
 
 def _conclude(console: Console, path: Path, findings: Sequence[Finding]) -> int:
-    table = Table(
-        title=Text(f"Check of {printable(path.name, 60)}"), title_justify="left",
-        show_header=False, box=None, pad_edge=False,
-    )  # fmt: skip
-    table.add_column(no_wrap=True)
-    table.add_column(no_wrap=True)
-    table.add_column(overflow="fold", ratio=1)
-    for finding in findings:
-        text = Text(printable(finding.text, 1000))  # not markup: names may hold brackets
-        if finding.remedy:
-            text.append(f"\n-> {finding.remedy}", style="italic")
-        table.add_row(Text(finding.verdict, style=_STYLES[finding.verdict]), finding.name, text)
-    console.print(table)
+    rows = ((f.verdict, f.name, printable(f.text, 1000), f.remedy) for f in findings)
+    console.print(findings_table(f"Check of {printable(path.name, 60)}", _STYLES, rows))
     failed = sum(finding.verdict == "fail" for finding in findings)
     warned = sum(finding.verdict == "warn" for finding in findings)
     console.print(_verdict(failed, warned), highlight=False)
@@ -148,4 +135,4 @@ def _draw(console: Console, report: CheckReport, path: Path, folder: Path) -> No
     if figure is not None:
         file = folder / f"{path.stem}_check.png"
         save_picture(figure, file)
-        console.print(f"Picture in [bold]{escape(str(file))}[/bold]", highlight=False)
+        print_place(console, "Picture", file)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from fmus import FmuError
 from fmus.profile.vehicle_profile import read_profile
-from giveway.errors import ConfigError, ResultsError
+from giveway.cli.printing import writing
+from giveway.errors import ConfigError
 from giveway.figures import save_figure
 
 if TYPE_CHECKING:
@@ -61,9 +62,5 @@ def save_picture(figure: Figure, path: Path) -> None:
     Raises:
         ResultsError: it cannot be written.
     """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+    with writing(path, "name another with --out"):
         save_figure(figure, path)
-    except OSError as error:
-        msg = f"{path}: cannot be written ({error.strerror or error}); name another with --out"
-        raise ResultsError(msg) from error

@@ -18,7 +18,8 @@ from fmus.checking.profile_file import profile_text, with_model
 from fmus.profile.preparation import choose_profile, prepare
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
-from giveway.errors import ConfigError, ResultsError, VehicleError
+from giveway.cli.printing import print_place, writing
+from giveway.errors import ConfigError, VehicleError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,13 +82,15 @@ def identify_command(
     for remark in found.remarks:
         console.print(f"[yellow]note[/yellow] {escape(remark)}", highlight=False, soft_wrap=True)
     if out is not None:
-        _write(out, with_model(_text(path, profile, chosen), found.model))
-        console.print(f"Profile in [bold]{escape(str(out))}[/bold]", highlight=False)
+        text = with_model(_text(path, profile, chosen), found.model)
+        with writing(out, "name another with -o"):
+            out.write_text(text, encoding="utf-8")
+        print_place(console, "Profile", out)
     if picture is not None:
         from giveway.figures.vehicle_response import identification_figure
 
         save_picture(identification_figure(found, title=_title(path, found)), picture)
-        console.print(f"Picture in [bold]{escape(str(picture))}[/bold]", highlight=False)
+        print_place(console, "Picture", picture)
     return 0
 
 
@@ -176,12 +179,3 @@ def _text(path: Path, file: Path | None, profile: VehicleProfile) -> str:
         tomllib.loads(text)
         return text
     return profile_text(profile, f"{path.name}: how giveway drives it (docs/vehicles.md)")
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        msg = f"{path}: cannot be written ({error.strerror or error}); name another with -o"
-        raise ResultsError(msg) from error

@@ -1,4 +1,4 @@
-"""``giveway run`` as a supervisor: the run is a child, whose crash costs no row."""
+"""``giveway run`` as a supervisor: the run is a child process, whose crash loses no row."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def run_isolated() -> int:
 
 
 def supervised(journal: Path | None, command: Callable[[], int]) -> None:
-    """The child's half: make the run, and end with its exit code.
+    """In the child: make the run, and end with its exit code.
 
     Args:
-        journal: the folder that the supervisor has named; None: there is no supervisor.
+        journal: folder named by the supervisor; None without one.
         command: makes the run and tells the exit code; may raise a ``GivewayError``.
 
     Raises:
@@ -46,8 +46,8 @@ def supervised(journal: Path | None, command: Callable[[], int]) -> None:
         try:
             child.listen()
             code = command()
-        except KeyboardInterrupt:  # typer would end without a word
+        except KeyboardInterrupt:  # typer would print nothing
             code = fail("interrupted before the run began", INTERRUPTED)
         except GivewayError as error:
             code = fail(str(error), error.exit_code)
-        raise SystemExit(code)  # in here: a failed run that dies on its way out is no success
+        raise SystemExit(code)  # inside: a failed run that crashes while it ends is no success

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
+from giveway.cli.printing import print_place, writing
 from giveway.config.presets import parameters_of
-from giveway.errors import ConfigError, ResultsError
+from giveway.errors import ConfigError
 from giveway.figures import save_figure
 from giveway.geometry.bodies import VehicleShape
 from giveway.results.pictures import influence_picture
@@ -36,13 +37,9 @@ def influence_command(out: Path, speeds: str, *, preset: str, length: float, wid
         raise ConfigError(msg)
     shape = VehicleShape(length, width)
     figure = influence_picture(_speeds(speeds), shape, parameters)
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
+    with writing(out, "name another file with --out"):
         save_figure(figure, out)
-    except OSError as error:
-        msg = f"{out}: cannot be written ({error.strerror}); name another file with --out"
-        raise ResultsError(msg) from error
-    Console().print(f"Picture in [bold]{out}[/bold]", highlight=False)
+    print_place(Console(), "Picture", out)
 
 
 def _speeds(text: str) -> list[float]:

@@ -1,4 +1,4 @@
-"""The program ``giveway``: one command is built and run, and its end becomes an exit code."""
+"""The program ``giveway``: it builds and runs one command, whose end becomes an exit code."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal without our characters is no error
+            stream.reconfigure(errors="replace")  # a terminal may lack our characters
     words = (sys.argv[1:] if arguments is None else list(arguments)) or ["--help"]
     try:
         code = build_app(words)(args=words, standalone_mode=False)
@@ -28,11 +28,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except KeyboardInterrupt:
         code = fail("interrupted", INTERRUPTED)
     except BrokenPipeError:
-        code = 1  # whoever read our output has gone: there is nobody to tell
+        code = 1  # the reader of our output has ended
     except OSError as error:
         code = fail(f"output: {error.strerror or error}", 1)
     except Exception as error:
         if not hasattr(error, "format_message"):
-            raise  # a fault of ours: the traceback is wanted
+            raise  # a fault of giveway: the traceback is wanted
         code = fail(f"{error.format_message()} See giveway --help.", 2)  # a usage error
     sys.exit(code if isinstance(code, int) else 0)

@@ -1,4 +1,4 @@
-"""The progress bar of a run."""
+"""Progress bars: over a run, and over things that are counted."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from rich.progress import BarColumn, Progress, TextColumn
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from rich.console import Console
 
@@ -23,7 +23,7 @@ _REFRESH = 0.1  # [s] of wall clock between two redraws
 
 @contextmanager
 def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None]:
-    """A bar over the distance driven; it is gone when the run has ended.
+    """A bar over the distance driven, which vanishes when the run has ended.
 
     Drawn from the loop itself: a refreshing thread would write while file descriptor 2 belongs
     to SUMO.
@@ -64,3 +64,22 @@ def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None
             )
 
         yield watch
+
+
+@contextmanager
+def counting(console: Console, what: str) -> Iterator[Callable[[int, int, str], None]]:
+    """A bar that shows how much is done, of how much, and a remark; it vanishes at the end."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=None),
+        TextColumn("{task.completed}/{task.total} {task.fields[state]}"),
+        TimeRemainingColumn(),
+    )
+    shown = console.is_terminal and not console.quiet
+    with Progress(*columns, console=console, transient=True, disable=not shown) as bar:
+        task = bar.add_task(what, total=None, state="")
+
+        def count(done: int, of: int, state: str) -> None:
+            bar.update(task, completed=done, total=of, state=state)
+
+        yield count

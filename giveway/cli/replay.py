@@ -8,8 +8,8 @@ import webbrowser
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.markup import escape
 
+from giveway.cli.printing import print_place
 from giveway.replays.page import write_replay
 from giveway.replays.rerun import Predicted, predicted_again
 from giveway.replays.run_folder import PREDICTIONS, RunFolder
@@ -46,15 +46,14 @@ def replay_command(
             if predicted.remark:
                 sys.stderr.write(f"note: {predicted.remark}\n")
         write_replay(run, target, predictions=predicted.file, remark=predicted.remark)
-    # a path is not broken into lines: it is to be copied
-    console.print(f"Replay in [bold]{escape(str(target))}[/bold]", highlight=False, soft_wrap=True)
+    print_place(console, "Replay", target)
     if show:
         webbrowser.open(target.absolute().as_uri())
     return 0
 
 
 def _worth_it(run: Path) -> bool:
-    """Whether there may be predictions that are not on record; a crash is not asked for twice."""
+    """Whether a run may give predictions that are not on record; a crash is not repeated."""
     folder = RunFolder.read(run)
     if (run / PREDICTIONS).is_file() or folder.manifest.get("ending") == "crashed":
         return False

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.markup import escape
 
+from giveway.cli.printing import print_place
 from giveway.studies.folder import StudyFolder
 
 if TYPE_CHECKING:
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 
 def report_command(study: Path, *, replays: bool, quiet: bool) -> int:
-    """Write them anew; nothing is computed but the few runs that are shown.
+    """Write figures, replays and report anew; only the runs that are shown are computed again.
 
     Args:
         study: the study's folder.
-        replays: make those runs again at all.
+        replays: whether to make the shown runs again.
         quiet: print nothing.
 
     Raises:
@@ -29,7 +29,7 @@ def report_command(study: Path, *, replays: bool, quiet: bool) -> int:
 
 
 def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> None:
-    """Write the tables, unless those of the whole study are there, figures, replays, the report."""
+    """Write figures, replays and report, and the tables unless those of all runs exist."""
     from giveway.precompile import compile_kernels_once
     from giveway.reports.with_replays import write_report_of
     from giveway.studies.output import write_tables
@@ -39,5 +39,4 @@ def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> 
         write_tables(study, whole=True)
     with console.status("Drawing ...") as status:
         page = write_report_of(study, replays=replays, tell=status.update)
-    where = f"Report in [bold]{escape(str(page))}[/bold]"
-    console.print(where, highlight=False, soft_wrap=True)
+    print_place(console, "Report", page)

@@ -28,9 +28,9 @@ def rerun_command(
     Args:
         study: the study's folder.
         run: the run's id.
-        outputs: what is wanted.
+        outputs: what is kept and printed.
         predictions: keep the predicted positions.
-        journal: a folder for the rows, should this process die.
+        journal: a folder for the rows in case this process dies.
 
     Raises:
         GivewayError: one line that says what to do.

@@ -57,8 +57,8 @@ def run_command(
         scenario: name or path; None: the file's, or the default.
         config: a TOML file.
         settings: what the flags set.
-        outputs: what is wanted.
-        journal: a folder for the rows, should this process die.
+        outputs: what is kept and printed.
+        journal: a folder for the rows in case this process dies.
 
     Raises:
         GivewayError: one line that says what to do.
@@ -100,11 +100,11 @@ def run_command(
 def default_folder(config: RunConfig, scenario: str) -> Path:
     """``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with ids of egos taken over."""
     egos = config.each_ego()
-    drivers = "_".join(dict.fromkeys(ego.controller for ego in egos)) or "no_ego"
+    controllers = "_".join(dict.fromkeys(ego.controller for ego in egos)) or "no_ego"
     taken = "".join(f"_{name}" for ego in egos for name in ego.ego.take_over)
     safe = "".join(letter if letter.isalnum() or letter in "._-" else "-" for letter in taken)
-    people = f"{config.crowd.pedestrians}ped"
-    return Path("results") / f"{scenario}_{drivers}{safe[:60]}_{people}_seed{config.seed}"
+    pedestrians = f"{config.crowd.pedestrians}ped"
+    return Path("results") / f"{scenario}_{controllers}{safe[:60]}_{pedestrians}_seed{config.seed}"
 
 
 def show(console: Console, result: RunResult, folder: Path) -> None:

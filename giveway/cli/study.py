@@ -18,7 +18,7 @@ from giveway.studies.plan import plan
 from giveway.studies.study import estimate, processors, run_study
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from giveway.studies.study import StudyOptions, StudyProgress
 
@@ -61,11 +61,10 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
         return 0
     began = time.monotonic()
     with study_progress(console, definition.name) as watcher:
-        tally = _Tally(watcher)
-        study = run_study(definition, request.study, out, options, tally)
+        study = run_study(definition, request.study, out, options, watcher)
     elapsed = time.monotonic() - began
     workers = None if options.cluster else options.jobs or processors()
-    print_summary(console, study, made=tally.made, elapsed=elapsed, workers=workers)
+    print_summary(console, study, made=watcher.made, elapsed=elapsed, workers=workers)
     if request.report:
         from giveway.cli.report import write_all
 
@@ -74,10 +73,10 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
 
 
 @contextmanager
-def study_progress(console: Console, name: str) -> Iterator[Callable[[StudyProgress], None] | None]:
-    """A bar with rate, remaining time and failures; lines now and then without a terminal."""
+def study_progress(console: Console, name: str) -> Iterator[_Watcher]:
+    """A bar with rate, remaining time and failures; without a terminal, a line now and then."""
     if console.quiet:
-        yield None
+        yield _Watcher()
     elif console.is_terminal:
         columns = (
             TextColumn("{task.description}"),
@@ -91,40 +90,40 @@ def study_progress(console: Console, name: str) -> Iterator[Callable[[StudyProgr
         yield _Lines(console, name)
 
 
-class _Tally:
-    """Counts the runs that are made, and tells ``watcher`` of them."""
+class _Watcher:
+    """Counts the runs that this session makes, and shows nothing.
 
-    def __init__(self, watcher: Callable[[StudyProgress], None] | None) -> None:
-        self._watcher = watcher
+    Attributes:
+        made: runs so far.
+    """
+
+    def __init__(self) -> None:
+        self._began = time.monotonic()
         self.made = 0
 
     def __call__(self, state: StudyProgress) -> None:
         self.made = state.made
-        if self._watcher is not None:
-            self._watcher(state)
+        self.show(state)
 
-
-class _Rate:
-    """Runs per second, of this session."""
-
-    def __init__(self) -> None:
-        self._began = time.monotonic()
+    def show(self, state: StudyProgress) -> None:
+        """Show where the study stands."""
 
     def text(self, state: StudyProgress) -> str:
+        """Runs so far, runs per second of this session, failures."""
         elapsed = time.monotonic() - self._began
         rate = state.made / elapsed if elapsed else 0.0
         failed = f"  {state.failed} failed" if state.failed else ""
         return f"{state.finished:,}/{state.total:,} runs  {rate:.1f}/s{failed}"
 
 
-class _Bar(_Rate):
+class _Bar(_Watcher):
     def __init__(self, bar: Progress, name: str) -> None:
         super().__init__()
         self._bar = bar
         self._task = bar.add_task(f"study {name}", total=None, state="")
         self._drawn = 0.0
 
-    def __call__(self, state: StudyProgress) -> None:
+    def show(self, state: StudyProgress) -> None:
         now = time.monotonic()
         if now - self._drawn < _REFRESH and state.finished < state.total:
             return
@@ -134,14 +133,14 @@ class _Bar(_Rate):
         )
 
 
-class _Lines(_Rate):
+class _Lines(_Watcher):
     def __init__(self, console: Console, name: str) -> None:
         super().__init__()
         self._console = console
         self._name = name
         self._told = time.monotonic()
 
-    def __call__(self, state: StudyProgress) -> None:
+    def show(self, state: StudyProgress) -> None:
         now = time.monotonic()
         if state.latest is None or now - self._told < _LINE:
             return

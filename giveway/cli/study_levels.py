@@ -1,4 +1,4 @@
-"""The table of levels in a terminal: as many columns beside each other as there is room for."""
+"""The table of levels in a terminal, in parts as wide as there is room for."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ def print_levels(console: Console, study: StudyFolder) -> None:
 
 
 def _text(mean: Mean) -> str:
-    return f"{mean.text} {mean.mark or ' '}"  # the digits stay below each other
+    return f"{mean.text} {mean.mark or ' '}"  # aligned with rows that have a mark
 
 
 def _widths(table: LevelTable) -> list[int]:
-    """Of each column of means."""
+    """The width of each column of means."""
     return [
         max(
             *map(len, _heading(*heading).split("\n")), *(len(_text(r.means[k])) for r in table.rows)
@@ -62,7 +62,7 @@ def _names_width(table: LevelTable) -> int:
 
 
 def _parts(table: LevelTable, width: int) -> Iterator[list[int]]:
-    """Which columns stand beside each other."""
+    """The columns of each part."""
     room = width - _names_width(table)
     part: list[int] = []
     used = 0

@@ -11,7 +11,9 @@ from rich.padding import Padding
 from rich.table import Table
 
 from giveway.cli.study_levels import print_levels
-from giveway.studies.design import label_of
+from giveway.reports.labels import level_label
+from giveway.reports.wording import counted
+from giveway.studies.contexts import other_factors
 from giveway.studies.statistics import metric, precise_enough
 
 if TYPE_CHECKING:
@@ -57,8 +59,8 @@ def print_plan(
     first, last = planned.seeds[0], planned.seeds[-1]
     seeds = f"seed {first}" if first == last else f"seeds {first} to {last}"
     console.print(
-        f"{most}{_count(len(planned), 'run')}: {_count(len(planned.cells), 'cell')} with {seeds}; "
-        f"about {_duration(seconds)} and {len(planned) * _BYTES_PER_RUN / 1e6:.1f} MB in "
+        f"{most}{counted(len(planned), 'run')}: {counted(len(planned.cells), 'cell')} with "
+        f"{seeds}; about {_duration(seconds)} and {len(planned) * _BYTES_PER_RUN / 1e6:.1f} MB in "
         f"{escape(str(out))}",
         highlight=False,
     )
@@ -75,10 +77,10 @@ def print_summary(
 
     Args:
         console: to print on.
-        study: that has been run.
-        made: runs of this session; the others were there.
-        elapsed: [s] that these took.
-        workers: that made them; None: a cluster.
+        study: its folder.
+        made: how many of its runs this session has made.
+        elapsed: [s] that making them took.
+        workers: how many made them; None for a cluster.
     """
     if study.definition.reference:
         _print_reference(console, study)
@@ -87,11 +89,11 @@ def print_summary(
     else:
         print_comparison(console, study)
     _print_precision(console, study)
-    by = "" if workers is None else f" on {_count(workers, 'worker')}"
+    by = "" if workers is None else f" on {counted(workers, 'worker')}"
     there = len(study.records)
     new = "" if made == there else f", {made:,} of them made now,"
     console.print(
-        f"{_count(there, 'run')}{new} in {_duration(elapsed)}{by}; tables in "
+        f"{counted(there, 'run')}{new} in {_duration(elapsed)}{by}; tables in "
         f"[bold]{escape(str(study.path))}[/bold]",
         highlight=False,
     )
@@ -102,7 +104,7 @@ def print_summary(
         where = f"cell{'s'[: len(cells) > 1]} {', '.join(cells[:8])}{' ...' * (len(cells) > 8)}"
         verb = "has" if len(failures) == 1 else "have"
         console.print(
-            f"[yellow]{len(failures):,} of {_count(there, 'run')} {verb} no result[/yellow] "
+            f"[yellow]{len(failures):,} of {counted(there, 'run')} {verb} no result[/yellow] "
             f"({where}), see failures.csv; the first, "
             f"{escape(str(first['run']))}: {escape(str(first['cause']))}",
             highlight=False,
@@ -148,7 +150,7 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
 def _metric_table(study: StudyFolder, chosen: pd.DataFrame) -> Table:
     wanted = study.definition.comparison
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
-    names = [factor.name for factor in study.design.factors if factor.name != wanted.factor]
+    names = other_factors(study.design, wanted)
     names += ["ego"] if study.comparison["ego"].nunique() > 1 else []
     names += ["treatment"] if study.comparison["treatment"].nunique() > 1 else []
     for heading in _short([wanted.factor if name == "treatment" else name for name in names]):
@@ -157,18 +159,12 @@ def _metric_table(study: StudyFolder, chosen: pd.DataFrame) -> Table:
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("", no_wrap=True)
     for row in chosen.to_dict("records"):
-        table.add_row(*(escape(_label(row[name])) for name in names), *_cells(row))
+        table.add_row(*(escape(level_label(row[name])) for name in names), *_cells(row))
     return table
 
 
-def _label(value: object) -> str:
-    """A level as the study file writes it: a switch is true or false, also from a CSV file."""
-    text = label_of(value)
-    return text.lower() if text in {"True", "False"} else text
-
-
 def _short(names: Sequence[str]) -> Iterator[str]:
-    """The last part of each factor's name, where that tells them apart."""
+    """The last part of each factor's name, where no two are the same."""
     last = [*(name.rpartition(".")[2] for name in names), "seed"]  # the crowd's
     for name, short in zip(names, last, strict=False):
         yield short if short and last.count(short) == 1 else name
@@ -195,10 +191,10 @@ def _print_precision(console: Console, study: StudyFolder) -> None:
     known = metric(wanted.metric)
     what = f"{known.label} ({wanted.situation}) to {wanted.width:g} {known.unit}".rstrip()
     if enough:
-        console.print(f"Precise enough, {what}, with {_count(seeds, 'seed')}", highlight=False)
+        console.print(f"Precise enough, {what}, with {counted(seeds, 'seed')}", highlight=False)
     else:
         console.print(
-            f"[yellow]Not precise enough[/yellow], {what}, with all {_count(seeds, 'seed')}: "
+            f"[yellow]Not precise enough[/yellow], {what}, with all {counted(seeds, 'seed')}: "
             "allow more by --runs and --resume",
             highlight=False,
         )
@@ -224,11 +220,11 @@ def _print_reference(console: Console, study: StudyFolder) -> None:
     for context, rows in frame.groupby([*others, "ego", "pedestrians"], sort=False):
         labels = [escape(str(value)) for value in (*context[: len(others)], context[-1])]
         by_situation = rows.set_index("situation").to_dict("index")
-        table.add_row(*labels, *(_beside(by_situation[name]) for name in situations))
+        table.add_row(*labels, *(_ours_and_published(by_situation[name]) for name in situations))
     console.print(table)
 
 
-def _beside(row: Mapping[Any, Any]) -> str:
+def _ours_and_published(row: Mapping[Any, Any]) -> str:
     """Ours above, the published number below."""
     published = "N.A." if math.isnan(row["published"]) else f"{row['published']:+.2f}"
     if math.isnan(row["mean_difference"]):
@@ -237,10 +233,6 @@ def _beside(row: Mapping[Any, Any]) -> str:
         interval = f"{row['ci_low']:+.2f} ... {row['ci_high']:+.2f}"
         ours = f"[bold]{row['mean_difference']:+.2f}[/bold]\n{interval}"
     return f"{ours}\nn = {row['n']:,}\npaper {published}"
-
-
-def _count(n: int, noun: str) -> str:
-    return f"{n:,} {noun}" if n == 1 else f"{n:,} {noun}s"
 
 
 def _duration(seconds: float) -> str:

@@ -25,9 +25,9 @@ _SHOWN = (
     ("Steps in which the MPC acted", "mpc_feasibility_rate", "%"),
     ("Steps in which the safety layer acted", "safety_share", "%"),
 )
-_LEDGER = (
+_COUNTED = (
     ("Pedestrians added", "added"),
-    ("Walkers taken over from SUMO", "taken_over"),
+    ("Persons taken over from SUMO", "taken_over"),
     ("handed back", "handed_back"),
     ("arrived", "arrived"),
     ("gone on by vehicle, or to a stop", "continued"),
@@ -48,7 +48,7 @@ def summary_table(result: RunResult) -> Table:
         cells = [_formatted(ego.summary[name], unit) for ego in result.egos]
         table.add_row(label, *(value for value, _ in cells), max(unit for _, unit in cells))
     blanks = [""] * max(0, len(result.egos) - 1)
-    for label, count in _people(result):
+    for label, count in _counts(result):
         table.add_row(label, count, *blanks, "")
     factor, unit = _formatted(result.timing_summary["real_time_factor"], "x")
     table.add_row("Real-time factor", factor, *blanks, unit)
@@ -57,29 +57,31 @@ def summary_table(result: RunResult) -> Table:
 
 def _title(result: RunResult) -> str:
     if len(result.egos) == 1:
-        return f"{_drive(result, result.egos[0])} - {result.ending}"
+        return f"{_run_title(result, result.egos[0])} - {result.ending}"
     egos = f"{len(result.egos)} egos" if result.egos else "no ego"
-    people = len(result.crowd_track.ids)
+    pedestrians = len(result.crowd_track.ids)
     seed = result.config.seed
-    return f"{result.scenario.name}: {egos}, {people} pedestrians, seed {seed} - {result.ending}"
+    return (
+        f"{result.scenario.name}: {egos}, {pedestrians} pedestrians, seed {seed} - {result.ending}"
+    )
 
 
-def _drive(result: RunResult, ego: EgoResult) -> str:
-    people = len(result.crowd_track.ids)
+def _run_title(result: RunResult, ego: EgoResult) -> str:
+    pedestrians = len(result.crowd_track.ids)
     controller = ego.config.controller.upper()
     seed = result.config.seed
-    return f"{result.scenario.name}: {controller}, {people} pedestrians, seed {seed}"
+    return f"{result.scenario.name}: {controller}, {pedestrians} pedestrians, seed {seed}"
 
 
-def _people(result: RunResult) -> list[tuple[str, str]]:
-    """The ledger's lines, where the scenario has walkers, and what the yield layer did."""
+def _counts(result: RunResult) -> list[tuple[str, str]]:
+    """How many persons were taken over from SUMO, and how many vehicles yielded."""
     ledger: dict[str, Any] = result.manifest["pedestrians"]
     lines = []
     if ledger.get("taken_over"):
-        lines += [(label, str(ledger[name])) for label, name in _LEDGER if ledger[name]]
+        lines += [(label, str(ledger[name])) for label, name in _COUNTED if ledger[name]]
     yielded = result.manifest["traffic"].get("vehicles_that_yielded", 0)
     if yielded:
-        lines.append(("SUMO's vehicles that yielded", str(yielded)))
+        lines.append(("Background vehicles that yielded", str(yielded)))
     return lines
 
 

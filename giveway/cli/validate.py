@@ -9,7 +9,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from giveway.cli.counting import counting
+from giveway.cli.printing import print_place
+from giveway.cli.progress import counting
 from giveway.config.presets import parameters_of
 from giveway.precompile import compile_kernels_once
 from giveway.validation import read_clips, validate
@@ -44,8 +45,7 @@ def validate_command(
     with console.status("Drawing ..."):
         write_validation(found, parameters, folder)
     _print(console, found, preset)
-    where = f"Tables and pictures in [bold]{escape(str(folder))}[/bold]"
-    console.print(where, highlight=False, soft_wrap=True)
+    print_place(console, "Tables and pictures", folder)
 
 
 def _print(console: Console, found: Validation, preset: str) -> None:
@@ -89,8 +89,8 @@ def _cell(rows: pd.DataFrame) -> str:
 
 
 def _contacts(contacts: pd.DataFrame) -> Table:
-    people = int(contacts.loc[contacts["predictor"] == ORDER[0], "pedestrians"].sum())
-    table = Table(title=f"Touching the vehicle in whole clips, of {people}")
+    pedestrians = int(contacts.loc[contacts["predictor"] == ORDER[0], "pedestrians"].sum())
+    table = Table(title=f"Touching the vehicle in whole clips, of {pedestrians}")
     for heading in ("", "touching", "closest [m]"):
         table.add_column(escape(heading), justify="right" if heading else "left")
     for row in _totals(contacts):

@@ -15,7 +15,7 @@ _PARAMETERS = (
 )
 
 
-def add_recorded(app: typer.Typer) -> None:
+def add_validation(app: typer.Typer) -> None:
     """Add the commands about recorded trajectories to ``app``."""
     app.command("validate")(_validate)
     app.command("calibrate")(_calibrate)

@@ -15,8 +15,9 @@ from giveway.crowd.exchange import Exchange
 from giveway.crowd.roster import Roster
 from giveway.crowd.spawn import PREFIX, Spawned, spawn
 from giveway.crowd.zone import Zone
-from giveway.ego.controllers import make_controller, make_driver
+from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_remark
+from giveway.ego.waiting import make_waiting_ego
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.scenario_files import StartOptions, free_prefix
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
     from giveway.config import EgoRunConfig, RunConfig
     from giveway.cosimulation.preflight import CheckedRun
-    from giveway.ego.ego import Driver
+    from giveway.ego.waiting import WaitingEgo
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class Parts:
     time_step: float  # [s]
     substeps: int  # control steps per SUMO step
     horizon: int  # steps that anybody looks ahead
-    drivers: tuple[Driver, ...]
+    egos: tuple[WaitingEgo, ...]  # as they were before their departure
     departures: Departures
     roster: Roster
     crowd_model: CrowdModel
@@ -66,9 +67,9 @@ class Parts:
             f"ego '{name}': its {count} stop(s) are left out; the vehicle FMU drives on"
             for name, count in self.sumo.vehicles.dropped_stops.items()
         ]
-        identified = [model_remark(d.config, self.time_step) for d in self.drivers]
+        identified = [model_remark(ego.config, self.time_step) for ego in self.egos]
         remarks += [text for text in identified if text]
-        remarks += [f"ego '{d.id}': {text}" for d in self.drivers for text in d.vehicle.warnings]
+        remarks += [f"ego '{ego.id}': {text}" for ego in self.egos for text in ego.vehicle.warnings]
         unconnected = 0 if self.exchange is None else self.exchange.unconnected
         if unconnected:
             remarks.append(
@@ -116,11 +117,11 @@ def assemble(
     if network is not None:
         zone.require_overlap(network.boundary)
         remarks += _remarks_on(network, files.net_file)
-    drivers = tuple(
-        make_driver(ego, controller, time_step, stack)
+    waiting = tuple(
+        make_waiting_ego(ego, controller, time_step, stack)
         for ego, controller in zip(egos, controllers, strict=True)
     )
-    departures = Departures(drivers, sumo, files.config_file, time_step)
+    departures = Departures(waiting, sumo, files.config_file, time_step)
     departures.run_until_first(goes_on)
     roster = _roster(config, departures, sumo, files.net_file, network)
     exchange = None
@@ -140,8 +141,8 @@ def assemble(
         sumo=sumo,
         time_step=time_step,
         substeps=substeps,
-        horizon=max((driver.horizon for driver in drivers), default=1),
-        drivers=drivers,
+        horizon=max((ego.horizon for ego in waiting), default=1),
+        egos=waiting,
         departures=departures,
         roster=roster,
         crowd_model=CrowdModel(parameters_of(config.crowd.preset), time_step),

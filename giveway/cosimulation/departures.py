@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from giveway.ego.ego import Driver
+    from giveway.ego.waiting import WaitingEgo
     from giveway.sumo.lanes import Way
     from giveway.sumo.session import SumoSession
     from giveway.sumo.vehicles import VehicleState
@@ -30,10 +30,10 @@ _NAMES_KEPT = 100_000  # of vehicles that departed, to guess what was meant
 
 
 class Departures:
-    """Watches SUMO for the departure of each driver's vehicle.
+    """Watches SUMO for the departure of each waiting ego.
 
     Args:
-        drivers: with their FMUs loaded.
+        egos: with their FMUs loaded.
         session: the running simulation.
         config_file: the scenario, for messages.
         time_step: [s] of the co-simulation.
@@ -44,21 +44,19 @@ class Departures:
     """
 
     def __init__(
-        self, drivers: Sequence[Driver], session: SumoSession, config_file: Path, time_step: float
+        self, egos: Sequence[WaitingEgo], session: SumoSession, config_file: Path, time_step: float
     ) -> None:
-        self.waiting = list(drivers)
+        self.waiting = list(egos)
         self._session = session
         self._config_file = config_file
         self._time_step = time_step
-        for driver in drivers:
-            if driver.taken_over:
-                self._require_declared(driver.id)
+        for ego in egos:
+            if ego.taken_over:
+                self._require_declared(ego.id)
             else:
-                self._require_undeclared(driver.id)
+                self._require_undeclared(ego.id)
         self._departed: dict[str, None] = dict.fromkeys(session.vehicles.present())
-        self._ways = {
-            driver.id: self._way_of_inserted(driver) for driver in drivers if not driver.taken_over
-        }
+        self._paths = {ego.id: self._path_of_inserted(ego) for ego in egos if not ego.taken_over}
 
     def _require_declared(self, name: str) -> None:
         """A vehicle that no file declares need not be waited for."""
@@ -79,12 +77,12 @@ class Departures:
     @property
     def names(self) -> list[str]:
         """Ids of the vehicles that have not departed yet."""
-        return [driver.id for driver in self.waiting]
+        return [ego.id for ego in self.waiting]
 
     @property
     def first_path(self) -> EgoPath | None:
         """The way of the first ego to be inserted, if there is one."""
-        return next((path for path, _ in self._ways.values()), None)
+        return next((path for path, _ in self._paths.values()), None)
 
     def run_until_first(self, goes_on: Callable[[float], bool]) -> None:
         """Let the scenario run by itself until somebody is due.
@@ -108,7 +106,7 @@ class Departures:
 
     @property
     def _all_taken(self) -> bool:
-        return all(driver.taken_over for driver in self.waiting)
+        return all(ego.taken_over for ego in self.waiting)
 
     def note(self) -> None:
         """Once after each SUMO step, while anybody waits: who departed in it."""
@@ -122,9 +120,9 @@ class Departures:
         """The egos that enter the road now."""
         if not self.waiting:
             return []
-        ready = [driver for driver in self.waiting if self._is_due(driver)]
-        self.waiting = [driver for driver in self.waiting if driver not in ready]
-        return [self._enter(driver) for driver in ready]
+        ready = [ego for ego in self.waiting if self._is_due(ego)]
+        self.waiting = [ego for ego in self.waiting if ego not in ready]
+        return [self._enter(ego) for ego in ready]
 
     def require_all(self) -> None:
         """Make sure that everybody has departed.
@@ -135,44 +133,44 @@ class Departures:
         if self.waiting:
             raise ScenarioError(self._never(self.waiting[0]))
 
-    def _is_due(self, driver: Driver) -> bool:
-        if not driver.taken_over:
-            return self._session.time >= driver.config.ego.depart_time - 1e-9
+    def _is_due(self, ego: WaitingEgo) -> bool:
+        if not ego.taken_over:
+            return self._session.time >= ego.config.ego.depart_time - 1e-9
         return (
-            driver.id in self._departed
-            and driver.id in self._session.vehicles.present()
-            and self._session.vehicles.on_a_road(driver.id)
+            ego.id in self._departed
+            and ego.id in self._session.vehicles.present()
+            and self._session.vehicles.on_a_road(ego.id)
         )
 
-    def _never(self, driver: Driver) -> str:
-        if not driver.taken_over:
-            departure = driver.config.ego.depart_time
+    def _never(self, ego: WaitingEgo) -> str:
+        if not ego.taken_over:
+            departure = ego.config.ego.depart_time
             return (
-                f"ego '{driver.id}': {self._config_file} ends at {self._session.time:.12g} s, "
+                f"ego '{ego.id}': {self._config_file} ends at {self._session.time:.12g} s, "
                 f"before its departure at {departure:.12g} s; let it depart earlier"
             )
         names = list(self._departed)
-        close = difflib.get_close_matches(driver.id, names, n=1)
+        close = difflib.get_close_matches(ego.id, names, n=1)
         hint = "nobody did; look at its begin and end"
         if names:
             shown = ", ".join(names[:3])
             hint = f"did you mean '{close[0]}'?" if close else f"name one that does, like {shown}"
         return (
-            f"--ego {driver.id}: no such vehicle departed in {self._config_file} until "
+            f"--ego {ego.id}: no such vehicle departed in {self._config_file} until "
             f"{self._session.time:.12g} s ({len(names)} others did); {hint}"
         )
 
     # --- inserted -----------------------------------------------------------------------------
 
-    def _way_of_inserted(self, driver: Driver) -> tuple[EgoPath, Way]:
-        ego = driver.config.ego
-        if ego.depart_time >= self._session.end:
+    def _path_of_inserted(self, ego: WaitingEgo) -> tuple[EgoPath, Way]:
+        settings = ego.config.ego
+        if settings.depart_time >= self._session.end:
             msg = (
-                f"--ego-depart-time {ego.depart_time:.12g}: {self._config_file} ends at "
+                f"--ego-depart-time {settings.depart_time:.12g}: {self._config_file} ends at "
                 f"{self._session.end:.12g} s; let the ego depart before [s]"
             )
             raise ConfigError(msg)
-        if not ego.route:
+        if not settings.route:
             name = self._config_file.stem
             msg = (
                 f"{self._config_file}: no ego; take a vehicle of the scenario with --ego ID, "
@@ -180,22 +178,24 @@ class Departures:
                 "or drive none with --no-ego"
             )
             raise ConfigError(msg)
-        way = self._session.lanes.along(ego.route, ego.lane, start=ego.depart_position)
+        way = self._session.lanes.along(
+            settings.route, settings.lane, start=settings.depart_position
+        )
         path = EgoPath.through(way.points)
-        self._require_room(driver, path, ego.depart_position)
+        self._require_room(ego, path, settings.depart_position)
         return path, way
 
-    def _require_room(self, driver: Driver, path: EgoPath, departure: float) -> None:
-        distance = driver.config.ego.travel_distance
+    def _require_room(self, ego: WaitingEgo, path: EgoPath, departure: float) -> None:
+        distance = ego.config.ego.travel_distance
         if departure >= path.length - 1e-3:
             msg = (
-                f"ego '{driver.id}': its way is {path.length:.1f} m long and it departs at "
+                f"ego '{ego.id}': its way is {path.length:.1f} m long and it departs at "
                 f"{departure:.1f} m; let it depart earlier or lengthen its route"
             )
             raise ScenarioError(msg)
         if distance is not None and departure + distance > path.length:
             msg = (
-                f"--ego-travel-distance {distance:g}: the way of ego '{driver.id}' is "
+                f"--ego-travel-distance {distance:g}: the way of ego '{ego.id}' is "
                 f"{path.length:.1f} m long and it departs at {departure:.1f} m; "
                 "shorten the distance or lengthen --ego-route"
             )
@@ -203,47 +203,47 @@ class Departures:
 
     # --- entering -----------------------------------------------------------------------------
 
-    def _enter(self, driver: Driver) -> Ego:
-        if driver.taken_over:
-            return self._take_over(driver)
-        ego, vehicle = driver.config.ego, driver.config.vehicle
-        path, way = self._ways[driver.id]
-        speed = DEFAULT_SPEED if ego.initial_speed is None else ego.initial_speed
+    def _enter(self, ego: WaitingEgo) -> Ego:
+        if ego.taken_over:
+            return self._take_over(ego)
+        settings, vehicle = ego.config.ego, ego.config.vehicle
+        path, way = self._paths[ego.id]
+        speed = DEFAULT_SPEED if settings.initial_speed is None else settings.initial_speed
         self._session.vehicles.insert(
-            driver.id,
-            ego.route,
-            lane=ego.lane or 0,
-            position=ego.depart_position,
+            ego.id,
+            settings.route,
+            lane=settings.lane or 0,
+            position=settings.depart_position,
             speed=speed,
         )
         shape = VehicleShape(vehicle.length or BODY.length, vehicle.width or BODY.width)
-        return self._seated(driver, path, way, ego.depart_position, shape, speed)
+        return self._on_the_road(ego, path, way, settings.depart_position, shape, speed)
 
-    def _take_over(self, driver: Driver) -> Ego:
-        state = self._session.vehicles.state(driver.id)
-        vehicle = driver.config.vehicle
+    def _take_over(self, ego: WaitingEgo) -> Ego:
+        state = self._session.vehicles.state(ego.id)
+        vehicle = ego.config.vehicle
         shape = VehicleShape(vehicle.length or state.length, vehicle.width or state.width)
         way = self._session.lanes.along(
             state.edges, state.lane, kind=state.kind, start=state.lane_position
         )
         path, departure, lights = _joined(way, state)
-        self._require_room(driver, path, departure)
+        self._require_room(ego, path, departure)
         self._session.vehicles.adopt(state, shape)
-        speed = driver.config.ego.initial_speed
+        speed = ego.config.ego.initial_speed
         speed = state.speed if speed is None else speed
-        return self._seated(driver, path, lights, departure, shape, speed)
+        return self._on_the_road(ego, path, lights, departure, shape, speed)
 
-    def _seated(
+    def _on_the_road(
         self,
-        driver: Driver,
+        ego: WaitingEgo,
         path: EgoPath,
         way: Way,
         departure: float,
         shape: VehicleShape,
         speed: float,
     ) -> Ego:
-        config = driver.config
-        driver.start(speed)
+        config = ego.config
+        ego.start(speed)
         goal = config.ego.travel_distance
         lights = Lights(
             way.lights if config.regulation.traffic_lights else (),
@@ -251,7 +251,7 @@ class Departures:
             hardest=config.mpc.force_limit / config.vehicle.mass,
         )
         return Ego(
-            driver,
+            ego,
             path,
             departure,
             shape,

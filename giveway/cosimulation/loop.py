@@ -131,7 +131,7 @@ class Loop:
             if watcher is not None:
                 watcher(self._progress(acting))
             self._see_arrivals()
-            if parts.drivers and not self._egos and not parts.departures.waiting:
+            if parts.egos and not self._egos and not parts.departures.waiting:
                 return Ending.COMPLETED
             if self._k >= last_step:
                 over = limit / self._time_step - 1e-6 <= self._k
@@ -150,9 +150,7 @@ class Loop:
         """Whether a scenario without an end has nobody left, and no ego is to be inserted."""
         sumo, waiting = self._parts.sumo, self._parts.departures.waiting
         return (
-            sumo.end == np.inf
-            and not sumo.expects_more
-            and all(driver.taken_over for driver in waiting)
+            sumo.end == np.inf and not sumo.expects_more and all(ego.taken_over for ego in waiting)
         )
 
     def _progress(self, acting: str) -> Progress:

@@ -1,8 +1,7 @@
-"""Who drives an ego: its FMU, loaded, and its controller, from the configuration."""
+"""The controller of an ego, from the configuration."""
 
 from __future__ import annotations
 
-from math import inf, sqrt
 from typing import TYPE_CHECKING
 
 from controller import (
@@ -17,26 +16,16 @@ from controller import (
     PlannerParameters,
     PlanningController,
     ReferenceParameters,
-    SafetyParameters,
     SpeedController,
     TunedPid,
     TunedPidParameters,
 )
-from fmus import FmuError
-from giveway.config.presets import parameters_of
-from giveway.ego.ego import Driver
-from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
-from giveway.errors import ControlError, VehicleError
-from pedestrian_model import Predictor
+from giveway.ego.vehicle import model_margin
+from giveway.errors import ControlError
 
 if TYPE_CHECKING:
-    from contextlib import ExitStack
-
     from controller import Controller
     from giveway.config import EgoRunConfig
-
-
-_WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut at two in x and in y
 
 
 def make_controller(config: EgoRunConfig, time_step: float) -> Controller:
@@ -153,54 +142,3 @@ def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
 def plan_steps(config: EgoRunConfig, time_step: float) -> int:
     """The planner's horizon in steps."""
     return max(4, round(config.planner.horizon / time_step))
-
-
-def make_driver(
-    config: EgoRunConfig,
-    controller: Controller,
-    time_step: float,
-    stack: ExitStack,
-) -> Driver:
-    """One ego's FMU, loaded, with its controller.
-
-    Args:
-        config: of the ego.
-        controller: decides on its force.
-        time_step: of the co-simulation [s].
-        stack: closes the FMU.
-
-    Raises:
-        VehicleError: the FMU cannot be loaded.
-    """
-    crowd = parameters_of(config.crowd.preset)
-    expected = parameters_of(config.perception.preset or config.crowd.preset)
-    try:
-        vehicle, description = open_for(config, time_step, stack)
-    except FmuError as error:
-        raise VehicleError(str(error)) from error
-    ahead = controller.horizon
-    predictor = Predictor(expected, time_step, ahead) if ahead else None
-    fastest = max(crowd.max_speed, expected.max_speed)
-    safety = safety_parameters(config, time_step) if config.safety_layer else None
-    return Driver(config, vehicle, description, controller, predictor, fastest, safety)
-
-
-def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameters:
-    """The limits that the safety layer counts on; the body's width is not known yet.
-
-    Args:
-        config: of the ego.
-        time_step: of the co-simulation [s].
-    """
-    safety, people = config.safety, parameters_of(config.crowd.preset)
-    reaction = safety.reaction_time
-    return SafetyParameters(
-        walking_acceleration=people.max_acceleration,
-        walking_speed=people.max_speed,
-        body_radius=people.body_radius,
-        margin=safety.margin + model_margin(config, time_step),
-        position_error=_WITHIN * config.perception.position_noise,
-        force_limit=config.mpc.force_limit,
-        force_rate_limit=config.mpc.force_rate_limit if safety.rate_limited else inf,
-        reaction_time=identified_reaction_time(config) if reaction is None else reaction,
-    )

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from controller import Observation
-from fmus import FmuError
 from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import NO_LEADER, Corridor, Leader
@@ -22,13 +20,12 @@ from giveway.records.rows import EgoRow
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from controller import Controller, Decision, SafetyParameters
-    from fmus import Vehicle
-    from giveway.config import EgoRunConfig
+    from controller import Decision
     from giveway.ego.lights import Lights
+    from giveway.ego.waiting import WaitingEgo
     from giveway.geometry.bodies import VehicleShape
     from giveway.geometry.path import EgoPath, Pose
-    from pedestrian_model import Crowd, Predictor, Surroundings
+    from pedestrian_model import Crowd, Surroundings
 
     Array = NDArray[np.float64]
 
@@ -37,57 +34,6 @@ _BEYOND = 0.5  # [m] beyond the stopping place no plan may lead
 _RECOVERY = 2.0  # [s] in which a safe distance that is lost is to be regained
 _STRAIGHT = 1.0  # [s] of a long horizon in which others go straight on; then the road may bend
 _PREDICT_ALL = 150  # persons; of a larger crowd only who matters to the ego is predicted
-
-
-@dataclass
-class Driver:
-    """A controller with its FMU, ready for its vehicle to depart.
-
-    Attributes:
-        config: of the ego.
-        description: of the FMU, for the manifest.
-        controller: decides on its force.
-        predictor: None: the controller looks at the present only.
-    """
-
-    config: EgoRunConfig
-    vehicle: Vehicle
-    description: dict[str, object]
-    controller: Controller
-    predictor: Predictor | None
-    walking_speed_limit: float  # [m/s]
-    safety: SafetyParameters | None  # None: nothing watches over the controller
-
-    @property
-    def id(self) -> str:
-        """SUMO's id of the vehicle."""
-        return self.config.ego_id
-
-    @property
-    def taken_over(self) -> bool:
-        """Whether the vehicle is the scenario's."""
-        return bool(self.config.ego.take_over)
-
-    def start(self, speed: float) -> None:
-        """Set the FMU to where it departs.
-
-        Raises:
-            VehicleError: it fails.
-        """
-        try:
-            self.vehicle.start(position=0.0, speed=speed)
-        except FmuError as error:
-            raise VehicleError(str(error)) from error
-
-    @property
-    def clearance(self) -> float:
-        """What the safety layer keeps to people's bodies [m]."""
-        return 0.0 if self.safety is None else self.safety.margin + self.safety.position_error
-
-    @property
-    def horizon(self) -> int:
-        """Steps that are looked ahead; the first one in any case."""
-        return max(1, self.controller.horizon)
 
 
 class Seen(NamedTuple):
@@ -110,10 +56,10 @@ class Ego:
     """A vehicle on the road.
 
     Args:
-        driver: who drives it; its FMU has been started.
-        path: its way.
+        waiting: what it was before its departure; its FMU has been started.
+        path: of the ego.
         departure: station [m] of the front bumper where the FMU's position is 0.
-        shape: its body.
+        shape: of its body.
         lights: the traffic lights on its way.
         goal: the FMU's position [m] at which it is done.
         time_step: [s].
@@ -121,7 +67,7 @@ class Ego:
 
     def __init__(
         self,
-        driver: Driver,
+        waiting: WaitingEgo,
         path: EgoPath,
         departure: float,
         shape: VehicleShape,
@@ -129,55 +75,56 @@ class Ego:
         goal: float,
         time_step: float,
     ) -> None:
-        config = driver.config
-        self.driver = driver
+        config = waiting.config
+        self._controller, self._predictor = waiting.controller, waiting.predictor
+        self._walking_speed_limit = waiting.walking_speed_limit
         self.config = config
-        self.id = driver.id
+        self.id = waiting.id
         self.path = path
         self.departure = departure
         self.shape = shape
         self.lights = lights
         self.goal = goal
-        self.vehicle = driver.vehicle
+        self.vehicle = waiting.vehicle
         half_width = config.regulation.corridor_half_width
         self.corridor = Corridor(
             path,
             half_width=shape.width / 2 + CORRIDOR_MARGIN if half_width is None else half_width,
-            horizon=driver.horizon,
+            horizon=waiting.horizon,
             time_step=time_step,
-            walking_speed_limit=driver.walking_speed_limit,
+            walking_speed_limit=waiting.walking_speed_limit,
             body_length=shape.length,
-            straight=round(_STRAIGHT / time_step) if driver.controller.foresees else None,
+            straight=round(_STRAIGHT / time_step) if waiting.controller.foresees else None,
         )
-        self._span = driver.horizon * time_step  # [s]
-        predictor = driver.predictor
+        self._span = waiting.horizon * time_step  # [s]
+        predictor = waiting.predictor
         self._interaction = 0.0 if predictor is None else predictor.parameters.interaction_radius
         self._view = PathView(path)
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
         self._perception = Perception(config)
-        safety = driver.safety
+        safety = waiting.safety
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
-        self._foresight = self._foresee()
+        self._foresight = self._foresee(waiting)
         self._force = 0.0
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
         self._heed_lights = config.regulation.traffic_lights
 
-    def _foresee(self) -> CrowdForesight | None:
-        """What the planning controller asks how people would answer to a manoeuvre."""
-        driver, planner = self.driver, self.config.planner
-        if not driver.controller.foresees or driver.predictor is None:
+    def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
+        """Answers the planning controller how pedestrians would react to a manoeuvre."""
+        planner = self.config.planner
+        if not waiting.controller.foresees or waiting.predictor is None:
             return None
         return CrowdForesight(
-            driver.predictor,
+            waiting.predictor,
             self.path,
             self.shape,
             half_width=self.corridor.half_width,
             growth=planner.margin_growth,
             planned_speed=planner.planned_speed,
-            clearance=self.driver.clearance,
+            clearance=waiting.clearance,
             braking=self.config.mpc.force_limit / self.config.vehicle.mass,
-            safety_layer=self.driver.safety is not None,
+            safety_layer=waiting.safety is not None,
         )
 
     @property
@@ -225,7 +172,7 @@ class Ego:
         if not self._perception.exact:
             closest, _ = corridor.closest_now(truth.position, front)
         ahead = corridor.nobody
-        predictor, predicted, whom, foresight = self.driver.predictor, None, None, None
+        predictor, predicted, whom, foresight = self._predictor, None, None, None
         if reachable and predictor is not None:
             whom = self._relevant(crowd, speed)
             people = crowd if whom is None else crowd.select(whom)
@@ -260,7 +207,7 @@ class Ego:
         x, y, _ = self.pose
         strongest = config.mpc.force_limit / config.vehicle.mass
         reach = (speed + strongest * span / 2.0) * span + config.regulation.safe_distance
-        reach += self.driver.walking_speed_limit * span + self._interaction
+        reach += self._walking_speed_limit * span + self._interaction
         reach += self.shape.length + self.corridor.half_width
         d_x, d_y = crowd.position[:, 0] - x, crowd.position[:, 1] - y
         within: NDArray[np.bool_] = d_x * d_x + d_y * d_y <= reach * reach
@@ -277,7 +224,7 @@ class Ego:
         Raises:
             ControlError: the controller gave no finite force.
         """
-        controller = self.driver.controller
+        controller = self._controller
         decision = controller.control(self._observation(time, seen))
         if not math.isfinite(decision.force):
             msg = (

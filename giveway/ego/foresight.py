@@ -47,7 +47,7 @@ class CrowdForesight:
     Args:
         predictor: of N steps.
         path: the ego's.
-        shape: its body.
+        shape: of its body.
         half_width: of the corridor [m].
         growth: of it with the look-ahead, on each side [m/s].
         planned_speed: people are predicted under the manoeuvre, else under the present speed.

@@ -5,15 +5,25 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from controller import LongitudinalModel, SafetyLayer, SafetyParameters
-from giveway.ego.way_ahead import WayAhead
+from giveway.geometry.kernel import kernel
+from giveway.geometry.path import body_pose, segment_at
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from controller import Decision
     from giveway.config import EgoRunConfig
     from giveway.geometry.bodies import VehicleShape
     from giveway.geometry.path import EgoPath
     from pedestrian_model import Crowd
+
+    Array = NDArray[np.float64]
+
+_FINEST = 0.25  # [m] between poses: a chord of a bend of 5 m radius is 1.6 mm off
+_MOST = 256  # poses
 
 
 class Guard:
@@ -22,8 +32,8 @@ class Guard:
     Args:
         limits: of people and of the brake.
         config: of the ego.
-        path: its way.
-        shape: its body.
+        path: of the ego.
+        shape: of its body.
         time_step: of the co-simulation [s].
     """
 
@@ -37,7 +47,7 @@ class Guard:
     ) -> None:
         model = LongitudinalModel(config.vehicle.mass, config.vehicle.friction, time_step)
         self._layer = SafetyLayer(model, replace(limits, width=shape.width))
-        self._way = WayAhead(path, shape.length)
+        self._poses = FrontPoses(path, shape.length)
 
     def overrule(
         self, decision: Decision, front: float, speed: float, crowd: Crowd
@@ -50,10 +60,65 @@ class Guard:
             speed: the ego's [m/s].
             crowd: the pedestrians as it sees them.
         """
-        way, spacing = self._way.sample(front, self._layer.reach(speed))
+        poses, spacing = self._poses.sample(front, self._layer.reach(speed))
         safe = self._layer.filter(
-            decision.force, speed, way, spacing, crowd.position, crowd.velocity
+            decision.force, speed, poses, spacing, crowd.position, crowd.velocity
         )
         if not safe.acted:
             return None
         return decision._replace(force=safe.force, acting="safety", reason=safe.reason)
+
+
+class FrontPoses:
+    """The poses of a body's front along a path; the array is handed out again and again.
+
+    Args:
+        path: of the front's middle, and of the rear's.
+        length: of the body [m].
+    """
+
+    def __init__(self, path: EgoPath, length: float) -> None:
+        self.path = path
+        self.length = length
+        self._buffer = np.zeros((_MOST, 4))
+
+    def sample(self, front: float, reach: float) -> tuple[Array, float]:
+        """The poses (k, 4) x, y [m], cos, sin from the station ``front`` on, and their spacing [m].
+
+        Where the path is straight, from the rear bumper to ``reach`` [m] ahead of the front, one
+        pose says everything.
+        """
+        spacing = max(_FINEST, reach / (_MOST - 2))
+        path = self.path
+        count = fill_front_poses(
+            path.vertices,
+            path.stations,
+            path.headings,
+            front,
+            self.length,
+            reach,
+            spacing,
+            self._buffer,
+        )
+        return self._buffer[:count], spacing
+
+
+@kernel
+def fill_front_poses(
+    vertices: Array,
+    stations: Array,
+    headings: Array,
+    front: float,
+    length: float,
+    reach: float,
+    spacing: float,
+    poses: Array,
+) -> int:
+    """Fill ``poses`` with x, y, cos, sin at front, front + spacing, ...; how many there are."""
+    straight = segment_at(stations, front - length) == segment_at(stations, front + reach)
+    count = 1 if straight else min(2 + int(reach / spacing), poses.shape[0])
+    for i in range(count):
+        x, y, heading = body_pose(vertices, stations, headings, front + i * spacing, length)
+        poses[i, 0], poses[i, 1] = x, y
+        poses[i, 2], poses[i, 3] = np.cos(heading), np.sin(heading)
+    return count

@@ -28,8 +28,8 @@ LONGEST_ARROW = 400.0  # [N] about 80 kg x 5 m/s^2, the most that the model lets
 FAINTEST_ARROW = 20.0  # [N]
 RESOLUTION = 0.1  # [m] of the contours
 ARROW_SPACING = 0.8  # [m]
-BESIDE, BEHIND, AHEAD = 4.5, 4.0, 4.5  # [m] shown around the vehicle, ahead grows with its speed
-AHEAD_PER_SPEED = 1.4  # [s]
+SIDE_MARGIN, REAR_MARGIN, FRONT_MARGIN = 4.5, 4.0, 4.5  # [m] shown around the vehicle
+FRONT_MARGIN_PER_SPEED = 1.4  # [s] by which the margin in front grows
 
 
 @styled
@@ -58,10 +58,10 @@ def influence_figure(
     if not speeds:
         raise ValueError("influence figure: speeds is empty; pass at least one [m/s]")
     shape = shape or VehicleShape()
-    ahead = AHEAD + AHEAD_PER_SPEED * max(abs(speed) for speed in speeds)
-    behind = ahead if min(speeds) < 0.0 else BEHIND
+    ahead = FRONT_MARGIN + FRONT_MARGIN_PER_SPEED * max(abs(speed) for speed in speeds)
+    behind = ahead if min(speeds) < 0.0 else REAR_MARGIN
     x = (centre[0] - shape.length / 2 - behind, centre[0] + shape.length / 2 + ahead)
-    y = (centre[1] - shape.width / 2 - BESIDE, centre[1] + shape.width / 2 + BESIDE)
+    y = (centre[1] - shape.width / 2 - SIDE_MARGIN, centre[1] + shape.width / 2 + SIDE_MARGIN)
 
     columns = min(len(speeds), 2)
     rows = -(-len(speeds) // columns)

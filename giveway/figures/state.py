@@ -1,4 +1,4 @@
-"""The state figure: the ego's speed, gap and force over time, and who was at the wheel.
+"""The state figure: the ego's speed, gap and force over time, and which controller acted.
 
 After the state figure of Yang & Özgüner 2019 (section 5): one column per run, there the MPC on
 the left and the PID on the right.
@@ -38,7 +38,9 @@ RED_LIGHT: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "label": "distan
 # Colour and opacity of a phase.
 SHADES = {"mpc": (SKY_BLUE, 0.14), "pid": (ORANGE, 0.28), "safety": (PURPLE, 0.40)}
 NAMES = {"mpc": "MPC acts", "pid": "PID acts", "safety": "safety layer acts"}
-OTHERS_SHOWN = 40.0  # [m] of the distance to a vehicle or a light is shown at least
+DASHES = (0, (4, 2))
+DOTS = (0, (1, 2))
+LEAST_DISTANCE_SHOWN = 40.0  # [m] to a vehicle or a light are shown at least
 SINGLE_INSTANT = 0.5  # [s] shown to either side of a run of one instant
 
 
@@ -69,7 +71,7 @@ def state_figure(
     for column, (label, ego) in enumerate(columns):
         speed, gap, force = grid[:, column]
         for axes in (speed, gap, force):
-            _shade_phases(axes, ego)
+            shade_phases(axes, ego)
             quiet_grid(axes)
         _draw_speed(speed, ego)
         _draw_gap(gap, ego, safe_distance, buffer_distance)
@@ -90,10 +92,10 @@ def state_figure(
 
 
 def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
-    """Who acted from when to when [s], one entry per uninterrupted phase.
+    """Which controller acted from when to when [s], one entry per uninterrupted phase.
 
-    A command holds until the next instant; the last one is not carried out any more, except in a
-    run of one instant, which is shown ``SINGLE_INSTANT`` to either side.
+    A command holds until the next instant, so that the last one is not carried out. A run of one
+    instant is shown ``SINGLE_INSTANT`` to either side.
     """
     edges = np.flatnonzero(ego.acting[1:] != ego.acting[:-1]) + 1
     starts = np.concatenate(([0], edges))
@@ -108,7 +110,8 @@ def phases(ego: EgoTrack) -> list[tuple[str, float, float]]:
     ]
 
 
-def _shade_phases(axes: Axes, ego: EgoTrack) -> None:
+def shade_phases(axes: Axes, ego: EgoTrack) -> None:
+    """Colour the background by the controller that acted."""
     for acting, start, end in phases(ego):
         colour, opacity = SHADES[acting]
         axes.axvspan(start, end, color=colour, alpha=opacity, linewidth=0, label=acting, zorder=0)
@@ -117,34 +120,39 @@ def _shade_phases(axes: Axes, ego: EgoTrack) -> None:
 def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
     axes.step(
         ego.time, ego.reference_speed, where="post", color=BLACK, linewidth=0.9,
-        linestyle=(0, (4, 2)), label="reference speed", marker=_marker(ego), markersize=9,
+        linestyle=DASHES, label="reference speed", marker=_marker(ego), markersize=9,
         markerfacecolor="none", zorder=4,
     )  # fmt: skip
     axes.plot(ego.time, ego.speed, color=BLUE, label="speed", marker=_marker(ego), zorder=3)
 
 
 def _draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: float) -> None:
-    axes.axhline(safe_distance, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)), label="d_safe")
-    if buffer_distance > 0.0:
-        axes.axhline(
-            safe_distance + buffer_distance, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)),
-            label="d_safe + d_buffer",
-        )  # fmt: skip
-    somebody = np.isfinite(ego.gap)
-    if not somebody.any():
+    draw_safe_distances(axes, safe_distance, buffer_distance)
+    pedestrian_in_front = np.isfinite(ego.gap)
+    if not pedestrian_in_front.any():
         axes.text(
             0.5, 0.25, "nobody in front", transform=axes.transAxes, ha="center", color=GREY
         )  # fmt: skip
-    gap = np.where(somebody, ego.gap, np.nan)
+    gap = np.where(pedestrian_in_front, ego.gap, np.nan)
     axes.plot(ego.time, gap, color=GREEN, label="gap", zorder=3)
-    # An instant between two without anybody in front is no line: a point shows it all the same.
-    around = np.concatenate(([False], somebody, [False]))
-    alone = somebody & ~around[:-2] & ~around[2:]
+    # A single instant with a pedestrian in front has no line: it is drawn as a point.
+    around = np.concatenate(([False], pedestrian_in_front, [False]))
+    alone = pedestrian_in_front & ~around[:-2] & ~around[2:]
     axes.plot(ego.time[alone], gap[alone], ".", color=GREEN, markersize=4, zorder=3)
-    for distance, manner in ((ego.vehicle_gap, VEHICLE), (ego.stop_gap, RED_LIGHT)):
+    for distance, look in ((ego.vehicle_gap, VEHICLE), (ego.stop_gap, RED_LIGHT)):
         if np.isfinite(distance).any():
             there = np.where(np.isfinite(distance), distance, np.nan)
-            axes.plot(ego.time, there, zorder=2.5, **manner)
+            axes.plot(ego.time, there, zorder=2.5, **look)
+
+
+def draw_safe_distances(axes: Axes, safe_distance: float, buffer_distance: float) -> None:
+    """Lines at d_safe, and at d_safe + d_buffer where there is a buffer."""
+    axes.axhline(safe_distance, color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe")
+    if buffer_distance > 0.0:
+        axes.axhline(
+            safe_distance + buffer_distance, color=GREY, linewidth=0.9, linestyle=DOTS,
+            label="d_safe + d_buffer",
+        )  # fmt: skip
 
 
 def _draw_force(axes: Axes, ego: EgoTrack) -> None:
@@ -161,21 +169,26 @@ def _marker(ego: EgoTrack) -> str:
 
 def _scale(grid: np.ndarray, egos: Sequence[EgoTrack], distance: float) -> None:
     """One scale for all runs, zero always on it, so that heights can be compared."""
-    starts = min(float(ego.time[0]) for ego in egos)
-    end = max(float(ego.time[-1]) for ego in egos)
-    margin = SINGLE_INSTANT if end == starts else 0.0
-    fastest = max(max(ego.speed.max(), ego.reference_speed.max()) for ego in egos)
+    scale_time_and_speed(grid[0, 0], egos)
     gaps = np.concatenate([ego.gap[np.isfinite(ego.gap)] for ego in egos])
     others = any(np.isfinite((ego.vehicle_gap, ego.stop_gap)).any() for ego in egos)
     nearest = gaps.min(initial=0.0)
-    farthest = gaps.max(initial=max(distance, OTHERS_SHOWN) if others else distance)
+    farthest = gaps.max(initial=max(distance, LEAST_DISTANCE_SHOWN) if others else distance)
     weakest = min(min(0.0, ego.force.min()) for ego in egos) / 1000.0
     strongest = max(max(0.0, ego.force.max()) for ego in egos) / 1000.0
     room = 0.08 * max(strongest - weakest, 0.1)
-    grid[0, 0].set_xlim(starts - margin, end + margin)
-    grid[0, 0].set_ylim(0.0, 1.1 * max(fastest, 1.0))
     grid[1, 0].set_ylim(1.1 * nearest, 1.1 * farthest)
     grid[2, 0].set_ylim(weakest - room, strongest + room)
+
+
+def scale_time_and_speed(axes: Axes, egos: Sequence[EgoTrack]) -> None:
+    """Limits of a panel of speeds over time in which all runs have room."""
+    start = min(float(ego.time[0]) for ego in egos)
+    end = max(float(ego.time[-1]) for ego in egos)
+    margin = SINGLE_INSTANT if end == start else 0.0
+    fastest = max(max(ego.speed.max(), ego.reference_speed.max()) for ego in egos)
+    axes.set_xlim(start - margin, end + margin)
+    axes.set_ylim(0.0, 1.1 * max(fastest, 1.0))
 
 
 def _name_distances(axes: Axes, safe_distance: float, buffer_distance: float) -> None:
@@ -192,17 +205,23 @@ def _name_distances(axes: Axes, safe_distance: float, buffer_distance: float) ->
 
 
 def _legend(egos: Sequence[EgoTrack]) -> list[Artist]:
-    acted = {str(name) for ego in egos for name in np.unique(ego.acting)}
     handles: list[Artist] = [
         Line2D([], [], color=BLUE, label="speed"),
-        Line2D([], [], color=BLACK, linewidth=0.9, linestyle=(0, (4, 2)), label="reference speed"),
+        Line2D([], [], color=BLACK, linewidth=0.9, linestyle=DASHES, label="reference speed"),
         Line2D([], [], color=GREEN, label="gap"),
         Line2D([], [], color=VERMILION, linewidth=1.2, label="force"),
     ]
-    for name, manner in (("vehicle_gap", VEHICLE), ("stop_gap", RED_LIGHT)):
+    for name, look in (("vehicle_gap", VEHICLE), ("stop_gap", RED_LIGHT)):
         if any(np.isfinite(getattr(ego, name)).any() for ego in egos):
-            handles.append(Line2D([], [], **manner))
-    for name, (colour, opacity) in SHADES.items():
-        if name in acted:
-            handles.append(Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name]))
-    return handles
+            handles.append(Line2D([], [], **look))
+    return [*handles, *phase_handles(egos)]
+
+
+def phase_handles(egos: Sequence[EgoTrack]) -> list[Artist]:
+    """What the legend shows of the phases that some of the runs have."""
+    acted = {str(name) for ego in egos for name in np.unique(ego.acting)}
+    return [
+        Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name])
+        for name, (colour, opacity) in SHADES.items()
+        if name in acted
+    ]

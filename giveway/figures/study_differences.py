@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BINS = 48
-TAIL = 2.5  # [%] of the differences at either end that need not be within the picture
+TAIL = 2.5  # [%] of the differences at either end that the picture may leave out
 SPIKE = 30.0  # times the median bin, beyond which a bin hides the others
 EQUAL = 5e-7  # differences count to six decimals
 DASHES = (0, (4, 2))
@@ -77,7 +77,7 @@ def differences_figure(
         columns: a situation each.
         rows: label of a context, and its panels in the order of the columns.
         title: of the whole figure.
-        source: whose the published means are, for the legend.
+        source: of the published means, for the legend.
 
     Raises:
         ValueError: there is no row.
@@ -135,7 +135,7 @@ def _round_up(width: float) -> float:
 def _has_a_spike(panel: Differences, edges: NDArray[np.float64]) -> bool:
     """Whether one bin would hide all others.
 
-    Most pairs may differ by next to nothing and a few by a lot, and these make the mean.
+    Most pairs may hardly differ and a few differ by much, and it is those that make the mean.
     """
     counts, _ = np.histogram(panel.values, edges)
     filled = counts[counts > 0]
@@ -239,6 +239,6 @@ def _legend(panels: Sequence[Differences], source: str) -> list[Artist]:
         handles.append(Line2D([], [], color=BLACK, linewidth=1.6, label="mean"))
         handles.append(Patch(color=BLACK, alpha=0.18, linewidth=0, label="its interval"))
     if any(panel.published is not None for panel in panels):
-        manner: dict[str, Any] = {"color": PUBLISHED, "linewidth": 1.6, "linestyle": DASHES}
-        handles.append(Line2D([], [], label=f"{source}: mean", **manner))
+        look: dict[str, Any] = {"color": PUBLISHED, "linewidth": 1.6, "linestyle": DASHES}
+        handles.append(Line2D([], [], label=f"{source}: mean", **look))
     return handles

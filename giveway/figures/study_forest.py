@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-MANNERS = {  # colour and marker
+LOOKS = {  # colour and marker
     "general": (BLUE, "o"),
     "stop-and-wait": (VERMILION, "s"),
     "non-stop": (GREEN, "^"),
@@ -85,14 +85,14 @@ def forest_figure(
         rows: their labels.
         columns: the metrics.
         title: of the whole figure.
-        source: whose the published numbers are, for the legend.
+        source: of the published numbers, for the legend.
 
     Raises:
         ValueError: there is no row or no metric.
     """
     if not rows or not columns:
         raise ValueError("forest: nothing to draw; pass at least one row and one metric")
-    used = [name for name in MANNERS if any(key[1] == name for c in columns for key in c.estimates)]
+    used = [name for name in LOOKS if any(key[1] == name for c in columns for key in c.estimates)]
     height = max(rows_height(rows), 0.42 * len(rows)) + 1.7
     figure = Figure(figsize=(2.2 * len(columns) + 2.2, height), layout="constrained")
     grid = figure.subplots(1, len(columns), sharey=True, squeeze=False)[0]
@@ -108,7 +108,7 @@ def _draw(axes: Axes, column: ForestColumn, places: list[float], used: list[str]
     horizontal_grid(axes)
     axes.axvline(0.0, color=BLACK, linewidth=0.8, zorder=1, label="zero")
     for (row, situation), estimate in column.estimates.items():
-        colour, marker = MANNERS[situation]
+        colour, marker = LOOKS[situation]
         offset = SPREAD * (used.index(situation) - (len(used) - 1) / 2)
         y = places[row] + offset
         if math.isfinite(estimate.mean):
@@ -151,7 +151,7 @@ def _legend(columns: Sequence[ForestColumn], used: list[str], source: str) -> li
     def handle(colour: str, marker: str, label: str, **more: Any) -> Line2D:
         return Line2D([], [], color=colour, marker=marker, markersize=5, label=label, **more)
 
-    handles: list[Artist] = [handle(*MANNERS[name], name, linewidth=1.8) for name in used]
+    handles: list[Artist] = [handle(*LOOKS[name], name, linewidth=1.8) for name in used]
     estimates = [e for column in columns for e in column.estimates.values()]
     if any(estimate.published is not None for estimate in estimates):
         handles.append(

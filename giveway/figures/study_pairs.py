@@ -1,4 +1,4 @@
-"""One crowd, met twice: speed and gap of treatment and baseline side by side.
+"""A pair of runs on the same crowd: speed and gap of treatment and baseline side by side.
 
 After figure 5 of Yang & Özgüner 2019 (MPC on the left, PID on the right).
 """
@@ -11,9 +11,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
-from giveway.figures.state import NAMES, SHADES, phases
+from giveway.figures.state import (
+    DASHES,
+    DOTS,
+    draw_safe_distances,
+    phase_handles,
+    scale_time_and_speed,
+    shade_phases,
+)
 from giveway.figures.study_rows import wrapped
 from giveway.figures.style import BLACK, BLUE, GREEN, GREY, quiet_grid, styled
 
@@ -24,8 +30,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from giveway.records.tracks import EgoTrack
-
-DASHES = (0, (4, 2))
 
 
 @dataclass(frozen=True)
@@ -47,7 +51,7 @@ class PairSide:
 
 @styled
 def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
-    """Speed with its reference, gap with d_safe, and who acts, on the same scales.
+    """Speed with its reference, gap with d_safe, and the acting controller, on the same scales.
 
     Args:
         sides: normally two, the treatment first.
@@ -63,11 +67,7 @@ def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
     for (speed, gap), side in zip(grid.T, sides, strict=True):
         for axes in (speed, gap):
             quiet_grid(axes)
-            for acting, start, end in phases(side.ego):
-                colour, opacity = SHADES[acting]
-                axes.axvspan(
-                    start, end, color=colour, alpha=opacity, linewidth=0, label=acting, zorder=0
-                )  # fmt: skip
+            shade_phases(axes, side.ego)
         _draw_speed(speed, side.ego)
         _draw_gap(gap, side)
         speed.set_title(wrapped(side.label, 50))
@@ -90,12 +90,7 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
 
 
 def _draw_gap(axes: Axes, side: PairSide) -> None:
-    safe, whole = side.safe_distance, side.safe_distance + side.buffer_distance
-    axes.axhline(safe, color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe")
-    if whole > safe:
-        axes.axhline(
-            whole, color=GREY, linewidth=0.9, linestyle=(0, (1, 2)), label="d_safe + d_buffer"
-        )  # fmt: skip
+    draw_safe_distances(axes, side.safe_distance, side.buffer_distance)
     gap = np.where(np.isfinite(side.ego.gap), side.ego.gap, np.nan)
     axes.plot(side.ego.time, gap, color=GREEN, label="gap", zorder=3)
     if not np.isfinite(gap).any():
@@ -107,13 +102,9 @@ def _draw_gap(axes: Axes, side: PairSide) -> None:
 def _scale(grid: np.ndarray, sides: Sequence[PairSide]) -> None:
     """One scale for both runs, zero on it."""
     egos = [side.ego for side in sides]
-    start, end = min(e.time[0] for e in egos), max(e.time[-1] for e in egos)
-    margin = 0.5 if start == end else 0.0
-    fastest = max(max(e.speed.max(), e.reference_speed.max(), 1.0) for e in egos)
+    scale_time_and_speed(grid[0, 0], egos)
     gaps = np.concatenate([e.gap[np.isfinite(e.gap)] for e in egos])
     farthest = max(side.safe_distance + side.buffer_distance for side in sides)
-    grid[0, 0].set_xlim(start - margin, end + margin)
-    grid[0, 0].set_ylim(0.0, 1.1 * fastest)
     grid[1, 0].set_ylim(1.1 * gaps.min(initial=0.0), 1.1 * gaps.max(initial=farthest))
 
 
@@ -125,11 +116,6 @@ def _legend(sides: Sequence[PairSide]) -> list[Artist]:
         Line2D([], [], color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe"),
     ]
     if any(side.buffer_distance > 0.0 for side in sides):
-        dots = (0, (1, 2))
         name = "d_safe + d_buffer"
-        handles.append(Line2D([], [], color=GREY, linewidth=0.9, linestyle=dots, label=name))
-    acted = {str(name) for side in sides for name in np.unique(side.ego.acting)}
-    for name, (colour, opacity) in SHADES.items():
-        if name in acted:
-            handles.append(Patch(color=colour, alpha=opacity, linewidth=0, label=NAMES[name]))
-    return handles
+        handles.append(Line2D([], [], color=GREY, linewidth=0.9, linestyle=DOTS, label=name))
+    return [*handles, *phase_handles([side.ego for side in sides])]

@@ -56,7 +56,7 @@ def wrapped(label: str, width: int = LABEL_WIDTH) -> str:
 def row_places(rows: Sequence[Row]) -> tuple[list[float], list[tuple[float, str]], float]:
     """Where rows and headings stand, from the top (0) downwards.
 
-    Rows whose headings are all different need none: the heading stands in their label.
+    Rows whose headings all differ have none: their names hold the heading.
 
     Returns:
         A place per row, places and texts of headings, and the height of it all.
@@ -84,9 +84,9 @@ def _grouped(rows: Sequence[Row]) -> bool:
 
 
 def _names(rows: Sequence[Row]) -> list[str]:
-    """What stands beside each row: its label under a heading, or the heading in its place.
+    """The name next to each row: its label under a heading, or the heading instead.
 
-    Where no two rows share a heading, but their labels differ, both are told.
+    Where no two rows share a heading but their labels differ, the name has both.
     """
     if _grouped(rows):
         return [row.label for row in rows]
@@ -96,7 +96,7 @@ def _names(rows: Sequence[Row]) -> list[str]:
 
 
 def label_rows(axes: Axes, rows: Sequence[Row]) -> list[float]:
-    """Name the rows beside the axis, headings in bold; their places, for the caller to draw at."""
+    """Name the rows at the axis, headings in bold; return the rows' places."""
     places, headings, height = row_places(rows)
     names = _names(rows)
     ticks = sorted(
@@ -120,7 +120,7 @@ def rows_height(rows: Sequence[Row]) -> float:
 
 
 def horizontal_grid(axes: Axes) -> None:
-    """Vertical lines only: rows need none of their own."""
+    """A grid of vertical lines only, for pictures made of rows."""
     quiet_grid(axes)
     axes.grid(visible=False, axis="y")
     axes.spines["left"].set_visible(False)
@@ -137,7 +137,7 @@ def number(value: float, digits: int = 2) -> str:
 
 
 def digits_for(width: float) -> int:
-    """Decimals by which an interval of that width is told to two significant digits or more."""
+    """Decimals that show an interval of that width with two significant digits or more."""
     if not math.isfinite(width) or width <= 0.0:
         return 2
     if 1.0 <= width < 10.0:

@@ -94,14 +94,14 @@ def tradeoff_figure(
 
 
 def tags(points: Sequence[TradeOffPoint]) -> list[tuple[tuple[float, float], str]]:
-    """Places and names of the contexts; points that lie together share one."""
+    """Places and names of the contexts; points close to each other share one."""
     width = max(p.x for p in points) - min(p.x for p in points)
     height = max(p.y for p in points) - min(p.y for p in points)
     found: list[tuple[TradeOffPoint, list[str]]] = []
     for point in points:
         for there, names in found:
-            beside = abs(point.x - there.x) <= SAME_PLACE * width
-            if beside and abs(point.y - there.y) <= SAME_PLACE * height:
+            close = abs(point.x - there.x) <= SAME_PLACE * width
+            if close and abs(point.y - there.y) <= SAME_PLACE * height:
                 names.append(point.context)
                 break
         else:

@@ -1,4 +1,4 @@
-"""The top view: everybody's trajectory, and snapshots of the encounter.
+"""The top view: the trajectories of ego and pedestrians, and snapshots of the encounter.
 
 After the screenshots figure of Yang & Özgüner 2019 (section 5).
 """
@@ -6,7 +6,7 @@ After the screenshots figure of Yang & Özgüner 2019 (section 5).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.collections import EllipseCollection, LineCollection
@@ -16,6 +16,7 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from giveway.figures.style import BLACK, GREY, LIGHT_GREY, VERMILION, keep_panels, styled
+from giveway.figures.view import Box
 from giveway.metrics.groups import PedestrianGroups
 
 if TYPE_CHECKING:
@@ -29,63 +30,14 @@ Road = Sequence[NDArray[np.float64]]
 
 TIME_COLOURS = "viridis"
 SNAPSHOTS = 6
-ENCOUNTER = 10.0  # [m] snapshots are of the time in which somebody is this close to the ego
+ENCOUNTER = 10.0  # [m] snapshots show the time in which a pedestrian is this close to the ego
 MARGIN = 2.0  # [m] around all trajectories
 SURROUNDINGS = 8.0  # [m] shown around the ego's places in the snapshots
-LARGEST_PART = 70.0  # [m] of a side that all snapshots share; on longer drives the view goes along
-VIEW = (50.0, 32.0)  # [m] width and height of a view that goes along
-SLENDEREST = 2.2  # the overview is at most so much taller than wide, and twice so much wider
+LARGEST_PART = 70.0  # [m] of a side of a shared view; on longer drives it follows the ego
+VIEW = (50.0, 32.0)  # [m] width and height of a view that follows the ego
 TICK = 1.0  # [s] of walking is the length of a pedestrian's velocity tick
 NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # of the ego: parts of length and width
 SEGMENTS = 150  # at most, per trajectory
-
-
-class _Box(NamedTuple):
-    """Limits of a view [m]."""
-
-    left: float
-    bottom: float
-    right: float
-    top: float
-
-    @classmethod
-    def around(cls, points: NDArray[np.float64], margin: float) -> _Box:
-        left, bottom = points.min(axis=0) - margin
-        right, top = points.max(axis=0) + margin
-        return cls(float(left), float(bottom), float(right), float(top))
-
-    @classmethod
-    def centred(cls, middle: NDArray[np.float64], size: tuple[float, float]) -> _Box:
-        half = np.array(size) / 2.0
-        return cls(*(middle - half).tolist(), *(middle + half).tolist())
-
-    def less_slender(self) -> _Box:
-        """The same view, widened where it is too slender to be drawn beside or above others."""
-        width, height = self.right - self.left, self.top - self.bottom
-        more_x = max(0.0, height / SLENDEREST - width) / 2.0
-        more_y = max(0.0, width / (2.0 * SLENDEREST) - height) / 2.0
-        return _Box(
-            self.left - more_x, self.bottom - more_y, self.right + more_x, self.top + more_y
-        )
-
-    @property
-    def size(self) -> tuple[float, float]:
-        """Width and height [m]."""
-        return self.right - self.left, self.top - self.bottom
-
-    @property
-    def aspect(self) -> float:
-        """Height over width."""
-        return (self.top - self.bottom) / (self.right - self.left)
-
-    def touches(self, points: NDArray[np.float64]) -> bool:
-        """Whether the points' own box meets this one."""
-        low, high = points.min(axis=0), points.max(axis=0)
-        beside = high[0] < self.left or low[0] > self.right
-        return bool(not (beside or high[1] < self.bottom or low[1] > self.top))
-
-    def apply(self, axes: Axes) -> None:
-        axes.set(xlim=(self.left, self.right), ylim=(self.bottom, self.top), aspect="equal")
 
 
 @styled
@@ -108,7 +60,7 @@ def top_view_figure(
         shape: the ego's rectangle.
         body_radius: radius of a pedestrian [m].
         times: of the snapshots [s], each taken at the nearest control instant; left out: six,
-            evenly over the time in which somebody is within 10 m of the ego.
+            evenly over the time in which a pedestrian is within 10 m of the ego.
         background: other vehicles, drawn in the snapshots; from their latest instant on they are
             taken to drive straight on.
         road: areas and lines to draw underneath.
@@ -121,20 +73,20 @@ def top_view_figure(
         raise ValueError("top view: the run has no instants; pass tracks of at least one")
     steps = _encounter(ego, crowd) if times is None else _nearest_steps(ego, times)
     corners = np.array([rectangle(ego, k, shape) for k in range(ego.time.size)])
-    walked = np.column_stack((crowd.x, crowd.y))
-    whole = _Box.around(np.concatenate((corners.reshape(-1, 2), walked)), MARGIN)
+    places = np.column_stack((crowd.x, crowd.y))
+    whole = Box.around(np.concatenate((corners.reshape(-1, 2), places)), MARGIN)
     whole = whole.less_slender()
-    part = _Box.around(corners[steps].reshape(-1, 2), SURROUNDINGS)
+    part = Box.around(corners[steps].reshape(-1, 2), SURROUNDINGS)
     parts = [part] * len(steps)
     if max(part.size) > LARGEST_PART:
-        parts = [_Box.centred(corners[k].mean(axis=0), VIEW) for k in steps]
+        parts = [Box.centred(corners[k].mean(axis=0), VIEW) for k in steps]
 
     figure, overview, panels = _arrange(whole, parts)
     colours = _colours(ego.time)
     road = [line for line in road or () if whole.touches(line)]
     _draw_road(overview, road)
-    lines = _draw_walks(overview, ego.time, crowd, colours)
-    _draw_drive(overview, ego, colours)
+    lines = _draw_pedestrian_trajectories(overview, ego.time, crowd, colours)
+    _draw_ego_trajectory(overview, ego, colours)
     for k in steps:
         colour = lines.cmap(colours(ego.time[k]))
         overview.add_patch(Polygon(corners[k], fill=False, edgecolor=colour, linewidth=1.4))
@@ -169,16 +121,16 @@ def crowd_view_figure(
         title: of the figure.
 
     Raises:
-        ValueError: nobody was recorded.
+        ValueError: no pedestrian was recorded.
     """
     if not crowd.x.size:
         raise ValueError("crowd view: nobody was recorded; pass a track of at least one record")
-    whole = _Box.around(np.column_stack((crowd.x, crowd.y)), SURROUNDINGS).less_slender()
+    whole = Box.around(np.column_stack((crowd.x, crowd.y)), SURROUNDINGS).less_slender()
     height = min(max(7.5 * whole.aspect, 4.0), 9.0)
     figure = Figure(layout="constrained", figsize=(height / whole.aspect + 1.6, height + 0.8))
     axes = figure.subplots()
     _draw_road(axes, [line for line in road or () if whole.touches(line)])
-    lines = _draw_walks(axes, time, crowd, _colours(time))
+    lines = _draw_pedestrian_trajectories(axes, time, crowd, _colours(time))
     whole.apply(axes)
     axes.set(xlabel="x [m]", ylabel="y [m]", title="Trajectories, begun at the circles")
     figure.colorbar(lines, ax=axes, label="Time [s]", shrink=0.8, aspect=30)
@@ -207,7 +159,7 @@ def _corners(
 
 
 def _encounter(ego: EgoTrack, crowd: CrowdTrack) -> NDArray[np.int64]:
-    """Instants spread evenly over the encounter, or over the run if nobody came close."""
+    """Instants spread evenly over the encounter, or over the run if no pedestrian came close."""
     step = crowd.step
     apart = np.hypot(crowd.x - ego.front_x[step], crowd.y - ego.front_y[step])
     close = step[apart < ENCOUNTER]
@@ -222,17 +174,17 @@ def _nearest_steps(ego: EgoTrack, times: Sequence[float]) -> NDArray[np.int64]:
     return np.array([np.abs(ego.time - time).argmin() for time in times], dtype=np.int64)
 
 
-def _arrange(whole: _Box, parts: Sequence[_Box]) -> tuple[Figure, Axes, list[Axes]]:
-    """A tall overview stands beside the snapshots, a flat one above them."""
+def _arrange(whole: Box, parts: Sequence[Box]) -> tuple[Figure, Axes, list[Axes]]:
+    """A tall overview stands next to the snapshots, a flat one above them."""
     part, count = parts[0], len(parts)
     together = all(each == part for each in parts)
-    beside = whole.aspect > 0.6
-    columns = min(count, 2 if beside or together else 3)
+    side_by_side = whole.aspect > 0.6
+    columns = min(count, 2 if side_by_side or together else 3)
     rows = -(-count // columns)
-    snapshots_width = 6.6 if beside else 9.5  # [in]
+    snapshots_width = 6.6 if side_by_side else 9.5  # [in]
     snapshots_height = rows * (snapshots_width / max(columns, 2) * part.aspect + 0.3) + 0.4
     figure = Figure(layout="constrained")
-    if beside:
+    if side_by_side:
         height = min(max(snapshots_height, 4.5), 9.0)
         overview_width = max(height / whole.aspect + 1.0, 3.8)
         figure.set_size_inches(overview_width + snapshots_width, height + 0.4)
@@ -275,10 +227,10 @@ def _draw_background(axes: Axes, time: float, background: BackgroundTrack) -> No
         )
 
 
-def _draw_walks(
+def _draw_pedestrian_trajectories(
     axes: Axes, time: NDArray[np.float64], crowd: CrowdTrack, colours: Normalize
 ) -> LineCollection:
-    """Paths as short lines, each in the colour of its time; circles mark where they begin."""
+    """Trajectories as short lines in the colours of time; circles mark where they begin."""
     groups = PedestrianGroups(crowd)
     places = np.column_stack((crowd.x, crowd.y))[groups.order]
     times = time[crowd.step[groups.order]]
@@ -297,8 +249,8 @@ def _draw_walks(
     return lines
 
 
-def _draw_drive(axes: Axes, ego: EgoTrack, colours: Normalize) -> None:
-    """The ego's way in the colours of time."""
+def _draw_ego_trajectory(axes: Axes, ego: EgoTrack, colours: Normalize) -> None:
+    """The ego's trajectory in the colours of time."""
     kept = _thinned(0, ego.time.size - 1)
     front = np.column_stack((ego.front_x, ego.front_y))[kept]
     driven = LineCollection(

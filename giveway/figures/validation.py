@@ -108,7 +108,7 @@ def growth_figure(time: Array, panels: Mapping[str, Mapping[str, Curve]], title:
 def tracks_figure(
     observed: Array, predicted: Mapping[str, Array], vehicle: Sequence[Body], title: str
 ) -> Figure:
-    """What was predicted of one window, and what came to pass.
+    """What was predicted of one window, and what was observed.
 
     Args:
         observed: (H + 1, n, 2) [m], from the start on.

@@ -37,8 +37,8 @@ ROWS = ("Force [kN]", "Speed [m/s]", "Acceleration [m/s²]", "Position [m]")
 def check_figure(report: CheckReport, *, title: str = "") -> Figure | None:
     """Force, speed, acceleration and position of the drives of a check; None without any.
 
-    On the left the step response beside the controller's model, on the right the same drive with
-    the FMU's steps and with finer ones, as far as they ran.
+    On the left the step response and that of the controller's model, on the right the same drive
+    with the FMU's steps and with finer ones, as far as they ran.
     """
     columns: list[tuple[str, list[tuple[Trace, dict[str, Any]]]]] = []
     if "response" in report.traces:
@@ -46,11 +46,11 @@ def check_figure(report: CheckReport, *, title: str = "") -> Figure | None:
         columns.append(("Drive, coast, brake", drawn))
     halving = report.convergence
     if halving is not None and halving.traces and halving.finer is not None:
-        manners = {}
+        looks = {}
         if len(halving.traces) == 2:
-            manners[halving.traces[1]] = FINER | {"label": _steps(halving.finer)}
-        manners[halving.traces[0]] = MEASURED | {"label": _steps(halving.step)}
-        columns.append(("Steps halved", list(manners.items())))
+            looks[halving.traces[1]] = FINER | {"label": _steps(halving.finer)}
+        looks[halving.traces[0]] = MEASURED | {"label": _steps(halving.step)}
+        columns.append(("Steps halved", list(looks.items())))
     if not columns:
         return None
     width = 4.6 if len(columns) == 1 else 8.2
@@ -78,21 +78,21 @@ def _draw_drive(
     force, speed, acceleration, position = panels
     for axes in panels:
         quiet_grid(axes)
-    for trace, manner in drawn:
+    for trace, look in drawn:
         for axes, values in (
             (speed, trace.speed),
             (position, trace.position - trace.position[0]),
             (acceleration, trace.acceleration),
         ):
-            axes.plot(trace.time, np.clip(values, -LARGEST, LARGEST), **manner)
+            axes.plot(trace.time, np.clip(values, -LARGEST, LARGEST), **look)
     trace = max((trace for trace, _ in drawn), key=lambda trace: trace.force.size)
     _draw_force(force, trace)
     M, alpha = report.expected.mass, report.expected.friction
-    way, model_speed = simulate(
+    model_position, model_speed = simulate(
         trace.force, trace.step_size, M, alpha, min(max(float(trace.speed[0]), 0.0), 100.0)
     )
     speed.plot(trace.time, model_speed, label="controller's model", **MODEL)
-    position.plot(trace.time, way, **MODEL)
+    position.plot(trace.time, model_position, **MODEL)
     slope = np.diff(model_speed, prepend=model_speed[0]) / trace.step_size
     acceleration.plot(trace.time, slope, **MODEL)
 

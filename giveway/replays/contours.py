@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from giveway.figures.influence import AHEAD, AHEAD_PER_SPEED, BEHIND, BESIDE, DRAWN
+from giveway.figures.influence import (
+    DRAWN,
+    FRONT_MARGIN,
+    FRONT_MARGIN_PER_SPEED,
+    REAR_MARGIN,
+    SIDE_MARGIN,
+)
 from giveway.replays.packing import MILLIMETRES, packed
 from pedestrian_model import Vehicles, vehicle_influence
 
@@ -71,10 +77,10 @@ def _contours(
 ) -> list[list[Array]]:
     """For each level its pieces, (k, 2) [m] each."""
     length, width = shape
-    ahead = length / 2 + AHEAD + AHEAD_PER_SPEED * speed
-    beside = width / 2 + BESIDE
-    x = np.arange(-length / 2 - BEHIND, ahead + _RESOLUTION, _RESOLUTION)
-    y = np.linspace(-beside, beside, 2 * round(beside / _RESOLUTION) + 1)
+    ahead = length / 2 + FRONT_MARGIN + FRONT_MARGIN_PER_SPEED * speed
+    half_height = width / 2 + SIDE_MARGIN
+    x = np.arange(-length / 2 - REAR_MARGIN, ahead + _RESOLUTION, _RESOLUTION)
+    y = np.linspace(-half_height, half_height, 2 * round(half_height / _RESOLUTION) + 1)
     across, up = np.meshgrid(x, y)
     places = np.column_stack((across.ravel(), up.ravel()))
     vehicle = Vehicles.create(0.0, 0.0, 0.0, speed, length / 2, length / 2, width)

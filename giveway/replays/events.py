@@ -55,7 +55,7 @@ def why(reason: str, status: str) -> dict[str, Any]:
 
 
 def _manoeuvre(name: str) -> str | None:
-    """Why the planning MPC chose a manoeuvre; None: it is none of its."""
+    """Why the planning MPC chose a manoeuvre; None if it is not one of its manoeuvres."""
     aimed = _AIMED.fullmatch(name)
     if aimed is None:
         return _MANOEUVRES.get(name)
@@ -64,12 +64,12 @@ def _manoeuvre(name: str) -> str | None:
     return f"slowing down to {aimed['speed']} at {aimed['rate'].lstrip('-')} costs least"
 
 
-def events(rows: pd.DataFrame, people: pd.DataFrame, config: EgoRunConfig) -> list[dict[str, Any]]:
-    """What to look at, in the order of time.
+def events(rows: pd.DataFrame, met: pd.DataFrame, config: EgoRunConfig) -> list[dict[str, Any]]:
+    """The events on the time line, in the order of time.
 
     Args:
         rows: one ego's of ``ego.csv``.
-        people: its rows of ``pedestrians.csv``.
+        met: this ego's rows of ``pedestrians.csv``.
         config: of this ego.
 
     Returns:
@@ -84,15 +84,15 @@ def events(rows: pd.DataFrame, people: pd.DataFrame, config: EgoRunConfig) -> li
             at = int(np.searchsorted(time, start))
             told = why(str(rows["reason"].iloc[at]), str(rows["solver_status"].iloc[at]))
             found.append(_event(acting, start, end, told["text"]))
-    found += _encounters(people)
+    found += _encounters(met)
     return sorted(found, key=lambda event: (event["from"], event["to"], event["kind"]))
 
 
-def _encounters(people: pd.DataFrame) -> Iterator[dict[str, Any]]:
-    """The closest approach of all, and everybody whom the ego touched."""
-    if not {"id", "minimum_clearance", "time_of_minimum_clearance"} <= set(people):
+def _encounters(met: pd.DataFrame) -> Iterator[dict[str, Any]]:
+    """The closest approach of all, and every pedestrian whom the ego touched."""
+    if not {"id", "minimum_clearance", "time_of_minimum_clearance"} <= set(met):
         return
-    known = people.dropna(subset=["minimum_clearance", "time_of_minimum_clearance"])
+    known = met.dropna(subset=["minimum_clearance", "time_of_minimum_clearance"])
     if not len(known):
         return
     closest = known["minimum_clearance"].idxmin()
@@ -111,7 +111,7 @@ def _event(kind: str, start: float, end: float, text: str, who: str = "") -> dic
 
 
 def _phases(active: NDArray[np.bool_], time: NDArray[np.float64]) -> Iterator[tuple[float, float]]:
-    """From when to when [s] something was so; a command holds until the next instant."""
+    """Start and end [s] of each active phase; a command holds until the next instant."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], active, [False])).astype(np.int8)))
     for start, end in zip(edges[::2], edges[1::2], strict=True):
         yield float(time[start]), float(time[min(end, len(time) - 1)])

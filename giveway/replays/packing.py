@@ -1,4 +1,4 @@
-"""Who was where, packed for the page: one track per uninterrupted presence, millimetres in base64.
+"""Positions packed for the page: one track per uninterrupted presence, millimetres in base64.
 
 Lists of numbers as JSON would be four times as large, and slow to parse.
 """
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 MILLIMETRES = 1000.0  # per metre
 MOST_SAMPLES = 700_000  # of all tracks together: 17 MB of page
 MOST_PREDICTED = 250_000  # 3 MB
-_LONGEST_GAP = 10.0  # [s] over which nobody's way is guessed
+_LONGEST_GAP = 10.0  # [s] over which no positions are interpolated
 _WINDOWS = (2, 3, 4, 5, 8, 10, 15, 20, 30, 40, 60, 100, 200, 500, 1000)  # steps
 
 
@@ -47,7 +47,7 @@ class Frame:
 
     @classmethod
     def of(cls, run: RunFolder) -> Frame:
-        """Whole metres near the middle of everything."""
+        """The frame of a run, with its origin at whole metres near the middle of all positions."""
         places = run.trajectories if len(run.trajectories) else run.ego
         middle = [round((places[axis].min() + places[axis].max()) / 2.0) for axis in ("x", "y")]
         return cls(float(middle[0]), float(middle[1]), run.time)
@@ -73,8 +73,8 @@ def pack_tracks(
     Args:
         rows: of ``trajectories.csv``.
         frame: of the page.
-        hold: [s] somebody stays in sight after the last row.
-        gap: [s] without a row after which somebody has been away.
+        hold: [s] for which an object stays in sight after its last row.
+        gap: [s] without a row after which an object has been away.
         thin: [s] of which one sample is kept; 0 keeps all.
 
     Returns:
@@ -120,8 +120,8 @@ def _until(
 ) -> Array:
     """How long each track is in sight [s].
 
-    Who is far is recorded from time to time, so nobody knows when he left; at the run's end he is
-    still there.
+    Distant pedestrians are recorded only from time to time, so that the end of their presence is
+    not known; one recorded shortly before the run's end is taken to be there until then.
     """
     ends = time[last]
     seldom = (apart[last] > 1.5 * hold) | first[last]
@@ -140,7 +140,7 @@ def _sparse(
 
 
 def thinning(rows: pd.DataFrame, step: float, most: int = MOST_SAMPLES) -> float:
-    """Of how many seconds one sample may be kept so that about ``most`` remain; 0: all of them."""
+    """Of how many seconds one sample is kept so that about ``most`` remain; 0: all are kept."""
     if len(rows) <= most:
         return 0.0
     codes, _ = pd.factorize(rows["id"], sort=False)
@@ -155,7 +155,7 @@ def thinning(rows: pd.DataFrame, step: float, most: int = MOST_SAMPLES) -> float
 
 
 def longest_gap(run: RunFolder) -> float:
-    """Without a row for longer than this [s], somebody has been away."""
+    """How long [s] an object may have no row without having been away."""
     period = min(run.config.record.far_period, _LONGEST_GAP)
     return 1.5 * max(period, run.step, run.sumo_step)
 

@@ -15,6 +15,7 @@ from shapely import LineString
 from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.config.presets import parameters_of
 from giveway.errors import ResultsError
+from giveway.figures.study_rows import pretty_unit
 from giveway.geometry.angles import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.replays.contours import influence_contours
@@ -42,9 +43,9 @@ _SHOWN = (
     "peak_deceleration", "rms_jerk",
 )  # fmt: skip
 _SPELT = ("mpc", "ttc", "pet", "rms")
-_BODY = (5.0, 2.0)  # [m] of an ego, where the folder does not tell
-_BEYOND = 150.0  # [m] of corridor beyond the end of the drive
-_CAR = (4.3, 1.8)  # [m] SUMO's passenger car, likewise
+_BODY = (5.0, 2.0)  # [m] length and width of an ego, where the folder does not tell
+_BEYOND_DRIVE = 150.0  # [m] of corridor after the end of the drive
+_PASSENGER_CAR = (4.3, 1.8)  # [m] SUMO's passenger car, likewise
 _MADE_WITHOUT = (
     "No predictions: the run did not record them; 'giveway run --record-predictions 0.25' does."
 )
@@ -102,19 +103,19 @@ def _page(content: dict[str, Any]) -> str:
 
 
 def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> dict[str, Any]:
-    """Everything that the page knows."""
+    """The data of the page."""
     frame = Frame.of(run)
     rows = run.trajectories
     walking = (rows["type"] == "pedestrian").to_numpy()
     driven = rows["id"].isin(list(run.egos)).to_numpy() & ~walking
-    people, vehicles = rows[walking], rows[~walking & ~driven]
-    thin, gap = thinning(people, run.step), longest_gap(run)
+    pedestrians, vehicles = rows[walking], rows[~walking & ~driven]
+    thin, gap = thinning(pedestrians, run.step), longest_gap(run)
     tracks = {
-        "people": pack_tracks(people, frame, hold=run.step, gap=max(gap, 2 * thin), thin=thin),
+        "people": pack_tracks(pedestrians, frame, hold=run.step, gap=max(gap, 2 * thin), thin=thin),
         "vehicles": pack_tracks(vehicles, frame, hold=run.sumo_step, gap=gap, thin=0.0),
     }
-    cars = tracks["vehicles"]["names"]
-    tracks["vehicles"]["bodies"] = [run.scene.body(name, _CAR) for name in cars]
+    vehicle_names = tracks["vehicles"]["names"]
+    tracks["vehicles"]["bodies"] = [run.scene.body(name, _PASSENGER_CAR) for name in vehicle_names]
     names = {name: index for index, name in enumerate(tracks["people"]["names"])}
     contours, egos = _egos(run, frame, predictions, names)
     return {
@@ -134,14 +135,14 @@ def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> d
 
 def _title(run: RunFolder) -> str:
     scenario = run.summary.get("scenario", run.config.scenario)
-    who = {one.controller.upper() for one in run.egos.values()}
-    people = run.trajectories.loc[run.trajectories["type"] == "pedestrian", "id"].nunique()
-    parts = [str(scenario), " + ".join(sorted(who)), f"{people} pedestrians"]
+    controllers = {one.controller.upper() for one in run.egos.values()}
+    pedestrians = run.trajectories.loc[run.trajectories["type"] == "pedestrian", "id"].nunique()
+    parts = [str(scenario), " + ".join(sorted(controllers)), f"{pedestrians} pedestrians"]
     return " · ".join([part for part in parts if part] + [f"seed {run.config.seed}"])
 
 
 def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: float) -> list[str]:
-    """What the spectator has to know of what is shown, and of the run."""
+    """What a spectator has to know about the page and the run."""
     notes = []
     error = run.manifest.get("error")
     if error:
@@ -154,7 +155,7 @@ def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: 
     if predictions is None and with_mpc:
         notes.append(remark or _MADE_WITHOUT)
     zone = run.config.crowd.zone
-    if _come_and_go(run) and zone != "everywhere":
+    if _walk_unrecorded(run) and zone != "everywhere":
         notes.append(
             f"The scenario's own walkers are on record in the zone alone (--zone {zone}); outside, "
             "SUMO walks them unseen. '--zone everywhere' shows all."
@@ -164,10 +165,10 @@ def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: 
     return notes + [str(text) for text in run.manifest.get("remarks") or ()]
 
 
-def _come_and_go(run: RunFolder) -> bool:
-    """Whether SUMO walks people whom nobody sees: those handed back; all, without an ego."""
-    people = run.manifest.get("pedestrians")
-    handed_back = isinstance(people, dict) and bool(people.get("handed_back"))
+def _walk_unrecorded(run: RunFolder) -> bool:
+    """Whether SUMO moves persons without a record: those handed back; all, without an ego."""
+    counts = run.manifest.get("pedestrians")
+    handed_back = isinstance(counts, dict) and bool(counts.get("handed_back"))
     return handed_back or not (run.egos or run.config.crowd.pedestrians)
 
 
@@ -184,7 +185,7 @@ def _road(run: RunFolder, frame: Frame) -> dict[str, Any]:
 def _egos(
     run: RunFolder, frame: Frame, predictions: pd.DataFrame | None, names: dict[str, int]
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """The influence of each shape of vehicle, and the egos."""
+    """The contours of influence for each shape of vehicle, and the egos."""
     kinds: dict[tuple[Any, ...], float] = {}
     for name, config in run.egos.items():
         kind = (_body(run, name), config.crowd.preset)
@@ -241,13 +242,13 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
 
 
 def _path(rows: pd.DataFrame, frame: Frame) -> dict[str, str]:
-    """Where the front bumper went, to a centimetre, and straight on from there.
+    """The front bumper's trajectory, to a centimetre, extended straight on at its end.
 
-    The way that it would have taken is not on record.
+    The rest of its path is not recorded.
     """
     points = rows[["x", "y"]].to_numpy(np.float64)
     heading = angle_to_heading(float(rows["angle"].iloc[-1]))
-    beyond = points[-1] + _BEYOND * np.array((np.cos(heading), np.sin(heading)))
+    beyond = points[-1] + _BEYOND_DRIVE * np.array((np.cos(heading), np.sin(heading)))
     line = np.array(LineString([*points, beyond]).simplify(0.01).coords)
     return {"x": frame.across(line[:, 0]), "y": frame.up(line[:, 1])}
 
@@ -259,7 +260,7 @@ def _summary(row: dict[str, Any]) -> list[dict[str, Any]]:
         {
             "label": _label(name),
             "value": row[name] if _is_number(row[name]) else None,
-            "unit": (columns[name].unit or "").replace("^2", "²").replace("^3", "³"),
+            "unit": pretty_unit(columns[name].unit or ""),
             "meaning": columns[name].description,
         }
         for name in _SHOWN
@@ -277,11 +278,11 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and math.isfinite(value)
 
 
-def _met(people: pd.DataFrame, names: dict[str, int]) -> dict[str, Any]:
+def _met(met: pd.DataFrame, names: dict[str, int]) -> dict[str, Any]:
     """Each pedestrian's closest approach to this ego, by the index of its name."""
-    if not {"id", "minimum_clearance"} <= set(people):
+    if not {"id", "minimum_clearance"} <= set(met):
         return {}
-    known = people[people["id"].isin(list(names))].dropna(subset=["minimum_clearance"])
+    known = met[met["id"].isin(list(names))].dropna(subset=["minimum_clearance"])
     return {
         str(names[who]): round(float(clearance), 3)
         for who, clearance in zip(known["id"], known["minimum_clearance"], strict=True)

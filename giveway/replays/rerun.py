@@ -20,7 +20,7 @@ PERIOD = 0.25  # [s] of look-ahead between two predicted positions
 
 @dataclass(frozen=True)
 class Predicted:
-    """What became of the attempt.
+    """What the repetition of a run has given.
 
     Attributes:
         file: the predictions, until the context is left; None if there are none.
@@ -33,10 +33,10 @@ class Predicted:
 
 @contextlib.contextmanager
 def predicted_again(folder: Path) -> Iterator[Predicted]:
-    """Make the run in ``folder`` again, in processes of its own: a crash hurts nobody.
+    """Make the run in ``folder`` again, in processes of its own, so that a crash does no harm.
 
-    Its predictions count only if the vehicle's rows are the very bytes of the folder's. A run that
-    was interrupted may end earlier than its repetition does.
+    Its predictions count only if its ``ego.csv`` begins with the bytes of the folder's. A run that
+    was interrupted ends earlier than its repetition does.
 
     Args:
         folder: the results of ``giveway run``.
@@ -49,10 +49,10 @@ def predicted_again(folder: Path) -> Iterator[Predicted]:
         done = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, check=False, text=True
         )
-        yield _judge(folder, again, done.stderr)
+        yield _compared(folder, again, done.stderr)
 
 
-def _judge(folder: Path, again: Path, complaint: str) -> Predicted:
+def _compared(folder: Path, again: Path, complaint: str) -> Predicted:
     file = again / PREDICTIONS
     if not file.is_file():
         why = (complaint.strip().splitlines() or ["it ended without a word"])[-1]

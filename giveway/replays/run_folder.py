@@ -1,4 +1,4 @@
-"""A results folder read back for its replay: whatever became of the run, its rows play."""
+"""A results folder read for its replay, whether the run was completed or not."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class RunFolder:
         summary: of ``summary.json``: the first ego's row, all rows under ``egos`` if several.
         manifest: of ``manifest.json``.
         scene: the road and the bodies.
-        time: (T,) [s] every instant at which somebody was recorded.
+        time: (T,) [s] every instant that has a row.
     """
 
     path: Path
@@ -133,10 +133,10 @@ def _require_run(folder: Path) -> None:
 
 
 def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
-    """A table with ids as the text they are; absent words are empty."""
-    words = {column.name: str for column in columns if column.type == "string"}
+    """A table whose ids are texts, even those of digits; missing texts are empty."""
+    texts = {column.name: str for column in columns if column.type == "string"}
     try:
-        frame = pd.read_csv(file, dtype=words or {"id": str, "ego": str}, na_values=[""],
+        frame = pd.read_csv(file, dtype=texts or {"id": str, "ego": str}, na_values=[""],
                             keep_default_na=False)  # fmt: skip
     except FileNotFoundError:
         return pd.DataFrame()
@@ -151,7 +151,7 @@ def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
     if missing:
         msg = f"{file}: column '{missing[0]}' is missing; make the run again with this giveway"
         raise ResultsError(msg)
-    text = list(words)
+    text = list(texts)
     frame[text] = frame[text].fillna("")
     return frame
 

@@ -5,11 +5,9 @@ Importing this imports matplotlib and jinja2; the command line does so late.
 
 from giveway.reports.choice import ExamplePair, WorstRun, example_pairs, worst_runs
 from giveway.reports.page import shown_runs, write_report
-from giveway.reports.study import Study
 
 __all__ = [
     "ExamplePair",
-    "Study",
     "WorstRun",
     "example_pairs",
     "shown_runs",

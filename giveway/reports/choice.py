@@ -1,7 +1,7 @@
 """Which runs a report shows: examples of pairs, and the runs that one would look at first.
 
-Nothing is drawn by lot: the same study gives the same choice, and ties go to the run that stands
-first in the study.
+The choice is not random: the same study gives the same runs, and of equal ones the first in the
+study.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from giveway.studies.statistics import metric
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from giveway.reports.study import Study
+    from giveway.studies.folder import StudyFolder
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class ExamplePair:
         seed: of both runs.
         run: id of the treatment's run.
         run_baseline: id of the baseline's run.
-        metric: by which the pair was chosen.
+        metric: name of the one by which the pair was chosen.
         difference: treatment minus baseline, in the metric's unit.
     """
 
@@ -55,12 +55,12 @@ class WorstRun:
     """A run that is worth looking at.
 
     Attributes:
-        reason: the heading that it stands under.
+        reason: the heading of its table.
         run: its id; of a pair, the treatment's.
         partner: the baseline's run of a pair; else empty.
         cell: label of its levels.
-        ego: which ego of the run; may be empty.
-        metric: that is extreme.
+        ego: id of the ego; may be empty.
+        metric: name of the one that is extreme.
         value: of the metric, or the pair's difference.
         unit: of the value.
     """
@@ -82,7 +82,7 @@ SLOWER = "Slower than the baseline by most"
 FASTER = "Faster than the baseline by most"
 
 
-def worst_runs(study: Study, count: int = 5) -> list[WorstRun]:
+def worst_runs(study: StudyFolder, count: int = 5) -> list[WorstRun]:
     """The runs that are extreme in safety or time, at most ``count`` for each reason.
 
     Args:
@@ -98,7 +98,7 @@ def worst_runs(study: Study, count: int = 5) -> list[WorstRun]:
     ]
 
 
-def example_pairs(study: Study, count: int = 4) -> list[ExamplePair]:
+def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
     """Pairs that show what the differences are made of: median, best, worst, one that waits.
 
     They are of the first context, ego and treatment that have pairs; the waiting pair is of a
@@ -133,7 +133,7 @@ def example_pairs(study: Study, count: int = 4) -> list[ExamplePair]:
 
 
 def deciding_metric(pairs: pd.DataFrame) -> str:
-    """Completion time; total wait in a study whose runs have no goal that both sides reach."""
+    """Completion time; total wait where no pair has reached its goal on both sides."""
     reached = pairs["completion_time" + DIFFERENCE].notna()
     return "completion_time" if reached.any() else "total_wait"
 
@@ -153,8 +153,10 @@ def _example(reason: str, row: pd.Series, name: str) -> ExamplePair:
     )
 
 
-def _extreme(study: Study, reason: str, name: str, count: int, *, sign: float) -> list[WorstRun]:
-    """The runs with the smallest (+1) or largest (-1) numbers; a largest one of zero is none."""
+def _extreme(
+    study: StudyFolder, reason: str, name: str, count: int, *, sign: float
+) -> list[WorstRun]:
+    """The runs with the smallest (+1) or largest (-1) numbers; the largest must be above zero."""
     values = pd.to_numeric(study.runs[name], errors="coerce").to_numpy(float)
     cost = np.where((values > 0.0) | (sign > 0.0), sign * values, np.nan)
     labels = {cell.number: cell.label for cell in study.design.cells}
@@ -168,7 +170,7 @@ def _extreme(study: Study, reason: str, name: str, count: int, *, sign: float) -
     return found
 
 
-def _differing(study: Study, reason: str, count: int, *, sign: float) -> list[WorstRun]:
+def _differing(study: StudyFolder, reason: str, count: int, *, sign: float) -> list[WorstRun]:
     """The pairs with the most negative (+1) or positive (-1) differences."""
     pairs = paired(study)
     name = deciding_metric(pairs)

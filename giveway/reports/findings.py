@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from giveway.reports.published import agreement, published_frame
-from giveway.reports.study import (
+from giveway.reports.labels import (
     baseline_label,
     compared_labels,
     context_key,
@@ -18,39 +17,48 @@ from giveway.reports.study import (
     level_label,
     treatment_labels,
 )
-from giveway.reports.wording import digits_for, interval, number, quantity, share, shown_ego
+from giveway.reports.published import agreement, published_frame
+from giveway.reports.wording import (
+    counted,
+    digits_for,
+    interval,
+    number,
+    quantity,
+    share,
+    shown_ego,
+)
 from giveway.studies.statistics import metric
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from giveway.reports.study import Study
+    from giveway.studies.folder import StudyFolder
 
-TOLD = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
-IN_FULL = 4  # groups up to which each has a sentence of its own
+METRICS_IN_WORDS = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
+MOST_SENTENCES = 4  # of one metric; more groups than that are counted in one
 
 
-def lead(study: Study) -> str:
+def lead(study: StudyFolder) -> str:
     """What was compared, on how many crowds."""
     runs = study.runs
     compared = study.definition.comparison.factor
     seeds = sorted(set(runs["seed"]))
     made = int(runs["run"].nunique())
     where = len(contexts(study))
-    levels = _listed([_named(label) for label in treatment_labels(study)])
-    compares = f"The study compares {levels} with the baseline {_named(baseline_label(study))}"
+    levels = _listed([_quoted(label) for label in treatment_labels(study)])
+    compares = f"The study compares {levels} with the baseline {_quoted(baseline_label(study))}"
     if not levels:
-        compares = f"The study has one level only, {_named(baseline_label(study))}"
+        compares = f"The study has one level only, {_quoted(baseline_label(study))}"
     if not made:
         return f"{compares} ({compared}); there is no run yet."
-    among = f" in {_count(where, 'context')}" if where > 1 else ""
+    among = f" in {counted(where, 'context')}" if where > 1 else ""
     which = f"seeds {seeds[0]} to {seeds[-1]}" if len(seeds) > 1 else f"seed {seeds[0]}"
-    size = f"{_count(made, 'run')} on {_count(len(seeds), 'crowd')} per cell ({which})"
+    size = f"{counted(made, 'run')} on {counted(len(seeds), 'crowd')} per cell ({which})"
     paired = "All levels met the same crowds, so that differences are taken pair by pair."
     return f"{compares} ({compared}){among}: {size}.{f' {paired}' if levels else ''}"
 
 
-def facts(study: Study) -> list[tuple[str, str]]:
+def facts(study: StudyFolder) -> list[tuple[str, str]]:
     """The study's size at a glance."""
     runs = study.runs
     failed = len(study.failures)
@@ -64,21 +72,21 @@ def facts(study: Study) -> list[tuple[str, str]]:
     ]
 
 
-def findings(study: Study) -> list[str]:
+def findings(study: StudyFolder) -> list[str]:
     """The main results, most important first."""
-    said = [sentence for name in TOLD for sentence in _of_metric(study, name)]
-    said += _overlaps(study)
-    said += _in_all(study)
-    return said
+    sentences = [sentence for name in METRICS_IN_WORDS for sentence in _of_metric(study, name)]
+    sentences += _overlaps(study)
+    sentences += _overall(study)
+    return sentences
 
 
-def cautions(study: Study) -> list[str]:
+def cautions(study: StudyFolder) -> list[str]:
     """What a reader has to know before believing the findings."""
-    said = []
+    sentences = []
     failed = len(study.failures)
     if failed:
         were = "run has" if failed == 1 else "runs have"
-        said.append(f"{failed:,} {were} no result; their pairs are left out (see Failures).")
+        sentences.append(f"{failed:,} {were} no result; their pairs are left out (see Failures).")
     frame = study.situations
     incomplete = int(frame["incomplete"].sum()) if len(frame) else 0
     if incomplete:
@@ -88,18 +96,18 @@ def cautions(study: Study) -> list[str]:
             if incomplete == pairs - int(frame["lost"].sum())
             else "they have no completion time, which favours a level that gets stuck."
         )
-        said.append(
-            f"In {incomplete:,} of {_count(pairs, 'pair')} a side did not reach its goal: {result}"
+        sentences.append(
+            f"In {incomplete:,} of {counted(pairs, 'pair')} a side did not reach its goal: {result}"
         )
-    said.append(_too_few(study))
+    sentences.append(_too_few(study))
     published = published_frame(study)
     if published is not None:
-        said.append(agreement(published))
-    return [sentence for sentence in said if sentence]
+        sentences.append(agreement(published))
+    return [sentence for sentence in sentences if sentence]
 
 
-def _too_few(study: Study) -> str:
-    """Where so few pairs were compared that no difference could have been shown; or nothing."""
+def _too_few(study: StudyFolder) -> str:
+    """A sentence if so few pairs were compared that no difference could have been shown."""
     frame = study.comparison[study.comparison["verdict"] != "N.A."]
     level = 1.0 - study.definition.comparison.confidence
     most = int(frame["n"].max()) if len(frame) else 0
@@ -112,56 +120,56 @@ def _too_few(study: Study) -> str:
     )
 
 
-def _of_metric(study: Study, name: str) -> list[str]:
-    """Sentences on one metric in general: each group's, or how many are better."""
+def _of_metric(study: StudyFolder, name: str) -> list[str]:
+    """Sentences on one metric in the general situation: one per group, or the counts."""
     frame = study.comparison
     frame = frame[(frame["situation"] == "general") & (frame["metric"] == name)]
     verdicts = frame["verdict"].astype(str).to_list()
     if not verdicts or all(verdict == "N.A." for verdict in verdicts):
         return []
-    if len(verdicts) > IN_FULL:
+    if len(verdicts) > MOST_SENTENCES:
         return [_counted(name, verdicts)]
     groups = frame.groupby(["treatment", "ego"], sort=False, dropna=False)
     return [_sentence(study, name, group.to_dict("records")) for _, group in groups]
 
 
-def _sentence(study: Study, name: str, rows: Sequence[Mapping[Any, Any]]) -> str:
-    """One treatment, all contexts: better and worse with numbers, the others by name."""
-    known, baseline = metric(name), _named(baseline_label(study))
-    treatment = _named(level_label(rows[0]["treatment"])) + shown_ego(level_label(rows[0]["ego"]))
+def _sentence(study: StudyFolder, name: str, rows: Sequence[Mapping[Any, Any]]) -> str:
+    """One treatment in all contexts: better and worse with numbers, the others by name."""
+    known, baseline = metric(name), _quoted(baseline_label(study))
+    treatment = _quoted(level_label(rows[0]["treatment"])) + shown_ego(level_label(rows[0]["ego"]))
     label = known.label[0].upper() + known.label[1:]
-    told = []
+    clauses = []
     for verdict in ("better", "worse"):
         here = [row for row in rows if row["verdict"] == verdict]
         if here:
             side = "lower" if here[0]["mean_difference"] < 0 else "higher"
             sizes = "; ".join(_size(study, row, known.unit) for row in here)
-            told.append(
+            clauses.append(
                 f"is {side} with {treatment} than with {baseline}, which is {verdict}: {sizes}"
             )
     rest = [row for row in rows if row["verdict"] not in {"better", "worse", "N.A."}]
     if rest:
         where = _where(study, rest)
-        told.append(f"no difference between {treatment} and {baseline} is shown{where}")
+        clauses.append(f"no difference between {treatment} and {baseline} is shown{where}")
     few = [row for row in rows if row["verdict"] == "N.A."]
     if few:
-        told.append(f"there are too few pairs (N.A.){_where(study, few)}")
-    joint = " " if told[0].startswith("is ") else ": "
-    return f"{label}{joint}{'; '.join(told)}."
+        clauses.append(f"there are too few pairs (N.A.){_where(study, few)}")
+    separator = " " if clauses[0].startswith("is ") else ": "
+    return f"{label}{separator}{'; '.join(clauses)}."
 
 
-def _size(study: Study, row: Mapping[Any, Any], unit: str) -> str:
+def _size(study: StudyFolder, row: Mapping[Any, Any], unit: str) -> str:
     """As in "by 1.62 s (95 % interval 0.91 to 2.49 s) where crowd.pedestrians = 30"."""
     low, high = row["ci_low"], row["ci_high"]
     if row["mean_difference"] < 0:
         low, high = -high, -low
     size = quantity(abs(row["mean_difference"]), unit, digits_for(high - low))
     percent = 100.0 * study.definition.comparison.confidence
-    within = f"{percent:g} % interval {interval(low, high, unit)}; {_count(int(row['n']), 'pair')}"
+    within = f"{percent:g} % interval {interval(low, high, unit)}; {counted(int(row['n']), 'pair')}"
     return f"by {size} ({within}){_where(study, [row])}"
 
 
-def _where(study: Study, rows: Sequence[Mapping[Any, Any]]) -> str:
+def _where(study: StudyFolder, rows: Sequence[Mapping[Any, Any]]) -> str:
     """The contexts of some rows, as in " where crowd.pedestrians = 30 or ..."; or nothing."""
     places = {context.key: context.label for context in contexts(study)}
     labels = [places.get(context_key(study, row), "") for row in rows]
@@ -180,7 +188,7 @@ def _counted(name: str, verdicts: list[str]) -> str:
     return f"{label}: {', '.join(parts)} of {len(verdicts)} comparisons with the baseline."
 
 
-def _overlaps(study: Study) -> list[str]:
+def _overlaps(study: StudyFolder) -> list[str]:
     """In how many runs a pedestrian touched the vehicle, level by level."""
     runs = study.runs
     numbers = pd.to_numeric(runs["overlaps"], errors="coerce")
@@ -193,15 +201,15 @@ def _overlaps(study: Study) -> list[str]:
     for label in compared_labels(study):
         here = numbers[level == label].dropna()
         if len(here):
-            count = f"{int((here > 0).sum()):,} of {_count(len(here), 'run')}"
-            parts.append(f"{share(float((here > 0).mean()))} ({count}) with {_named(label)}")
+            count = f"{int((here > 0).sum()):,} of {counted(len(here), 'run')}"
+            parts.append(f"{share(float((here > 0).mean()))} ({count}) with {_quoted(label)}")
     return [f"A pedestrian's circle overlapped the vehicle's rectangle in {_listed(parts)}."]
 
 
-def _in_all(study: Study) -> list[str]:
+def _overall(study: StudyFolder) -> list[str]:
     verdicts = study.comparison["verdict"].astype(str)
     enough = int((verdicts != "N.A.").sum())
-    if not enough and not drives(study):
+    if not enough and not _have_ego(study):
         return ["The runs have no ego: every metric is an ego's, so there is nothing to compare."]
     if not enough:
         return ["No situation has enough pairs for a comparison: every difference is N.A."]
@@ -215,16 +223,12 @@ def _in_all(study: Study) -> list[str]:
     ]
 
 
-def drives(study: Study) -> bool:
+def _have_ego(study: StudyFolder) -> bool:
     """Whether the runs drive an ego, as far as can be told from those with a result."""
     return bool(study.runs["mean_speed"].notna().any()) or bool(len(study.failures))
 
 
-def _count(n: int, noun: str) -> str:
-    return f"{n:,} {noun}" if n == 1 else f"{n:,} {noun}s"
-
-
-def _named(level: str) -> str:
+def _quoted(level: str) -> str:
     """A level's label in a sentence: in quotation marks if it is not a single word."""
     return level if level and not set(level) & set(" ,;:") else f"“{level}”"
 

@@ -6,21 +6,22 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from giveway.reports.study import (
+from giveway.reports.labels import (
     baseline_label,
     compared_labels,
     context_key,
     contexts,
     level_label,
 )
-from giveway.reports.tables import Cell, Table
+from giveway.reports.table import Cell, Table
 from giveway.reports.wording import number, pretty_unit
 from giveway.studies.statistics import metric
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from giveway.reports.study import Context, Study
+    from giveway.studies.contexts import Context
+    from giveway.studies.folder import StudyFolder
 
 BETTER, WORSE = "+", "−"
 
@@ -87,7 +88,7 @@ class LevelTable:
     baseline: str
 
 
-def level_table(study: Study) -> LevelTable:
+def level_table(study: StudyFolder) -> LevelTable:
     """The main metrics of every level in every context, and what a control step took.
 
     Half of the interval's width stands for both of its ends, which ``levels.csv`` has.
@@ -102,12 +103,12 @@ def _unit(name: str) -> str:
     return "%" if name in _IN_PERCENT else metric(name).unit
 
 
-def _rows(study: Study, context: Context) -> Iterator[Row]:
+def _rows(study: StudyFolder, context: Context) -> Iterator[Row]:
     compared = study.definition.comparison.factor
     frame, verdicts = study.levels, _verdicts(study, context)
     here = [row for row in frame.to_dict("records") if context_key(study, row) == context.key]
     several = frame["ego"].nunique() > 1
-    title = _title(study, context)
+    title = _title(context)
     for label in compared_labels(study):
         own = [row for row in here if level_label(row[compared]) == label]
         for ego in dict.fromkeys(str(row["ego"]) for row in own):
@@ -119,17 +120,15 @@ def _rows(study: Study, context: Context) -> Iterator[Row]:
             yield Row(title, f"{label} ({ego})" if several else label, tuple(means))
 
 
-def _title(study: Study, context: Context) -> str:
-    """What the block is called: a name that a level has of its own says enough."""
-    if len(context.levels) == 1:
-        name, label = next(iter(context.levels.items()))
-        level = study.design.factor(name).level(label)
-        if level is not None and isinstance(level.value, str):
-            return label
-    return context.short
+def _title(context: Context) -> str:
+    """The heading of a block: the label alone of a level that has a name, else the context."""
+    levels = list(context.levels.values())
+    return (
+        levels[0].label if len(levels) == 1 and isinstance(levels[0].value, str) else context.short
+    )
 
 
-def _verdicts(study: Study, context: Context) -> dict[tuple[str, str, str], str]:
+def _verdicts(study: StudyFolder, context: Context) -> dict[tuple[str, str, str], str]:
     """By treatment, ego and metric, over all pairs."""
     frame = study.comparison
     return {
@@ -159,14 +158,14 @@ def _digits(half: float) -> int:
     return min(max(math.ceil(0.3 - math.log10(half)), 0), _MOST_DIGITS)
 
 
-def _times(study: Study, cell: int) -> list[Mean]:
+def _times(study: StudyFolder, cell: int) -> list[Mean]:
     frame = study.computing
     row = frame[frame["cell"] == cell].iloc[0]
     times = row["control_median"], row["control_max"]
     return [Mean(f"{time:.2f}" if math.isfinite(time) else "–") for time in times]
 
 
-def levels_section(study: Study) -> Table | None:
+def levels_section(study: StudyFolder) -> Table | None:
     """The table of the report; None where the study shows differences only."""
     if study.definition.table != "levels" or study.levels.empty:
         return None

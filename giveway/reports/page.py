@@ -22,10 +22,10 @@ from giveway.reports import findings, tables
 from giveway.reports.choice import example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
 from giveway.reports.examples import TITLES, example_pictures
+from giveway.reports.labels import contexts
 from giveway.reports.levels import levels_section
 from giveway.reports.pictures import Picture, study_pictures
 from giveway.reports.published import published_frame, published_table
-from giveway.reports.study import contexts
 from giveway.reports.wording import pretty_unit
 from giveway.studies.statistics import METRICS
 
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from giveway.reports.choice import ExamplePair, WorstRun
-    from giveway.reports.study import Study
     from giveway.results.run_result import RunResult
+    from giveway.studies.folder import StudyFolder
 
 REPORT = "report.html"
 FIGURES = "figures"
@@ -47,23 +47,19 @@ class Drawn:
     """A picture in the page.
 
     Attributes:
-        name: of its files, and its id in the page.
+        picture: with its caption; its name is its id in the page.
         title: above it; may be empty.
-        caption: beneath it.
-        alt: what is to be seen.
-        svg: the picture.
+        svg: how it is drawn in the page.
         links: label and address of replays that belong to it.
     """
 
-    name: str
+    picture: Picture
     title: str
-    caption: str
-    alt: str
     svg: Markup
     links: Sequence[tuple[str, str]] = ()
 
 
-def shown_runs(study: Study, *, examples: int = 4, worst: int = 5) -> list[str]:
+def shown_runs(study: StudyFolder, *, examples: int = 4, worst: int = 5) -> list[str]:
     """The ids of the runs that a report of the same arguments names, each once."""
     ids = [run for pair in example_pairs(study, examples) for run in (pair.run, pair.run_baseline)]
     ids += [run for row in worst_runs(study, worst) for run in (row.run, row.partner) if run]
@@ -71,7 +67,7 @@ def shown_runs(study: Study, *, examples: int = 4, worst: int = 5) -> list[str]:
 
 
 def write_report(
-    study: Study,
+    study: StudyFolder,
     *,
     examples: int = 4,
     worst: int = 5,
@@ -79,14 +75,14 @@ def write_report(
     replay: Callable[[str], Path | None] | None = None,
     target: Path | None = None,
 ) -> Path:
-    """Draw the figures of a study and write its report; both replace what is there.
+    """Draw the figures of a study and write its report; both replace existing ones.
 
     Args:
         study: its folder, read.
         examples: pairs of which speed and gap are drawn, at most; 0: none.
         worst: runs that are listed, for each reason.
-        rerun: makes a run again, by its id, for the examples; None: there are none.
-        replay: the page that plays a run, by its id, or None; None: no links.
+        rerun: makes a run again, by its id, for the examples; None: the report has no examples.
+        replay: gives the page that plays a run, by its id, or None; None: no links.
         target: the file to write; None: ``report.html`` in the study's folder. Figures go to
             the folder ``figures`` of the study.
 
@@ -108,7 +104,7 @@ def write_report(
         shown, missing = _examples(folder, pairs, rerun, replays)
         content = _content(study, extremes, replays)
         by_section = {
-            name: [d for s, d in pictures if s == name]
+            name: [drawn for drawn in pictures if drawn.picture.section == name]
             for name in ("differences", "cells", "trade-off")
         }
         html = (
@@ -137,7 +133,7 @@ def _replays(
 
 
 def _clear(folder: Path) -> None:
-    """Make room for the figures; those of a former report are taken away."""
+    """Make the folder of the figures, and remove those of a former report."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in _NAMES:
         for suffix in _FORMATS:
@@ -145,14 +141,16 @@ def _clear(folder: Path) -> None:
                 path.unlink()
 
 
-def _drawn(picture: Picture, folder: Path, title: str = "", **more: Any) -> tuple[str, Drawn]:
-    """Write the picture's files; the section it belongs to, and the picture for the page."""
+def _drawn(
+    picture: Picture, folder: Path, title: str = "", links: Sequence[tuple[str, str]] = ()
+) -> Drawn:
+    """Write the picture's files, and draw it for the page."""
     picture.figure.draw_without_rendering()
     picture.figure.set_layout_engine("none")  # the arrangement is found once, for all formats
     for suffix in _FORMATS:
         save_figure(picture.figure, folder / f"{picture.name}{suffix}")
     svg = Markup(inline_svg(picture.figure, picture.name.replace("_", "")))
-    return picture.section, Drawn(picture.name, title, picture.caption, picture.alt, svg, **more)
+    return Drawn(picture, title, svg, links)
 
 
 def _examples(
@@ -168,11 +166,13 @@ def _examples(
     for pair, picture in pictures:
         runs = ((pair.treatment, pair.run), (pair.baseline, pair.run_baseline))
         links = [(f"{label} ({run})", replays[run]) for label, run in runs if run in replays]
-        shown.append(_drawn(picture, folder, TITLES[pair.reason], links=links)[1])
+        shown.append(_drawn(picture, folder, TITLES[pair.reason], links=links))
     return shown, missing
 
 
-def _content(study: Study, extremes: Sequence[WorstRun], replays: dict[str, str]) -> dict[str, Any]:
+def _content(
+    study: StudyFolder, extremes: Sequence[WorstRun], replays: dict[str, str]
+) -> dict[str, Any]:
     definition = study.definition
     published = published_frame(study)
     some = not study.comparison.empty
@@ -210,7 +210,7 @@ def _content(study: Study, extremes: Sequence[WorstRun], replays: dict[str, str]
     }
 
 
-def _execution(study: Study) -> dict[str, str]:
+def _execution(study: StudyFolder) -> dict[str, str]:
     frame = study.execution
     if frame.empty:
         return {}
@@ -244,7 +244,7 @@ def _glossary() -> list[dict[str, str]]:
     ]
 
 
-def _factors(study: Study) -> list[tuple[str, str, str]]:
+def _factors(study: StudyFolder) -> list[tuple[str, str, str]]:
     """Name, levels and meaning of what was varied."""
     known = {".".join(option.location): option.field.description or "" for option in options()}
     return [

@@ -1,4 +1,4 @@
-"""The pictures of a study: what of its tables each one shows, drawn by ``giveway.figures``."""
+"""The pictures of a study: what each one shows of the tables; ``giveway.figures`` draws it."""
 
 from __future__ import annotations
 
@@ -15,10 +15,17 @@ from giveway.figures.study_distributions import DistributionColumn, distribution
 from giveway.figures.study_forest import Estimate, ForestColumn, forest_figure
 from giveway.figures.study_rows import Row, level_colours
 from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
-from giveway.reports.estimates import estimate_key, estimates
+from giveway.reports.choice import deciding_metric
+from giveway.reports.labels import (
+    baseline_label,
+    compared_labels,
+    context_key,
+    contexts,
+    level_label,
+    treatment_labels,
+)
 from giveway.reports.pairing import BASELINE, DIFFERENCE, paired, situation_of
 from giveway.reports.published import SOURCE, published_numbers
-from giveway.reports.study import baseline_label, compared_labels, contexts, treatment_labels
 from giveway.reports.wording import shown_ego
 from giveway.studies.statistics import SITUATIONS, metric
 
@@ -28,7 +35,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from giveway.reports.study import Context, Study
+    from giveway.studies.folder import StudyFolder
 
 ROWS_PER_PICTURE = 8
 FOREST = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
@@ -36,6 +43,9 @@ SPREADS = {
     "time and comfort": ("completion_time", "longest_wait", "rms_jerk"),
     "safety": ("minimum_clearance", "minimum_ttc", "maximum_drac"),
 }
+
+_Key = tuple[tuple[str, ...], str, str, str, str]
+"""Context, ego, treatment, situation, metric."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +56,8 @@ class Picture:
         name: of its files, without suffix; unique within the study.
         section: of the report that it belongs to.
         caption: one or two sentences beneath it.
-        alt: what is to be seen, for those who do not see it.
-        figure: itself.
+        alt: description for readers who do not see the picture.
+        figure: the picture.
     """
 
     name: str
@@ -57,12 +67,8 @@ class Picture:
     figure: Figure
 
 
-def study_pictures(study: Study) -> Iterator[Picture]:
-    """Everything that can be drawn of a study's tables; what has no numbers is left out.
-
-    Args:
-        study: whose.
-    """
+def study_pictures(study: StudyFolder) -> Iterator[Picture]:
+    """Every picture of a study for which its tables have numbers."""
     if study.runs.empty:
         return
     yield from _histograms(study)
@@ -71,14 +77,12 @@ def study_pictures(study: Study) -> Iterator[Picture]:
     yield from _trade_off(study)
 
 
-def _histograms(study: Study) -> Iterator[Picture]:
+def _histograms(study: StudyFolder) -> Iterator[Picture]:
     pairs = paired(study)
-    time = (
-        "completion_time" if pairs["completion_time" + DIFFERENCE].notna().any() else "total_wait"
-    )
+    time = deciding_metric(pairs)
     names = {"general": time, "stop-and-wait": "longest_wait", "non-stop": time}
     columns = [_difference_column(situation, name) for situation, name in names.items()]
-    reported = estimates(study)
+    reported = _estimates(study)
     printed = published_numbers(study)
     number = 0
     for names_, group in pairs.groupby(["ego", "treatment"], sort=False):
@@ -145,8 +149,8 @@ def _in_words(rows: Sequence[tuple[str, Sequence[Differences]]], names: dict[str
     return "; ".join(said) + "."
 
 
-def _forest(study: Study) -> Iterator[Picture]:
-    reported, printed = estimates(study), published_numbers(study)
+def _forest(study: StudyFolder) -> Iterator[Picture]:
+    reported, printed = _estimates(study), published_numbers(study)
     groups = [
         (context, ego, treatment)
         for context in contexts(study)
@@ -159,8 +163,7 @@ def _forest(study: Study) -> Iterator[Picture]:
         found = {}
         for row, (context, ego, treatment) in enumerate(groups):
             for situation in SITUATIONS:
-                key = estimate_key(context, ego, treatment, situation, name)
-                value = reported.get(key)
+                value = reported.get((context.key, ego, treatment, situation, name))
                 if value is not None:
                     known = printed.get((context.key, treatment, situation, name))
                     found[row, str(situation)] = replace(value, published=known)
@@ -189,7 +192,26 @@ def _forest(study: Study) -> Iterator[Picture]:
     )
 
 
-def _spreads(study: Study) -> Iterator[Picture]:
+def _estimates(study: StudyFolder) -> dict[_Key, Estimate]:
+    """Mean difference and interval of every row of the comparison; nan is N.A."""
+    return {
+        (
+            context_key(study, row),
+            level_label(row["ego"]),
+            level_label(row["treatment"]),
+            str(row["situation"]),
+            str(row["metric"]),
+        ): Estimate(
+            float(row["mean_difference"]) if row["verdict"] != "N.A." else float("nan"),
+            float(row["ci_low"]),
+            float(row["ci_high"]),
+            shown=row["verdict"] in {"better", "worse"},
+        )
+        for row in study.comparison.to_dict("records")
+    }
+
+
+def _spreads(study: StudyFolder) -> Iterator[Picture]:
     cells = [
         (context, label, cell)
         for context in contexts(study)
@@ -218,13 +240,13 @@ def _spreads(study: Study) -> Iterator[Picture]:
         )
 
 
-def _spread(study: Study, name: str, cells: Sequence[int]) -> DistributionColumn:
+def _spread(study: StudyFolder, name: str, cells: Sequence[int]) -> DistributionColumn:
     values = _by_cell(study, name)
     quantity = metric(name)
     return DistributionColumn(quantity.label, quantity.unit, [values[cell] for cell in cells])
 
 
-def _by_cell(study: Study, name: str) -> dict[int, NDArray[np.float64]]:
+def _by_cell(study: StudyFolder, name: str) -> dict[int, NDArray[np.float64]]:
     """A metric's finite numbers of every cell."""
     numbers = pd.to_numeric(study.runs[name], errors="coerce").to_numpy(float)
     cell = study.runs["cell"].to_numpy()
@@ -232,14 +254,14 @@ def _by_cell(study: Study, name: str) -> dict[int, NDArray[np.float64]]:
     return {c.number: numbers[kept & (cell == c.number)] for c in study.design.cells}
 
 
-def _trade_off(study: Study) -> Iterator[Picture]:
+def _trade_off(study: StudyFolder) -> Iterator[Picture]:
     times = _by_cell(study, "completion_time")
     name = "completion_time" if any(v.size for v in times.values()) else "total_wait"
     x, y = _by_cell(study, name), _by_cell(study, "minimum_clearance")
     confidence = study.definition.comparison.confidence
     points = [
         TradeOffPoint(
-            _tag(context), label, float(x[cell].mean()), float(y[cell].mean()),
+            " / ".join(context.key), label, float(x[cell].mean()), float(y[cell].mean()),
             mean_interval(x[cell], confidence), mean_interval(y[cell], confidence),
         )
         for context in contexts(study)
@@ -272,10 +294,6 @@ def _trade_off(study: Study) -> Iterator[Picture]:
             y_label=(f"Mean {clearance.label}", clearance.unit),
         ),
     )
-
-
-def _tag(context: Context) -> str:
-    return " / ".join(context.levels.values())
 
 
 def mean_interval(values: NDArray[np.float64], confidence: float) -> tuple[float, float]:

@@ -1,26 +1,26 @@
-"""Numbers from the literature that a study may be shown beside."""
+"""Numbers from the literature with which a report compares those of the study."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
-from giveway.reports.study import (
+from giveway.reports.labels import (
     baseline_label,
     contexts,
     level_label,
-    short_name,
     treatment_labels,
 )
-from giveway.reports.tables import Cell, Table
+from giveway.reports.table import Cell, Table
 from giveway.reports.wording import digits_for, interval, number
+from giveway.studies.contexts import short_name
 from giveway.studies.statistics import PUBLISHED, TABLE_2_COLUMNS, table2
 from giveway.studies.statistics.yang2019 import METRIC_OF
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from giveway.reports.study import Study
+    from giveway.studies.folder import StudyFolder
 SOURCE = "Yang & Özgüner 2019"
 DENSITY = "crowd.pedestrians"
 TREATMENT, BASELINE = "mpc-paper", "pid-paper"
@@ -29,15 +29,16 @@ Key = tuple[tuple[str, ...], str, str, str]
 """Context, treatment, situation, metric."""
 
 
-def published_numbers(study: Study) -> dict[Key, float]:
-    """Table 2 of Yang & Özgüner 2019 where the study asks for it and compares what they did."""
+def published_numbers(study: StudyFolder) -> dict[Key, float]:
+    """Table 2 of Yang & Özgüner 2019, if the study asks for it and compares the same levels."""
     compares = TREATMENT in treatment_labels(study) and baseline_label(study) == BASELINE
     if study.definition.reference != "yang2019" or not compares:
         return {}
     found: dict[Key, float] = {}
     for context in contexts(study):
+        level = context.levels.get(DENSITY)
         for (pedestrians, situation), mean in PUBLISHED.items():
-            if context.levels.get(DENSITY) == str(pedestrians) and math.isfinite(mean):
+            if level is not None and level.label == str(pedestrians) and math.isfinite(mean):
                 found[context.key, TREATMENT, situation, METRIC_OF[situation]] = mean
     return found
 
@@ -49,7 +50,7 @@ _WORDS = {
 }
 
 
-def published_frame(study: Study) -> pd.DataFrame | None:
+def published_frame(study: StudyFolder) -> pd.DataFrame | None:
     """Table 2 as ``table2`` gives it; None where the study names no such reference."""
     if study.definition.reference != "yang2019":
         return None
@@ -58,7 +59,7 @@ def published_frame(study: Study) -> pd.DataFrame | None:
 
 
 def published_table(frame: pd.DataFrame) -> Table:
-    """Ours beside theirs: a row per number of pedestrians and situation."""
+    """Published and own numbers: a row per number of pedestrians and situation."""
     known = {column.name for column in TABLE_2_COLUMNS}
     others = [name for name in frame.columns if name not in known]
     headings = [*map(short_name, others), "pedestrians", "situation", "quantity", SOURCE, "giveway"]

@@ -1,23 +1,24 @@
-"""A study's frames as tables for people: words for names, units, digits that mean something."""
+"""A study's frames as tables to read: names in words, units, as many digits as mean something."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
-from giveway.reports.study import contexts, level_label, short_name
+from giveway.reports.labels import level_label
+from giveway.reports.table import Cell, Table, number_cell, verdict_cell, whole_cell
 from giveway.reports.wording import digits_for, interval, number, pretty_unit, quantity, share
+from giveway.studies.contexts import other_factors, short_name
 from giveway.studies.statistics import METRICS, metric
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping
 
     from giveway.reports.choice import WorstRun
-    from giveway.reports.study import Study
+    from giveway.studies.folder import StudyFolder
 
 SHOWN_IN_CELLS = (
     "completion_time",
@@ -30,77 +31,18 @@ SHOWN_IN_CELLS = (
 MOST_FAILURES = 200
 
 
-@dataclass(frozen=True)
-class Cell:
-    """One cell of a table.
-
-    Attributes:
-        text: what it says.
-        kind: class of its look: number, better, worse, none, na, code.
-        link: of the text; relative to the report.
-    """
-
-    text: str
-    kind: str = ""
-    link: str = ""
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table of the report.
-
-    Attributes:
-        name: its id in the page.
-        caption: what it shows.
-        headings: of the columns; those of numbers are told by their cells.
-        rows: of cells, as many as headings.
-        filters: columns by whose values rows can be chosen.
-        note: beneath it.
-    """
-
-    name: str
-    caption: str
-    headings: Sequence[str]
-    rows: Sequence[Sequence[Cell]]
-    filters: tuple[int, ...] = ()
-    note: str = ""
-
-    @property
-    def numeric(self) -> list[bool]:
-        """Which columns hold numbers."""
-        return [
-            bool(self.rows) and all(row[k].kind in {"number", "na"} for row in self.rows)
-            for k in range(len(self.headings))
-        ]
-
-
-def _number(value: float, digits: int = 2) -> Cell:
-    return Cell(number(value, digits), "number" if math.isfinite(value) else "na")
-
-
-def _whole(value: object) -> Cell:
-    return Cell(f"{int(str(value).partition('.')[0]):,}", "number")
-
-
-def verdict_cell(verdict: str) -> Cell:
-    """Better, worse, no difference shown, N.A., in its colour."""
-    kinds = {"better": "better", "worse": "worse"}
-    return Cell(verdict, kinds.get(verdict, "none"))
-
-
-def comparison_table(study: Study) -> Table:
+def comparison_table(study: StudyFolder) -> Table:
     """The whole comparison."""
     frame = study.comparison
-    factors = [name for name in _factors(study) if name in frame.columns]
-    who = [name for name in ("ego", "treatment") if frame[name].nunique() > 1]
-    headings = [*(short_name(name) for name in factors), *who, "situation", "metric"]
+    names = _distinguishing(study, frame)
+    headings = [*map(short_name, names), "situation", "metric"]
     filters = tuple(range(len(headings)))
     verdict = len(headings) + 2
     headings += ["mean difference", "interval", "verdict", "pairs", "share", "treatment mean"]
     headings += ["baseline mean", "median difference", "q"]
     rows = [
         [
-            *(_level(row[name]) for name in (*factors, *who)),
+            *(_level(row[name]) for name in names),
             Cell(row["situation"]),
             Cell(_with_unit(row["metric"]), "text"),
             *_numbers(row),
@@ -120,14 +62,14 @@ def comparison_table(study: Study) -> Table:
 def _numbers(row: Mapping[Any, Any]) -> list[Cell]:
     digits = digits_for(row["ci_high"] - row["ci_low"])
     return [
-        _number(row["mean_difference"], digits),
+        number_cell(row["mean_difference"], digits),
         Cell(interval(row["ci_low"], row["ci_high"])),
         verdict_cell(str(row["verdict"])),
-        _whole(row["n"]),
+        whole_cell(row["n"]),
         Cell(share(row["share"]), "number"),
-        _number(row["treatment_mean"], max(digits, 2)),
-        _number(row["baseline_mean"], max(digits, 2)),
-        _number(row["median_difference"], digits),
+        number_cell(row["treatment_mean"], max(digits, 2)),
+        number_cell(row["baseline_mean"], max(digits, 2)),
+        number_cell(row["median_difference"], digits),
         _probability(row["q_value"]),
     ]
 
@@ -135,15 +77,15 @@ def _numbers(row: Mapping[Any, Any]) -> list[Cell]:
 def _probability(value: float) -> Cell:
     if math.isfinite(value) and value < 0.001:
         return Cell("< 0.001", "number")
-    return _number(value, 3)
+    return number_cell(value, 3)
 
 
-def glance_table(study: Study) -> Table:
+def glance_table(study: StudyFolder) -> Table:
     """Every metric in the general situation: a row each, a column per context and treatment."""
     frame = study.comparison[study.comparison["situation"] == "general"]
     several = frame["treatment"].nunique() > 1
     egos = frame["ego"].nunique() > 1
-    names = _factors(study)
+    names = other_factors(study.design, study.definition.comparison)
     columns: dict[str, dict[str, Mapping[Any, Any]]] = {}
     for row in frame.to_dict("records"):
         parts = [f"{short_name(name)} = {level_label(row[name])}" for name in names]
@@ -173,11 +115,10 @@ def _glance(row: Mapping[Any, Any] | None) -> Cell:
                 verdict_cell(verdict).kind)  # fmt: skip
 
 
-def situations_table(study: Study) -> Table:
+def situations_table(study: StudyFolder) -> Table:
     """How often both, one or neither stopped."""
     frame = study.situations
-    factors = [name for name in _factors(study) if name in frame.columns]
-    who = [name for name in ("ego", "treatment") if frame[name].nunique() > 1]
+    names = _distinguishing(study, frame)
     shares = {
         "share_both_stop": "both stop",
         "share_neither_stops": "neither stops",
@@ -186,15 +127,15 @@ def situations_table(study: Study) -> Table:
     }
     rows = [
         [
-            *(_level(row[name]) for name in (*factors, *who)),
-            _whole(row["pairs"]),
+            *(_level(row[name]) for name in names),
+            whole_cell(row["pairs"]),
             *(Cell(share(row[name]), "number") for name in shares),
-            _whole(row["lost"]),
-            _whole(row["incomplete"]),
+            whole_cell(row["lost"]),
+            whole_cell(row["incomplete"]),
         ]
         for row in frame.to_dict("records")
     ]
-    headings = [*(short_name(name) for name in factors), *who, "pairs", *shares.values()]
+    headings = [*map(short_name, names), "pairs", *shares.values()]
     return Table(
         name="situations-table",
         caption="How often the vehicle had to stop",
@@ -204,7 +145,7 @@ def situations_table(study: Study) -> Table:
     )
 
 
-def cells_table(study: Study) -> Table:
+def cells_table(study: StudyFolder) -> Table:
     """Each cell: its levels, its runs, means of the main metrics."""
     runs = study.runs
     names = [factor.name for factor in study.design.factors]
@@ -217,10 +158,10 @@ def cells_table(study: Study) -> Table:
         lost = here["ending"].isin(["failed", "crashed"])
         rows.append(
             [
-                _whole(cell.number),
+                whole_cell(cell.number),
                 *(_level(cell.levels[name].label) for name in names),
-                _whole(here["run"].nunique()),
-                _whole(int(lost.sum())),
+                whole_cell(here["run"].nunique()),
+                whole_cell(int(lost.sum())),
                 Cell(share(_completed(here[~lost])), "number"),
                 *(_mean(here[name]) for name in shown),
             ]
@@ -241,7 +182,7 @@ def _completed(rows: pd.DataFrame) -> float:
 def _mean(column: pd.Series) -> Cell:
     values = pd.to_numeric(column, errors="coerce").to_numpy(float)
     values = values[np.isfinite(values)]
-    return _number(float(values.mean()) if values.size else math.nan)
+    return number_cell(float(values.mean()) if values.size else math.nan)
 
 
 def worst_tables(worst: Iterable[WorstRun], replays: Mapping[str, str]) -> list[Table]:
@@ -271,7 +212,7 @@ def worst_tables(worst: Iterable[WorstRun], replays: Mapping[str, str]) -> list[
     return tables
 
 
-def failures_table(study: Study) -> Table:
+def failures_table(study: StudyFolder) -> Table:
     """Runs without a result, why, and how to make them again."""
     frame = study.failures
     rows = [
@@ -299,8 +240,11 @@ def settings_table(name: str, caption: str, values: Mapping[str, object]) -> Tab
     return Table(name, caption, ["name", "value"], rows)
 
 
-def _factors(study: Study) -> list[str]:
-    return list(contexts(study)[0].levels) if study.design.cells else []
+def _distinguishing(study: StudyFolder, frame: pd.DataFrame) -> list[str]:
+    """The columns that tell the rows of ``frame`` apart, but for situation and metric."""
+    names = other_factors(study.design, study.definition.comparison)
+    names = [name for name in names if name in frame.columns]
+    return names + [name for name in ("ego", "treatment") if frame[name].nunique() > 1]
 
 
 def _level(value: object) -> Cell:

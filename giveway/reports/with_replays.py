@@ -1,4 +1,4 @@
-"""The report of a study with the runs that it points at: made again, and played on a page."""
+"""The report of a study, with the runs that it shows made again and played on pages."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def write_report_of(
     """Write figures, replays and ``report.html`` into the study's folder.
 
     Args:
-        study: whose.
-        replays: make the runs that the report points at once more, for pages that play them and
+        study: its folder.
+        replays: make the runs that the report shows once more, for pages that play them and
             for the examples of speed and gap.
         tell: takes one line at each step.
 
@@ -51,14 +51,14 @@ def write_report_of(
 
 
 def _replay(study: StudyFolder, run: str) -> Path | None:
-    """The page that plays a run; None where the run cannot be made any more."""
+    """Write the page that plays a run; None where the run cannot be made any more."""
     with tempfile.TemporaryDirectory(prefix="giveway-replay-") as temporary:
         folder = Path(temporary) / run
         try:
             checked = checked_run(study, run, predictions=True)
             rerun(study, run, folder, checked=checked, pictures=False)
         except GivewayError:
-            return None  # its scenario has changed or gone: the report goes without
+            return None  # its scenario has changed or is missing
         target = study.path / REPLAYS / f"{run}.html"
         target.parent.mkdir(exist_ok=True)
         return write_replay(folder, target)

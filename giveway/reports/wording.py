@@ -6,14 +6,28 @@ import math
 
 from giveway.figures.study_rows import digits_for, number, pretty_unit
 
-__all__ = ["digits_for", "interval", "number", "pretty_unit", "quantity", "share", "shown_ego"]
+__all__ = [
+    "counted",
+    "digits_for",
+    "interval",
+    "number",
+    "pretty_unit",
+    "quantity",
+    "share",
+    "shown_ego",
+]
 
 _USUAL_EGO = frozenset({"", "ego"})
 
 
 def shown_ego(ego: object) -> str:
-    """The ego's id, where it says something."""
+    """The ego's id in brackets; nothing for the usual one."""
     return "" if str(ego) in _USUAL_EGO else f" (ego {ego})"
+
+
+def counted(count: int, noun: str) -> str:
+    """A number and what it counts: "1 run", "2,000 runs"."""
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
 
 
 def quantity(value: float, unit: str, digits: int = 2) -> str:

@@ -1,4 +1,4 @@
-"""Files of a study: there whole, or not at all."""
+"""Files of a study, which are written whole or not at all."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from giveway.errors import ResultsError
 if TYPE_CHECKING:
     from pathlib import Path
 
-_UNFINISHED = ".{}.new"  # what a process that is killed while it writes may leave
+_UNFINISHED = ".{}.new"  # of a file that is being written; it stays if the process is killed
 
 
-def write_whole(path: Path, text: str, *, durable: bool = False) -> None:
-    """Write a file beside its place, and rename it: whenever we die, it is the old or the new one.
+def write_atomically(path: Path, text: str, *, durable: bool = False) -> None:
+    """Write a file under another name and rename it: a kill leaves the old file or the new one.
 
     Args:
-        path: of the file; its folder is made if there is none.
-        text: of it; line ends stay as they are.
-        durable: also give it to the disk first, lest the machine die.
+        path: of the file; its folder is made if it does not exist.
+        text: its content; line ends are kept.
+        durable: also flush it to the disk, so that it survives a crash of the machine.
 
     Raises:
         ResultsError: the disk is full or not writable.
@@ -42,7 +42,7 @@ def write_whole(path: Path, text: str, *, durable: bool = False) -> None:
 
 
 def finished_name(name: str) -> str:
-    """The name of the file that ``name``, if it is an unfinished one, was to become."""
+    """The final name of a file that was being written; other names are returned unchanged."""
     before, after = _UNFINISHED.split("{}")
     unfinished = name.startswith(before) and name.endswith(after)
     return name[len(before) : -len(after)] if unfinished else name

@@ -1,10 +1,16 @@
-"""The columns of the tables of differences, beside those of the context's factors."""
+"""The columns of the tables of means and differences; those of the factors come before them."""
 
 from __future__ import annotations
 
 from giveway.records.columns import Column
 
-_WHO = (
+
+def numbers_of(columns: tuple[Column, ...]) -> list[str]:
+    """The names of those columns that hold numbers that need not be whole."""
+    return [column.name for column in columns if column.type == "number"]
+
+
+_COMPARED = (
     Column("ego", "string", None, "SUMO id of the ego; empty: the run has none"),
     Column("treatment", "string", None, "the level that is compared"),
     Column("baseline", "string", None, "the level that is subtracted"),
@@ -16,7 +22,7 @@ _METRIC = (
 )
 
 COMPARISON_COLUMNS = (
-    *_WHO,
+    *_COMPARED,
     _SITUATION,
     *_METRIC,
     Column("n", "integer", None, "pairs in the situation with a number on both sides"),
@@ -35,7 +41,7 @@ COMPARISON_COLUMNS = (
 )
 
 SITUATION_COLUMNS = (
-    *_WHO,
+    *_COMPARED,
     Column("pairs", "integer", None, "seeds that both levels were run with"),
     Column("share_both_stop", "number", None, "of the pairs that are not lost"),
     Column("share_neither_stops", "number", None, "of the pairs that are not lost"),
@@ -60,7 +66,7 @@ LEVEL_COLUMNS = (
 )
 
 PRECISION_COLUMNS = (
-    *_WHO,
+    *_COMPARED,
     _SITUATION,
     *_METRIC,
     Column("seeds", "integer", None, "of each cell, the first ones, that were looked at"),

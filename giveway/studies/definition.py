@@ -88,7 +88,7 @@ class StudyDefinition(Section):
     precision: Precision | None = None
 
     def placed(self, settings: dict[str, Any]) -> dict[str, Any]:
-        """``settings`` in which those files that exist in the study's folder have their path."""
+        """``settings`` with the paths of those files that exist in the study's folder."""
         return anchored(deepcopy(settings), Path(self.folder))
 
     @model_validator(mode="after")
@@ -112,7 +112,7 @@ def bundled_studies() -> tuple[str, ...]:
 
 
 def find_study(name: str | Path) -> Path:
-    """The file of a bundled study, or of one's own.
+    """The file of a bundled study, or the user's own .toml file.
 
     Raises:
         ConfigError: there is none.
@@ -150,7 +150,7 @@ def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
 
     Args:
         text: of the file.
-        origin: its name, for messages.
+        origin: name of the file, for messages.
         folder: what relative paths in it are relative to.
 
     Raises:
@@ -168,7 +168,7 @@ def changed(definition: StudyDefinition, changes: dict[str, Any], origin: str) -
     """The study with some keys changed.
 
     Raises:
-        ConfigError: it no longer is one.
+        ConfigError: the result is not a valid study.
     """
     return _validated(definition.model_dump(exclude_unset=True) | changes, origin)
 
@@ -181,7 +181,7 @@ def _validated(values: dict[str, Any], origin: str) -> StudyDefinition:
 
 
 def _folder_of(values: dict[str, Any], folder: Path) -> dict[str, str]:
-    """The folder of relative file names, as far as there are any: else it does not matter."""
+    """The folder that relative file names refer to, if the study names any file."""
     named = values.get("folder", "")
     varied = (values.get("run"), values.get("factors"))
     if isinstance(named, str) and (named or any(_holds_file_of(folder, v) for v in varied)):
@@ -190,7 +190,7 @@ def _folder_of(values: dict[str, Any], folder: Path) -> dict[str, str]:
 
 
 def _holds_file_of(folder: Path, values: Any) -> bool:
-    """Whether some text in ``values`` names a file or folder in ``folder``."""
+    """Whether a text in ``values`` names a file or folder in ``folder``."""
     if isinstance(values, dict):
         return any(_holds_file_of(folder, value) for value in values.values())
     if isinstance(values, list):
@@ -206,8 +206,8 @@ def _holds_file_of(folder: Path, values: Any) -> bool:
 def dump_definition(definition: StudyDefinition) -> str:
     """The study as TOML, from which :func:`parse_definition` makes the same cells.
 
-    Factors stay in their order, and so do the numbers of the cells: TOML tables would have to
-    stand behind the plain lists. Hence one line per level.
+    Factors keep their order, on which the numbers of the cells depend. TOML wants tables after
+    plain lists, which would change that order; hence each level is an inline table.
     """
     values = definition.model_dump(mode="json", exclude_none=True)
     document = tomlkit.document()

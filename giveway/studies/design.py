@@ -54,7 +54,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Factor:
-    """What is varied.
+    """Something that the study varies.
 
     Attributes:
         name: an option, as ``crowd.pedestrians``, or a name of the user's.
@@ -147,7 +147,7 @@ def design(definition: StudyDefinition, origin: str) -> Design:
 
 
 def label_of(value: object) -> str:
-    """How a value is written in a label; nothing is "none", for tables would lose it."""
+    """How a value is written in a label; an empty one is "none", as tables drop empty texts."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, list | tuple):
@@ -156,7 +156,7 @@ def label_of(value: object) -> str:
 
 
 def _require_no_seed(settings: dict[str, Any], place: str) -> None:
-    """Seeds are what makes pairs; a cell cannot have its own."""
+    """Make sure that no cell sets a seed of its own: runs are paired by their seeds."""
     if "seed" in settings:
         msg = (
             f"{place} seed = {settings['seed']!r}: every cell is run with the same seeds; leave it "

@@ -42,7 +42,7 @@ _RUN = re.compile(r"c([1-9][0-9]*)-s(0|[1-9][0-9]*)")
 
 
 class StudyFolder:
-    """What a study has left, or has so far.
+    """What a study has written, or a study that is running has written so far.
 
     Args:
         path: its folder.
@@ -54,7 +54,7 @@ class StudyFolder:
         manifest: software, input files, the cells' digests.
 
     Raises:
-        ResultsError: there is no study, or one that was killed while it began.
+        ResultsError: there is no study, or one that was killed before it had begun.
     """
 
     path: Path
@@ -95,13 +95,13 @@ class StudyFolder:
 
     @property
     def seeds(self) -> range:
-        """The seeds that were asked for, or were enough."""
+        """The seeds of every cell: all that were asked for, or as many as were enough."""
         first = self.definition.first_seed
         return range(first, first + self._seeds)
 
     @property
     def complete(self) -> bool:
-        """Whether the tables there are those of the whole study."""
+        """Whether the tables in the folder are those of all runs."""
         return bool(self.manifest.get("complete"))
 
     @property
@@ -191,7 +191,7 @@ class StudyFolder:
         raise ResultsError(msg)
 
     def record(self, run: str) -> RunRecord | None:
-        """What is kept of a run; None: it has not been made.
+        """The record of a run; None if the run has not been made.
 
         Raises:
             ResultsError: this study has no such run.
@@ -203,7 +203,7 @@ class StudyFolder:
         return None if record is None else record.called(run_id(cell.number, seed))
 
     def _kept_comparison(self) -> pd.DataFrame | None:
-        """The table that takes long to make, as it was written; None: not that of all runs."""
+        """``comparison.csv``, which takes long to compute; None if it is not that of all runs."""
         path = self.path / "comparison.csv"
         if not self.complete or not path.is_file():
             return None
@@ -215,5 +215,5 @@ class StudyFolder:
             )
         except (OSError, ValueError):
             return None
-        empty = dict.fromkeys(texts & set(frame.columns), "")  # an ego has no name, a count no unit
+        empty = dict.fromkeys(texts & set(frame.columns), "")  # no ego, or no unit
         return frame.fillna(empty)

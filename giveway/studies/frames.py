@@ -89,7 +89,7 @@ def runs_frame(records: Iterable[tuple[Cell, int, RunRecord]], design: Design) -
 
 
 def _typed(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
-    """Numbers are numbers also where some are missing: as floats, with nan for those."""
+    """``frame`` with typed columns; whole numbers become floats where some are missing (nan)."""
     plain: dict[str, Any] = {"integer": "int64", "boolean": "bool"}
     for column in columns:
         if column.type == "number" or (column.type in plain and frame[column.name].isna().any()):
@@ -99,8 +99,8 @@ def _typed(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
     return frame
 
 
-def written(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
-    """``frame`` as a CSV file shows it: whole numbers whole, also beside missing ones."""
+def as_written(frame: pd.DataFrame, columns: Iterable[Column]) -> pd.DataFrame:
+    """``frame`` as a CSV file shows it: whole numbers stay whole where others are missing."""
     nullable = {"integer": "Int64", "boolean": "boolean"}
     kinds = {c.name: nullable[c.type] for c in columns if c.type in nullable}
     present = {name: kind for name, kind in kinds.items() if name in frame.columns}
@@ -164,7 +164,7 @@ def failures_frame(records: Iterable[tuple[Cell, int, RunRecord]], command: str)
 
     Args:
         records: with the cell and the seed of each; those that did not fail are left out.
-        command: that makes a run of this study again, but for the run's id.
+        command: the command that makes a run of this study again, without the run's id.
     """
     rows = [
         {

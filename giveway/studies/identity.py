@@ -34,22 +34,22 @@ _NAMING_FILES = (
     ("crowd", "preset"),
     ("perception", "preset"),
 )
-_ROWS = frozenset({"studies/execution/perform.py", "studies/record.py"})  # but for what makes them
-_NO_MATTER = frozenset({"platform", "machine", "pandas", "python"})
+_ROWS = frozenset({"studies/execution/perform.py", "studies/record.py"})  # make the rows
+_IRRELEVANT_VERSIONS = frozenset({"platform", "machine", "pandas", "python"})
 
 
 @functools.cache
 def software_identity() -> str:
     """Changes with whatever code can change a number: giveway's, and the libraries' versions."""
-    house = Path(__file__).resolve().parent.parent.parent
+    root = Path(__file__).resolve().parent.parent.parent
     digest = hashlib.sha256()
     for room in ("giveway", *ROOMS):
-        for path in sorted((house / room).rglob("*.py")):
-            place = path.relative_to(house / room)
-            aside = room == "giveway" and place.parts[0] in _NOT_NUMBERS
-            if not aside or place.as_posix() in _ROWS:
+        for path in sorted((root / room).rglob("*.py")):
+            place = path.relative_to(root / room)
+            excluded = room == "giveway" and place.parts[0] in _NOT_NUMBERS
+            if not excluded or place.as_posix() in _ROWS:
                 digest.update(str(place.as_posix()).encode() + path.read_bytes())
-    versions = {k: v for k, v in software_versions().items() if k not in _NO_MATTER}
+    versions = {k: v for k, v in software_versions().items() if k not in _IRRELEVANT_VERSIONS}
     versions["python"] = ".".join(platform.python_version_tuple()[:2])
     digest.update(json.dumps(versions, sort_keys=True).encode())
     return digest.hexdigest()[:16]
@@ -86,7 +86,7 @@ def run_key(digest: str, seed: int) -> str:
 
 
 def require_same(task: Task) -> None:
-    """Make sure that this process would compute what was planned: elsewhere, or much later.
+    """Make sure that this process computes what was planned, perhaps elsewhere or much later.
 
     Raises:
         ConfigError: another version of giveway or a library runs here, or a file differs.
@@ -103,7 +103,7 @@ def require_same(task: Task) -> None:
     try:
         files = {f"scenario {name}": file for name, file in _scenario_files(find(config.scenario))}
         files |= dict(_own_files(config))
-    except (ScenarioError, GivewayError):  # what names the files is not here
+    except (ScenarioError, GivewayError):  # the file that names the inputs is missing
         files = {}
     found = {name: _hash(file) for name, file in files.items() if file.is_file()}
     for name, expected in task.inputs.items():
@@ -129,7 +129,7 @@ def _scenario_files_of(scenario: Scenario, _stamps: object) -> tuple[tuple[str, 
 
 
 def _own_files(config: RunConfig) -> list[tuple[str, Path]]:
-    """What a run reads beside its scenario."""
+    """The files that a run reads apart from its scenario."""
     return [*_vehicle_files(config), *_preset_files(config), *_option_files(config)]
 
 
@@ -140,11 +140,11 @@ def _preset_files(config: RunConfig) -> list[tuple[str, Path]]:
         (f"preset that {ego.ego_id} predicts with", ego.perception.preset)
         for ego in config.each_ego()
     ]
-    return [(who, Path(preset)) for who, preset in named if is_preset_file(preset)]
+    return [(name, Path(preset)) for name, preset in named if is_preset_file(preset)]
 
 
 def _option_files(config: RunConfig) -> list[tuple[str, Path]]:
-    """What ``sumo.options`` name, such as additional files."""
+    """The files that ``sumo.options`` name, such as additional files."""
     named = [
         (option, Path(piece.strip()))
         for option, value in parse_options(config.sumo.options).items()
@@ -168,12 +168,12 @@ def _vehicle_files(config: RunConfig) -> list[tuple[str, Path]]:
 
 
 def _hash(file: Path) -> str:
-    """Its SHA-256; it is read again only when it has changed."""
+    """The file's SHA-256; it is read again only when it has changed."""
     return _hash_of(str(file.absolute()), _stamp(file))
 
 
 def _stamp(file: Path) -> tuple[int, int]:
-    """Changes with the file."""
+    """Time and size, which change with the file."""
     status = file.stat()
     return status.st_mtime_ns, status.st_size
 

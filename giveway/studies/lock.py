@@ -1,4 +1,4 @@
-"""A study's folder, claimed: nobody else works there, and nothing of anybody else's is lost."""
+"""Reserving a study's folder: one process works there, and foreign files are never removed."""
 
 from __future__ import annotations
 
@@ -23,24 +23,26 @@ if TYPE_CHECKING:
 
 LOCK = ".lock"
 REPORT = "report.html"
-_OF_THE_DATA = frozenset({*(f"{name}.csv" for name in TABLES), PACKAGE, REPORT})
-_OURS = frozenset({DEFINITION, MANIFEST, RECORDS, "figures", "replays", "reruns"}) | _OF_THE_DATA
+_DERIVED_FILES = frozenset({*(f"{name}.csv" for name in TABLES), PACKAGE, REPORT})
+_STUDY_FILES = (
+    frozenset({DEFINITION, MANIFEST, RECORDS, "figures", "replays", "reruns"}) | _DERIVED_FILES
+)
 
 
 @contextmanager
-def claimed(out: Path, study: str, options: StudyOptions) -> Iterator[None]:
-    """Make sure that the study may go to ``out``, and keep others away; nothing in it is changed.
+def reserved(out: Path, study: str, options: StudyOptions) -> Iterator[None]:
+    """Make sure that a study may be written to ``out``, and lock the folder; it is not changed.
 
     Args:
-        out: the folder; made if there is none.
+        out: the folder; it is made if it does not exist.
         study: name of the study.
         options: whether it is to be resumed or replaced.
 
     Raises:
         ResultsError: it holds a study and neither resume nor force is given, or another study, or
-            something else; another process works there; it cannot be made.
+            something else; another process works there; the folder cannot be made.
     """
-    _require_free(out, study, options)  # before anything of ours is put into a stranger's folder
+    _require_free(out, study, options)  # before a lock is put into a foreign folder
     try:
         out.mkdir(parents=True, exist_ok=True)
         lock = filelock.FileLock(out / LOCK, timeout=0)
@@ -52,7 +54,7 @@ def claimed(out: Path, study: str, options: StudyOptions) -> Iterator[None]:
         msg = f"{out}: cannot be written ({error.strerror}); name another folder with --out"
         raise ResultsError(msg) from error
     try:
-        _require_free(out, study, options)  # another may have come, and gone, meanwhile
+        _require_free(out, study, options)  # another process may have written there before
         yield
     finally:
         lock.release()
@@ -65,8 +67,9 @@ def _require_free(out: Path, study: str, options: StudyOptions) -> None:
         msg = f"{out}: is a file; expected a folder for the study, name another with --out"
         raise ResultsError(msg)
     present = {path.name for path in out.iterdir()} - {LOCK}
-    foreign = sorted(name for name in present if finished_name(name) not in _OURS)
-    if foreign and not (options.resume and present & _OURS):  # a note beside a study does no harm
+    foreign = sorted(name for name in present if finished_name(name) not in _STUDY_FILES)
+    beginning = not (options.resume and present & _STUDY_FILES)
+    if foreign and beginning:  # foreign files do not harm a study that goes on
         msg = (
             f"{out}: holds '{foreign[0]}', which no study of giveway wrote; name another folder "
             "with --out"
@@ -88,29 +91,29 @@ def _require_free(out: Path, study: str, options: StudyOptions) -> None:
 
 
 def _name_of(out: Path) -> str | None:
-    """The study that is there; None: none, or it does not say."""
+    """The name of the study in the folder; None if there is none or its manifest is broken."""
     try:
         return str(json.loads((out / MANIFEST).read_text(encoding="utf-8"))["study"])
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
 
-def clear(out: Path) -> None:
-    """Remove a study: everything of ours.
+def remove_study(out: Path) -> None:
+    """Remove every file of a study.
 
     Raises:
         ResultsError: something cannot be removed.
     """
-    _remove(out, _OURS)
+    _remove(out, _STUDY_FILES)
 
 
-def forget_tables(out: Path) -> None:
-    """Remove what was made from the records, for there will be others.
+def remove_derived_files(out: Path) -> None:
+    """Remove tables and report, which were made from fewer records than there will be.
 
     Raises:
         ResultsError: something cannot be removed.
     """
-    _remove(out, _OF_THE_DATA)
+    _remove(out, _DERIVED_FILES)
 
 
 def _remove(out: Path, names: frozenset[str]) -> None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StudyOptions:
-    """What a user asks for beside the study itself.
+    """What a user asks for apart from the study itself.
 
     Attributes:
         jobs: worker processes on this machine; None: one per processor that we may use.
@@ -40,8 +40,10 @@ class StudyOptions:
 
     def __post_init__(self) -> None:
         if self.resume and self.force:
-            msg = "--resume and --force: contradict each other; expected one: keep the study, or "
-            msg += "replace it"
+            msg = (
+                "--resume and --force: contradict each other; expected one: keep the study, or "
+                "replace it"
+            )
             raise ConfigError(msg)
         if self.cluster is not None and self.jobs is not None:
             msg = (
@@ -51,7 +53,7 @@ class StudyOptions:
             raise ConfigError(msg)
 
     def executor(self) -> Executor:
-        """Who computes.
+        """What makes the runs.
 
         Raises:
             WorkerError: a number or an address cannot be used.

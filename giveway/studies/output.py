@@ -1,4 +1,4 @@
-"""The tables of a study as files: CSV, each whole, and the data package that describes them."""
+"""The tables of a study as CSV files, and the data package that describes them."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ import numpy as np
 
 from giveway.records.columns import Column
 from giveway.results.folder import package_of
-from giveway.studies.atomic_files import write_whole
+from giveway.studies.atomic_files import write_atomically
+from giveway.studies.columns import COMPARISON_COLUMNS, LEVEL_COLUMNS, SITUATION_COLUMNS
 from giveway.studies.frames import (
     COMPUTING_COLUMNS,
     EXECUTION_COLUMNS,
     FAILURE_COLUMNS,
+    as_written,
     runs_columns,
-    written,
 )
+from giveway.studies.statistics.rounding import tabulated
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,9 +38,13 @@ TABLES = (
     "failures",
 )
 PACKAGE = "datapackage.json"
-_LONG = frozenset({"comparison", "levels", "situations"})  # these take their time
-_DECIMALS = 6
-_SIGNIFICANT = frozenset({"p_value", "q_value"})  # of these the first six digits count
+_LONG = frozenset({"comparison", "levels", "situations"})  # these take some seconds
+_COUNTS = (
+    Column("runs", "integer", None, "runs of the cell that are there"),
+    Column("failed", "integer", None, "of these without a result"),
+)
+_COUNTED = (*_COUNTS, *COMPUTING_COLUMNS, *COMPARISON_COLUMNS, *SITUATION_COLUMNS)
+_DESCRIBED: dict[str, tuple[Column, ...]] = {"levels": LEVEL_COLUMNS}
 _TYPES: dict[str, Any] = {"b": "boolean", "i": "integer", "f": "number"}
 
 
@@ -46,8 +52,8 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
     """Write the tables into the study's folder.
 
     Args:
-        study: whose.
-        whole: the comparison too, which takes some seconds.
+        study: its folder.
+        whole: also those tables that take some seconds to compute.
 
     Raises:
         ResultsError: the disk is full or not writable.
@@ -55,14 +61,15 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
     names = [name for name in TABLES if whole or name not in _LONG]
     columns = {name: _columns(study, name) for name in names}
     for name in names:
-        frame = written(getattr(study, name), columns[name])
-        text = _rounded(frame).to_csv(index=False, lineterminator="\n")
-        write_whole(study.path / f"{name}.csv", text)
+        frame = as_written(getattr(study, name), columns[name])
+        floats = [column for column in frame.columns if frame[column].dtype == np.float64]
+        text = tabulated(frame, floats).to_csv(index=False, lineterminator="\n")
+        write_atomically(study.path / f"{name}.csv", text)
     name = f"giveway-study-{study.definition.name}"
     title = study.definition.description or f"giveway study {study.definition.name}"
     package = package_of(name, title, columns)
     text = json.dumps(package, indent=2, ensure_ascii=False) + "\n"
-    write_whole(study.path / PACKAGE, text)
+    write_atomically(study.path / PACKAGE, text)
 
 
 def _columns(study: StudyFolder, name: str) -> Sequence[Column]:
@@ -74,39 +81,10 @@ def _columns(study: StudyFolder, name: str) -> Sequence[Column]:
         return FAILURE_COLUMNS
     frame: pd.DataFrame = getattr(study, name)
     known = {column.name: column for column in runs_columns(study.design)}
-    described = _described(name)
+    described = {column.name: column for column in _DESCRIBED.get(name, _COUNTED)}
     return [
         described.get(column)
         or known.get(column)
         or Column(column, _TYPES.get(frame[column].dtype.kind, "string"), None, column)
         for column in frame.columns
     ]
-
-
-def _described(name: str) -> dict[str, Column]:
-    from giveway.studies.statistics import COMPARISON_COLUMNS, LEVEL_COLUMNS, SITUATION_COLUMNS
-
-    if name == "levels":
-        return {c.name: c for c in LEVEL_COLUMNS}
-
-    counts = (
-        Column("runs", "integer", None, "runs of the cell that are there"),
-        Column("failed", "integer", None, "of these without a result"),
-    )
-    return {
-        c.name: c for c in (*counts, *COMPUTING_COLUMNS, *COMPARISON_COLUMNS, *SITUATION_COLUMNS)
-    }
-
-
-def _rounded(frame: pd.DataFrame) -> pd.DataFrame:
-    """Floats to six decimals, probabilities to six digits; no negative zeros."""
-    frame = frame.copy()
-    for name in frame.columns:
-        if frame[name].dtype != np.float64:
-            continue
-        values = frame[name].to_numpy()
-        if name in _SIGNIFICANT:
-            frame[name] = [float(f"{value:.6g}") for value in values]
-        else:
-            frame[name] = np.round(values, _DECIMALS) + 0.0
-    return frame

@@ -1,4 +1,4 @@
-"""Every run of a study, before any of them: its settings, its key, its order."""
+"""Planning a study: settings, key and order of every run, before any of them is made."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Plan:
         return range(first, first + self.definition.replications)
 
     def runs(self, seeds: range) -> Iterator[PlannedRun]:
-        """Every cell's run of one seed, then of the next: what is there is always paired."""
+        """The runs of all cells seed by seed, so that finished runs are always paired."""
         for seed in seeds:
             for planned in self.cells:
                 yield PlannedRun(planned, seed)

@@ -1,4 +1,4 @@
-"""What a study keeps of one run: its summary rows, or what became of it."""
+"""What a study keeps of one run: its summary rows, or why it has none."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def run_id(cell: int, seed: int) -> str:
 
 @dataclass(frozen=True)
 class Task:
-    """One run to be made, in whatever process, on whatever machine.
+    """One run to be made, in any process, on any machine.
 
     Attributes:
         run: id in its study, such as ``c2-s17`` (cell 2, seed 17).
@@ -39,12 +39,12 @@ class Task:
 
 @dataclass(frozen=True)
 class Computing:
-    """How a run was computed: all that may differ between two equal studies.
+    """How a run was computed, which may differ between two equal studies.
 
     Attributes:
         seconds: wall clock of the run, set-up and metrics included.
         attempts: how often it was tried.
-        worker: who did it: host and process id.
+        worker: host and process id.
         memory: resident set of the worker after the run [MB].
         control_median: of the time of one control step, prediction and controller [ms].
         control_max: the longest one [ms]; the run's first step is left out of both.
@@ -67,7 +67,7 @@ class RunRecord:
         key: content hash of everything that can change a number of it.
         ending: as in the summary: completed, time limit, ..., failed, crashed.
         rows: one per ego: the columns of ``summary.csv``; one row of the run's head without egos.
-        remarks: what is not as one may expect.
+        remarks: notes on what is unusual about the run.
         failure: one line: why it failed or crashed, and where; empty if it did not.
         computing: how it was computed.
     """

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from giveway.studies.record import RunRecord, Scalar
 
 _PERHAPS = "other software or scenario files since then? Compare its manifest.json"
-PREDICTIONS = 0.25  # [s] between two predicted positions that are kept, where they are
+PREDICTIONS = 0.25  # [s] between two predicted positions that are kept
 
 
 class OtherNumbersError(GivewayError):
@@ -63,7 +63,7 @@ def rerun(
     """Make one run of a study once more, in this process.
 
     Args:
-        study: whose.
+        study: its folder.
         run_id: such as ``c2-s17``.
         out: folder for its results; None writes nothing.
         checked: the run, where it is known already; None: as :func:`checked_run` gives it.

@@ -1,15 +1,14 @@
-"""The finished runs of a study on disk, one file each: there whole, or not at all."""
+"""The finished runs of a study on disk, one file each."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from giveway.errors import ResultsError
-from giveway.studies.atomic_files import write_whole
+from giveway.studies.atomic_files import write_atomically
 from giveway.studies.record import RunRecord
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
     from pathlib import Path
 
 RECORDS = "records"
@@ -18,9 +17,9 @@ RECORDS = "records"
 class RecordStore:
     """Records by key, in ``records/<first two letters>/<key>.json``.
 
-    A record is written beside its place, given to the disk and renamed: whenever the process or
-    the machine dies, a record that has its name is complete. Nobody else writes: a lock on the
-    study's folder sees to that.
+    A record is written under another name, flushed to the disk and renamed. A file with a
+    record's name is thus complete, even after a crash of the machine. A lock on the study's
+    folder makes sure that no other process writes.
 
     Args:
         folder: of the study.
@@ -35,8 +34,8 @@ class RecordStore:
     def get(self, key: str) -> RunRecord | None:
         """The record, or None: the run is yet to be made.
 
-        A file that cannot be understood, which only a failing disk or an editor leaves, counts as
-        not being there.
+        A file that cannot be understood, as a failing disk or an editor may leave it, counts as
+        missing.
         """
         try:
             record = RunRecord.from_json(self._path(key).read_text(encoding="utf-8"))
@@ -53,9 +52,4 @@ class RecordStore:
         Raises:
             ResultsError: the disk is full or not writable.
         """
-        write_whole(self._path(record.key), record.to_json() + "\n", durable=True)
-
-    def keys(self) -> Iterator[str]:
-        """Of every record, also of those that no plan asks for any more."""
-        for path in sorted(self._folder.glob("*/*.json")):
-            yield path.stem
+        write_atomically(self._path(record.key), record.to_json() + "\n", durable=True)

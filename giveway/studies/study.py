@@ -13,12 +13,12 @@ import numpy as np
 
 from giveway.errors import GivewayError
 from giveway.results.provenance import software_versions
-from giveway.studies.atomic_files import write_whole
+from giveway.studies.atomic_files import write_atomically
 from giveway.studies.definition import dump_definition
 from giveway.studies.folder import DEFINITION, MANIFEST, StudyFolder
 from giveway.studies.frames import runs_frame
 from giveway.studies.identity import software_identity
-from giveway.studies.lock import claimed, clear, forget_tables
+from giveway.studies.lock import remove_derived_files, remove_study, reserved
 from giveway.studies.options import StudyOptions, processors
 from giveway.studies.output import write_tables
 from giveway.studies.plan import Plan, plan
@@ -55,9 +55,9 @@ class StudyProgress:
     """Where a study stands."""
 
     total: int  # runs, as far as is known
-    kept: int  # were there already
-    made: int  # by this session
-    failed: int  # of all that are there
+    kept: int  # runs of former sessions
+    made: int  # runs of this session
+    failed: int  # of both
     latest: RunRecord | None
 
     @property
@@ -73,7 +73,7 @@ def run_study(
     options: StudyOptions | None = None,
     watcher: Callable[[StudyProgress], None] | None = None,
 ) -> StudyFolder:
-    """Compute what is missing of a study, and write its tables.
+    """Compute the missing runs of a study, and write its tables.
 
     Args:
         definition: of the study.
@@ -87,7 +87,7 @@ def run_study(
     """
     options = options or StudyOptions()
     planned = plan(definition, origin)
-    with claimed(out, definition.name, options):
+    with reserved(out, definition.name, options):
         session = _Session(planned, out, options, watcher or (lambda _: None))
         try:
             with options.executor() as executor:
@@ -95,8 +95,8 @@ def run_study(
                 session.compute(executor)
             session.end()
         except KeyboardInterrupt:
-            with suppress(KeyboardInterrupt):  # who asks twice does without the tables
-                session.break_off()
+            with suppress(KeyboardInterrupt):  # a second Ctrl-C skips the tables
+                session.write_partial_tables()
             raise StudyInterruptedError(session.interrupted()) from None
     return StudyFolder(out)
 
@@ -122,11 +122,13 @@ class _Session:
         self._begun = False
 
     def begin(self) -> None:
-        """Write down what the study is; tables and report of a former session no longer hold."""
+        """Write definition and manifest; remove tables and report of a former session."""
         if self._options.force:
-            clear(self._out)
-        forget_tables(self._out)
-        write_whole(self._out / DEFINITION, dump_definition(self._plan.definition), durable=True)
+            remove_study(self._out)
+        remove_derived_files(self._out)
+        write_atomically(
+            self._out / DEFINITION, dump_definition(self._plan.definition), durable=True
+        )
         self._write_manifest(complete=False)
         self._begun = True
 
@@ -145,13 +147,13 @@ class _Session:
                 return
 
     def end(self) -> None:
-        """Write the tables, then that they are those of the whole study."""
+        """Write the tables, then mark the study as complete."""
         self._write_manifest(complete=False)  # precision has decided how many seeds there are
         write_tables(StudyFolder(self._out), whole=True)
         self._write_manifest(complete=True)
 
-    def break_off(self) -> None:
-        """Write those tables that take no time."""
+    def write_partial_tables(self) -> None:
+        """Write the tables that are made quickly, after an interruption."""
         if self._begun:
             self._seeds = self._plan.seeds
             self._write_manifest(complete=False)
@@ -163,7 +165,7 @@ class _Session:
         return f"interrupted; {done} are kept in {self._out}: go on with --resume"
 
     def _make(self, executor: Executor, seeds: range) -> None:
-        """Make those runs of ``seeds`` that are not there; cells with equal settings share them."""
+        """Make the missing runs of ``seeds``; cells with equal settings share them."""
         missing: defaultdict[str, list[PlannedRun]] = defaultdict(list)
         for run in self._plan.runs(seeds):
             record = self._store.get(run.key)
@@ -221,7 +223,7 @@ class _Session:
             "software": software_versions(),
         }
         text = json.dumps(content, indent=2, ensure_ascii=False) + "\n"
-        write_whole(self._out / MANIFEST, text, durable=True)
+        write_atomically(self._out / MANIFEST, text, durable=True)
 
 
 def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, float]]:

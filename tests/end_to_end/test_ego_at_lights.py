@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.config import EgoRunConfig
-from giveway.ego.controllers import make_controller, make_driver
+from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
+from giveway.ego.waiting import make_waiting_ego
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.sumo.lanes import Light
@@ -41,11 +42,11 @@ def drive(
     path = EgoPath.through([(0.0, 0.0), (2000.0, 0.0)])
     rows = []
     with ExitStack() as stack:
-        driver = make_driver(config, make_controller(config, STEP), STEP, stack)
-        driver.start(config.ego.initial_speed or 0.0)
+        waiting = make_waiting_ego(config, make_controller(config, STEP), STEP, stack)
+        waiting.start(config.ego.initial_speed or 0.0)
         lights = Lights([Light(line, "tls", 0)], comfortable=2.0, hardest=8.0)
-        ego = Ego(driver, path, DEPARTURE, shape, lights, 1900.0, STEP)
-        poses = np.zeros((driver.horizon, 1, 7))
+        ego = Ego(waiting, path, DEPARTURE, shape, lights, 1900.0, STEP)
+        poses = np.zeros((waiting.horizon, 1, 7))
         poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
         for k in range(round((yellow_at + YELLOW + RED) / STEP)):
             time = k * STEP

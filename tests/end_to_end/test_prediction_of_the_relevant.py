@@ -9,9 +9,10 @@ import pytest
 
 from controller import Manoeuvre
 from giveway.config import EgoRunConfig
-from giveway.ego.controllers import make_controller, make_driver
+from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
+from giveway.ego.waiting import make_waiting_ego
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, Crowd
@@ -43,11 +44,11 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
         for predict_all in (150, 10**9):
             monkeypatch.setattr("giveway.ego.ego._PREDICT_ALL", predict_all)
             with ExitStack() as stack:
-                driver = make_driver(CONFIG, make_controller(CONFIG, 0.05), 0.05, stack)
-                driver.start(speed)
+                waiting = make_waiting_ego(CONFIG, make_controller(CONFIG, 0.05), 0.05, stack)
+                waiting.start(speed)
                 lights = Lights((), comfortable=2.0, hardest=8.0)
-                ego = Ego(driver, EgoPath.through(BEND), 50.0, shape, lights, 100.0, 0.05)
-                poses = np.zeros((driver.horizon, 1, 7))
+                ego = Ego(waiting, EgoPath.through(BEND), 50.0, shape, lights, 100.0, 0.05)
+                poses = np.zeros((waiting.horizon, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
                 seen.append(ego.look(0, poses, people, OPEN_GROUND).ahead.copy())
@@ -73,11 +74,11 @@ def test_who_is_left_out_changes_nothing_that_a_manoeuvre_would_lead_to(
         for predict_all in (150, 10**9):
             monkeypatch.setattr("giveway.ego.ego._PREDICT_ALL", predict_all)
             with ExitStack() as stack:
-                driver = make_driver(PLANNING, make_controller(PLANNING, 0.05), 0.05, stack)
-                driver.start(speed)
+                waiting = make_waiting_ego(PLANNING, make_controller(PLANNING, 0.05), 0.05, stack)
+                waiting.start(speed)
                 lights = Lights((), comfortable=2.0, hardest=8.0)
-                ego = Ego(driver, EgoPath.through(BEND), 50.0, shape, lights, 100.0, 0.05)
-                N = driver.horizon
+                ego = Ego(waiting, EgoPath.through(BEND), 50.0, shape, lights, 100.0, 0.05)
+                N = waiting.horizon
                 poses = np.zeros((N, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)

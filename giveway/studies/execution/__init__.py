@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from giveway.studies.execution.errors import WorkerError
-from giveway.studies.execution.executor import Executor
+from giveway.studies.execution.executor import Executor, WorkerError
 from giveway.studies.execution.limits import HANG_LIMIT, Limits
 
 if TYPE_CHECKING:
@@ -44,7 +43,7 @@ def cluster_executor(
     run_limit: float | None = None,
     tell: Callable[[str], None] | None = None,
 ) -> Executor:
-    """Runs on a Dask cluster, in processes beside its workers, as many as they have threads.
+    """Runs on a Dask cluster, in one process of our own for each thread of its workers.
 
     Args:
         address: of its scheduler, as ``tcp://host:8786``; ``local`` or ``local:N`` makes a cluster

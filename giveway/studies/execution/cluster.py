@@ -1,8 +1,8 @@
 """Runs on a Dask cluster: one giveway process per thread of its workers.
 
-Dask hands the runs out and hands those of a worker that dies to the others; the isolation is ours
-(:mod:`giveway.studies.execution.cluster_task`). What can go wrong on the way is the connection:
-then everything that was under way is simply handed out again.
+Dask distributes the runs, and gives those of a worker that dies to the others. Each run is made
+in a separate process (:mod:`giveway.studies.execution.cluster_task`). If the connection is lost,
+the runs that were under way are submitted again.
 """
 
 from __future__ import annotations
@@ -18,16 +18,15 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from giveway.studies.execution.cluster_runs import ClusterRuns
-from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.executor import WorkerError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
-    from types import TracebackType
 
     from giveway.studies.execution.limits import Limits
     from giveway.studies.record import RunRecord, Task
 
-Client = Any  # Dask's classes, most of whose methods have no types
+Client = Any  # Dask's classes, whose methods mostly have no types
 Cluster = Any
 
 PATIENCE: Final = 300.0  # [s] to wait for a scheduler or worker to come back
@@ -36,7 +35,7 @@ _REMOTE: Final = re.compile(r"(?!local:)([\w.+-]+://\S+|[\w.-]+:\d+)")
 _LOCAL_WORKERS: Final = 2
 _LOOK: Final = 1.0  # [s] between two looks at the cluster
 _CONNECT: Final = 5.0  # [s] for one attempt
-_FAREWELL: Final = 5.0  # [s] for the workers to end the study's processes
+_CLOSING: Final = 5.0  # [s] for the workers to end the study's processes
 
 
 class ClusterExecutor:
@@ -74,7 +73,7 @@ class ClusterExecutor:
         self._cluster: Cluster | None = None
         self._client: Client | None = None
         self._threads = 0
-        self._missed = 0.0  # since when [s] there is nobody to work; 0: all is well
+        self._missed = 0.0  # [s] since when there has been no worker; 0: there is one
         self._looked = 0.0
 
     @property
@@ -90,33 +89,28 @@ class ClusterExecutor:
         self._connect()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        from giveway.studies.execution.cluster_task import leave
+    def __exit__(self, *_: object) -> None:
+        from giveway.studies.execution.cluster_task import close_pool
 
         client, self._client = self._client, None
         cluster, self._cluster = self._cluster, None
         if client is not None:
-            if cluster is None:  # a local one takes everything along
-                _in_time(lambda: client.run(leave, self._study, on_error="ignore"))
-            _in_time(lambda: client.close(timeout=_FAREWELL))
+            if cluster is None:  # a local cluster ends its processes itself
+                _try_briefly(lambda: client.run(close_pool, self._study, on_error="ignore"))
+            _try_briefly(lambda: client.close(timeout=_CLOSING))
         if cluster is not None:
-            _in_time(lambda: cluster.close(timeout=_FAREWELL))
+            _try_briefly(lambda: cluster.close(timeout=_CLOSING))
 
     # --- for ClusterRuns ----------------------------------------------------------------------
 
     def submit(self, task: Task, name: str) -> Any:
-        """Hand a run out.
+        """Submit a run.
 
         Returns:
             Dask's future.
 
         Raises:
-            Exception: of whatever kind; the cluster is not there.
+            Exception: of any kind; the cluster cannot be reached.
         """
         from giveway.studies.execution.cluster_task import perform_there
 
@@ -131,10 +125,10 @@ class ClusterExecutor:
         )
 
     def is_there(self) -> bool:
-        """Whether somebody works; else, wait a little for them.
+        """Whether the cluster has workers, as far as is known from the latest look at it.
 
         Raises:
-            WorkerError: nobody has come for too long.
+            WorkerError: there has been no worker for too long.
         """
         now = time.monotonic()
         if now - self._looked < _LOOK and not self._missed:
@@ -153,17 +147,17 @@ class ClusterExecutor:
         return False
 
     def abandon(self, futures: Iterable[Any]) -> None:
-        """Take back runs, and end those that are being made."""
-        from giveway.studies.execution.cluster_task import leave
+        """Cancel runs, also those that are being made."""
+        from giveway.studies.execution.cluster_task import close_pool
 
         client, wanted = self._client, list(futures)
         if client is not None:
-            _in_time(lambda: client.cancel(wanted, force=True))
-            _in_time(lambda: client.run(leave, self._study, on_error="ignore"))
+            _try_briefly(lambda: client.cancel(wanted, force=True))
+            _try_briefly(lambda: client.run(close_pool, self._study, on_error="ignore"))
             self._study = uuid.uuid4().hex
 
     def _missing(self) -> str:
-        """What there is not; empty: all is well."""
+        """What the cluster lacks; empty if it can work."""
         client = self._client
         try:
             if client is None or client.status == "closed":
@@ -182,7 +176,7 @@ class ClusterExecutor:
     def _connect(self) -> Client:
         import distributed
 
-        from giveway.studies.execution.cluster_task import leave_interrupts_to_the_study
+        from giveway.studies.execution.cluster_task import ignore_interrupts
 
         dask: Any = distributed
         try:
@@ -196,7 +190,7 @@ class ClusterExecutor:
             where = self._cluster or self._address
             self._client = dask.Client(where, timeout=_CONNECT, set_as_default=False)
             if self._cluster is not None:
-                self._client.run(leave_interrupts_to_the_study)
+                self._client.run(ignore_interrupts)
             self._threads = sum(self._client.nthreads().values())
         except (OSError, ValueError, RuntimeError) as error:
             reason = " ".join(str(error).split()) or type(error).__name__
@@ -215,8 +209,8 @@ def _require_dask() -> None:
         raise WorkerError(msg) from error
 
 
-def _in_time(call: Callable[[], Any]) -> None:
-    """A farewell that must not keep us, whatever state the other side is in."""
+def _try_briefly(call: Callable[[], Any]) -> None:
+    """Make a call, and wait only briefly: the other side may be in any state."""
 
     def attempt() -> None:
         with suppress(Exception):
@@ -224,7 +218,7 @@ def _in_time(call: Callable[[], Any]) -> None:
 
     thread = threading.Thread(target=attempt, daemon=True)
     thread.start()
-    thread.join(_FAREWELL)
+    thread.join(_CLOSING)
 
 
 def _to_stderr(line: str) -> None:

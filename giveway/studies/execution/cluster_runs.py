@@ -1,4 +1,4 @@
-"""The runs of one call, on a Dask cluster: handed out, handed out again, and fetched."""
+"""The runs of one call on a Dask cluster: submitted, submitted again, and fetched."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import queue
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS
 from giveway.studies.record import CRASHED, Computing, RunRecord
 
@@ -17,26 +17,26 @@ if TYPE_CHECKING:
 
 Future = Any  # Dask's, most of whose methods have no types
 
-_AHEAD: Final = 3  # runs per worker that are handed out: the network must not be waited for
+_AHEAD: Final = 3  # runs per worker that are submitted, so that no worker waits for the network
 _LOOK: Final = 1.0  # [s] between two looks at the cluster, and at Ctrl-C
 _FETCH: Final = 30.0  # [s] for a result to arrive, or its worker has died meanwhile
 
 
 class Cluster(Protocol):
-    """What hands runs out to workers, and knows whether there are any."""
+    """What submits runs to workers, and knows whether there are any."""
 
     @property
     def workers(self) -> int:
         """How many runs are made at a time."""
 
     def submit(self, task: Task, name: str) -> Future:
-        """Hand a run out; the future of its record."""
+        """Submit a run, and return the future of its record."""
 
     def is_there(self) -> bool:
-        """Whether somebody works; else, wait a little for them."""
+        """Whether the cluster has workers."""
 
     def abandon(self, futures: Iterable[Future]) -> None:
-        """Take back runs, and end those that are being made."""
+        """Cancel runs, also those that are being made."""
 
 
 class ClusterRuns:
@@ -51,7 +51,7 @@ class ClusterRuns:
         self._cluster = cluster
         self._source = iter(tasks)
         self._again: deque[Task] = deque()
-        self._killed: dict[str, int] = {}  # run: Dask workers that died of it, or so it seems
+        self._killed: dict[str, int] = {}  # by run: how many times Dask gave it up as deadly
         self._under_way: dict[str, tuple[Task, Future]] = {}
         self._finished: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._number = 0
@@ -61,7 +61,7 @@ class ClusterRuns:
         try:
             while True:
                 there = self._cluster.is_there()
-                if there and not self._hand_out():
+                if there and not self._submit_runs():
                     return
                 try:
                     name = self._finished.get(timeout=_LOOK)
@@ -77,8 +77,8 @@ class ClusterRuns:
             if self._under_way:
                 self._cluster.abandon(future for _, future in self._under_way.values())
 
-    def _hand_out(self) -> bool:
-        """Fill the window; False: there is nothing more to do."""
+    def _submit_runs(self) -> bool:
+        """Submit as many runs as may wait; False if there is nothing more to do."""
         while len(self._under_way) < _AHEAD * self._cluster.workers:
             task = self._again.popleft() if self._again else next(self._source, None)
             if task is None:
@@ -87,7 +87,7 @@ class ClusterRuns:
             name = f"{task.run}-{self._number}"
             try:
                 future = self._cluster.submit(task, name)
-            except Exception:  # Dask has many; the next look at the cluster tells what is wrong
+            except Exception:  # of many kinds; the next look at the cluster tells which
                 self._again.append(task)
                 return True
             self._under_way[name] = (task, future)
@@ -95,7 +95,7 @@ class ClusterRuns:
         return bool(self._under_way)
 
     def _record(self, task: Task, future: Future) -> RunRecord | None:
-        """What became of it; None: to be handed out again.
+        """The record of a run; None if it is to be submitted again.
 
         Raises:
             WorkerError: a worker refuses this study.

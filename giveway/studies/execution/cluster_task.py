@@ -1,7 +1,7 @@
-"""What a study has done in a Dask worker: a run, in a process beside it.
+"""What a Dask worker does for a study: it has runs made in separate processes.
 
-The process is one of a pool like that of a single machine, so that a crash never takes the Dask
-worker along. Arguments and results are plain values: the other side may be another giveway.
+The processes form a pool like that of a single machine, so that a crash never ends the Dask
+worker. Arguments and results are plain values, as the other side may run another giveway.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def perform_there(study: str, limits: dict[str, float], task: dict[str, Any]) ->
     return {RECORD: record.to_json()}
 
 
-def leave(study: str) -> None:
+def close_pool(study: str) -> None:
     """End the study's processes here."""
     with _LOCK:
         pool = _POOLS.pop(study, None)
@@ -54,8 +54,8 @@ def leave(study: str) -> None:
         pool.close()
 
 
-def leave_interrupts_to_the_study() -> None:
-    """In a Dask worker on the study's own terminal: Ctrl-C is not for it."""
+def ignore_interrupts() -> None:
+    """Ignore Ctrl-C in a Dask worker that shares the study's terminal."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 

@@ -1,14 +1,19 @@
-"""What makes the runs of a study, wherever that is."""
+"""The interface of what makes the runs of a study, on this machine or on others."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol, Self
 
+from giveway.errors import GivewayError
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-    from types import TracebackType
 
     from giveway.studies.record import RunRecord, Task
+
+
+class WorkerError(GivewayError):
+    """No process can be started or reached that would make the runs; finished runs are kept."""
 
 
 class Executor(Protocol):
@@ -19,7 +24,7 @@ class Executor(Protocol):
         """How many runs are made at a time."""
 
     def run(self, tasks: Iterable[Task]) -> Iterator[RunRecord]:
-        """Make every run once, and hand over its record when it is finished.
+        """Make every run once, and yield its record when it is finished.
 
         A run that crashes, hangs, takes too long or raises is tried once more; then its record
         says why.
@@ -35,10 +40,5 @@ class Executor(Protocol):
     def __enter__(self) -> Self:
         """Begin; processes are started when there is something to do."""
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """End every process at once."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import Final
 
 from giveway.processes.heartbeat import LOOP, Phase
-from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.executor import WorkerError
 
-HANG_LIMIT: Final = 120.0  # [s] of wall clock without a sign of life from the loop
-_SETTING_UP: Final = 5.0  # times that: a large network takes minutes to load, without a sign
-ATTEMPTS: Final = 2  # what fails again is no accident
+HANG_LIMIT: Final = 120.0  # [s] of wall clock without progress of the loop
+_SETTING_UP: Final = 5.0  # times that, as a large network takes minutes to load
+ATTEMPTS: Final = 2  # a run that fails twice is not tried again
 
 
 @dataclass(frozen=True)

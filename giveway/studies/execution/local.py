@@ -5,18 +5,17 @@ from __future__ import annotations
 import queue
 from typing import TYPE_CHECKING, Final, Self
 
-from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.pool import Pool
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
-    from types import TracebackType
 
     from giveway.studies.execution.limits import Limits
     from giveway.studies.record import RunRecord, Task
 
-_AHEAD: Final = 2  # runs per worker that have been taken from the plan: none ever waits for us
-_LOOK: Final = 1.0  # [s] after which a wait is begun anew, for systems on which Ctrl-C waits for it
+_AHEAD: Final = 2  # runs per worker that are taken from the plan, so that none waits
+_LOOK: Final = 1.0  # [s] of one wait; some systems notice Ctrl-C only after it
 
 
 class LocalExecutor:
@@ -65,18 +64,13 @@ class LocalExecutor:
                     raise outcome
                 yield outcome
         finally:
-            if under_way:  # given up in the middle: nobody wants those runs any more
+            if under_way:  # the caller has stopped early
                 self._close()
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._close()
 
     def _open(self) -> Pool:

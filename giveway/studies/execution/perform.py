@@ -40,7 +40,7 @@ def perform(
     Args:
         task: what to run.
         journal: whose heartbeat tells another process where the run stands.
-        native_log: file for what SUMO prints, for whoever finds this process dead.
+        native_log: file for what SUMO prints, which is read if this process dies.
     """
     began = perf_counter()
     journal = journal or Journal(None)

@@ -1,8 +1,8 @@
-"""Workers that are kept at work: each slot is a thread with a process of its own.
+"""A pool of worker processes: each slot is a thread with a process of its own.
 
-Nothing is shared between the processes, no pipe and no lock, so that one that is killed at
-whatever instant harms nobody else. (A pool with shared ones, Pebble's, was tried: with four
-workers, killing one every half a second breaks it within twenty seconds, five times of five.)
+The processes share nothing, no pipe and no lock, so that killing one at any instant harms no
+other. (Pebble's pool, whose processes share both, was tried: with four workers, killing one every
+half a second broke it within twenty seconds, five times of five.)
 
 A worker is started by the thread that uses it, because Linux ends it together with that thread.
 """
@@ -15,15 +15,14 @@ import socket
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
-from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.limits import ATTEMPTS, Limits
 from giveway.studies.execution.scratch import Scratch
 from giveway.studies.execution.worker_process import (
-    IdleDeathError,
-    NotStartedError,
+    NotBegunError,
     RunDiedError,
     RunRaisedError,
     WorkerProcess,
@@ -35,21 +34,15 @@ if TYPE_CHECKING:
 
 Delivery = Callable[[RunRecord | Exception], None]
 
-_IDLE_LIMIT: Final = 300.0  # [s] after which a worker without work gives its memory back
-_VAIN_STARTS: Final = 5  # deaths without a finished run in between: it is not by accident
-_PAUSE: Final = 0.1  # [s] after the first of them; it doubles: memory may become free
+_IDLE_LIMIT: Final = 300.0  # [s] after which a worker without work is ended
+_MOST_FAILED_STARTS: Final = 5  # in turn, without a finished run in between
+_PAUSE: Final = 0.1  # [s] after the first of them; it doubles, as memory may become free
 _LOOK: Final = 1.0  # [s] after which a waiting caller looks whether the pool has been closed
 _JOIN: Final = 10.0  # [s] for a slot to notice that its worker has been killed
 
 
 class ClosedError(Exception):
     """The pool has been closed."""
-
-
-@dataclass(frozen=True)
-class _Job:
-    task: Task
-    deliver: Delivery
 
 
 class Pool:
@@ -62,14 +55,13 @@ class Pool:
     """
 
     def __init__(self, slots: int, limits: Limits, place: Path | None = None) -> None:
-        self.slots = slots
         self._limits = limits
         self._scratch = Scratch(place)
-        self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
+        self._jobs: queue.SimpleQueue[tuple[Task, Delivery] | None] = queue.SimpleQueue()
         self._lock = threading.Lock()
         self._closed = threading.Event()
         self._alive: set[WorkerProcess] = set()
-        self._vain_starts = 0
+        self._failed_starts = 0
         self._threads = [
             threading.Thread(target=self._serve, name=f"giveway-slot-{n}", daemon=True)
             for n in range(slots)
@@ -85,7 +77,7 @@ class Pool:
             deliver: called once, from another thread, with the record, or with the error for
                 which no run can be made; not called any more once the pool is closed.
         """
-        self._jobs.put(_Job(task, deliver))
+        self._jobs.put((task, deliver))
 
     def perform(self, task: Task) -> RunRecord:
         """Have a run made, and wait for it.
@@ -107,7 +99,7 @@ class Pool:
             return answer
 
     def close(self) -> None:
-        """End every process at once, whatever it is doing, and remove what they leave."""
+        """End every process at once, whatever it is doing, and remove its files."""
         self._closed.set()
         with self._lock:
             for worker in self._alive:
@@ -126,43 +118,44 @@ class Pool:
             try:
                 job = self._jobs.get(timeout=_IDLE_LIMIT)
             except queue.Empty:
-                self._let_go(worker)
+                self._remove(worker)
                 worker = None
                 continue
             if job is None:
                 break
+            task, deliver = job
             try:
-                worker, record = self._finish(job.task, worker)
+                worker, record = self._finish(task, worker)
             except ClosedError:
                 break
             except Exception as error:
                 worker = None
-                job.deliver(error)
+                deliver(error)
             else:
-                job.deliver(record)
-        self._let_go(worker)
+                deliver(record)
+        self._remove(worker)
 
     def _finish(
         self, task: Task, worker: WorkerProcess | None
     ) -> tuple[WorkerProcess | None, RunRecord]:
-        """Make the run, however often its worker has to be replaced."""
+        """Make the run, and replace its worker as often as needed."""
         attempt = 1
         while True:
             if worker is None:
-                worker = self._employ()
+                worker = self._start_worker()
             began = time.monotonic()
             try:
                 record = worker.perform(task)
-            except IdleDeathError as error:
-                self._let_go(worker)
+            except NotBegunError as error:
+                self._remove(worker)
                 worker = None
-                self._note_vain(str(error))
+                self._note_failed_start(str(error))
                 continue
             except WorkerError:
-                self._let_go(worker)
+                self._remove(worker)
                 raise
             except (RunDiedError, RunRaisedError) as error:
-                self._let_go(worker)
+                self._remove(worker)
                 worker = None
                 self._raise_if_closed()
                 if attempt < ATTEMPTS:
@@ -180,17 +173,17 @@ class Pool:
                     ),
                 )
             if worker is not None and worker.overgrown:
-                self._let_go(worker)
+                self._remove(worker)
                 worker = None
-            self._vain_starts = 0
+            self._failed_starts = 0
             return worker, replace(record, computing=replace(record.computing, attempts=attempt))
 
-    def _employ(self) -> WorkerProcess:
-        """A worker that is ready.
+    def _start_worker(self) -> WorkerProcess:
+        """Start a worker, and wait until it is ready.
 
         Raises:
-            WorkerError: several in turn have died without having done anything.
-            ClosedError: there is no need for one any more.
+            WorkerError: several in turn have ended before they could make a run.
+            ClosedError: the pool has been closed.
         """
         while True:
             worker = None
@@ -200,33 +193,33 @@ class Pool:
                     worker = WorkerProcess(self._scratch.folder(), self._limits)
                     self._alive.add(worker)
                 worker.await_ready()
-            except (NotStartedError, OSError) as error:
-                self._let_go(worker)
-                self._note_vain(str(error))
+            except (NotBegunError, OSError) as error:
+                self._remove(worker)
+                self._note_failed_start(str(error))
             else:
                 return worker
 
-    def _note_vain(self, cause: str) -> None:
-        """A worker has died for nothing: pause, or give up."""
+    def _note_failed_start(self, cause: str) -> None:
+        """Count a worker that ended before it could make a run: pause, or give up."""
         self._raise_if_closed()
-        self._vain_starts += 1
-        if self._vain_starts >= _VAIN_STARTS:
-            self._vain_starts = 0
+        self._failed_starts += 1
+        if self._failed_starts >= _MOST_FAILED_STARTS:
+            self._failed_starts = 0
             msg = (
-                f"{_VAIN_STARTS} processes in turn have ended before they could make a run "
+                f"{_MOST_FAILED_STARTS} processes in turn have ended before they could make a run "
                 f"({cause}); free memory, lower --jobs, or run 'giveway doctor'; what is finished "
                 "stays"
             )
             raise WorkerError(msg)
-        self._closed.wait(_PAUSE * 2**self._vain_starts)
+        self._closed.wait(_PAUSE * 2**self._failed_starts)
 
     def _raise_if_closed(self) -> None:
         if self._closed.is_set():
             raise ClosedError
 
-    def _let_go(self, worker: WorkerProcess | None) -> None:
-        """Bury it, if there is one."""
+    def _remove(self, worker: WorkerProcess | None) -> None:
+        """End a worker, if there is one, and remove its files."""
         if worker is not None:
             with self._lock:
                 self._alive.discard(worker)
-            worker.bury()
+            worker.remove()

@@ -1,4 +1,4 @@
-"""Where workers keep what nobody wants to keep: heartbeats, last words, temporary files."""
+"""The workers' temporary folder: heartbeats, what they print, temporary files."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Final
 
 _PREFIX: Final = "giveway-workers-"
-_KEPT: Final = 86400.0  # [s] for which a folder is left alone, should its owner be elsewhere
+_KEPT: Final = 86400.0  # [s] for which a folder is kept, as its owner may run in another container
 
 
 class Scratch:
-    """A local temporary folder; those of processes that were killed are removed by the next.
+    """A local temporary folder; making one removes those of processes that were killed.
 
     Args:
         place: to make it in; None: where temporary folders are.
@@ -33,11 +33,11 @@ class Scratch:
         self._numbers = itertools.count(1)
 
     def folder(self) -> Path:
-        """A name in it that has not been given away before."""
+        """A path in the folder that has not been used before."""
         return self._path / str(next(self._numbers))
 
     def remove(self) -> None:
-        """All of it."""
+        """Remove the folder."""
         shutil.rmtree(self._path, ignore_errors=True)
 
 
@@ -50,7 +50,7 @@ def _sweep(place: Path) -> None:
 
 
 def _is_gone(process: str) -> bool:
-    """Whether there is no such process here; one in another container shares the folder only."""
+    """Whether there is no such process on this machine."""
     if os.name == "nt" or not process.isdigit():
         return True
     try:

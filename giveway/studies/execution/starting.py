@@ -1,4 +1,4 @@
-"""How a worker's process is started: an interpreter like this one, tied to us by a socket."""
+"""Starting a worker's process: an interpreter like this one, connected to us by a socket."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ _BOOT: Final = (
 )
 _ONE_THREAD: Final = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"
-)  # the runs are what is parallel; pools of threads would only cost memory
+)  # runs are parallel already; pools of threads would only cost memory
 
 
 def start(
     folder: Path, temporary: Path, printed: IO[bytes]
 ) -> tuple[subprocess.Popen[bytes], socket.socket]:
-    """A worker, and our end of the connection to it.
+    """Start a worker; its process, and our end of the connection to it.
 
     Args:
         folder: of the worker.
@@ -40,7 +40,7 @@ def start(
         OSError: it cannot be started.
     """
     if sys.platform == "win32":
-        return _start_and_be_called(folder, temporary, printed)
+        return _start_with_callback(folder, temporary, printed)
     here, there = socket.socketpair()
     try:
         with there:
@@ -52,10 +52,10 @@ def start(
     return process, here
 
 
-def _start_and_be_called(
+def _start_with_callback(
     folder: Path, temporary: Path, printed: IO[bytes]
 ) -> tuple[subprocess.Popen[bytes], socket.socket]:
-    """Where sockets cannot be inherited: the worker calls us back, and proves who it is."""
+    """Start a worker where sockets cannot be inherited: it connects, and sends a token as proof."""
     token = secrets.token_hex(16)
     with socket.create_server(("127.0.0.1", 0)) as server:
         arguments: list[int | str] = [server.getsockname()[1], str(folder), os.getpid(), token]
@@ -102,5 +102,5 @@ def _popen(
 
 
 def _absolute(entry: str) -> str:
-    """An entry of sys.path as it is wherever a process works; those of import hooks stay."""
+    """An entry of sys.path as an absolute path; those of import hooks are returned unchanged."""
     return str(Path(entry).absolute()) if Path(entry).exists() else entry

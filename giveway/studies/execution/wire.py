@@ -1,7 +1,7 @@
 """What a study and a worker say to each other: framed messages over a socket.
 
-What comes from a worker is not trusted: an FMU in its process can write whatever it likes into any
-open file. So nothing is unpickled, and a message that is not whole and in its turn is none at all.
+What comes from a worker is not trusted, as an FMU in its process can write into any open file. So
+nothing is unpickled, and a message that is incomplete or out of order is refused.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _PIECE: Final = 1 << 16  # [bytes] read at a time
 
 
 class GarbledError(Exception):
-    """What came is no message."""
+    """What was received is no message."""
 
 
 class Line:
@@ -55,8 +55,8 @@ class Line:
         """The next message, kind and payload; None: it has not come whole within ``timeout`` [s].
 
         Raises:
-            EOFError: none will come, the other side is gone.
-            GarbledError: what came is none.
+            EOFError: the other side is gone.
+            GarbledError: what was received is none.
         """
         while (message := self._next()) is None:
             try:

@@ -21,8 +21,8 @@ from giveway.studies.execution.wire import ERROR, READY, RECORD, REFUSED, Line
 from giveway.studies.record import Task
 
 SUMO_FILE: Final = "sumo"  # what SUMO has printed during the run
-_HIGH: Final = 200  # FMUs that close or write to files that are not theirs try low numbers
-_OOM_SCORE: Final = "500"  # short of memory, the system is to take a worker and not the study
+_HIGH: Final = 200  # FMUs that wrongly close files, or write to them, use low numbers
+_OOM_SCORE: Final = "500"  # if memory runs out, the system ends a worker and not the study
 
 
 def main(connection: int, folder: str, parent: int, token: str = "") -> None:
@@ -32,22 +32,22 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
         connection: file descriptor of the socket to it; the port to call, where there are none.
         folder: of this worker: heartbeat and traceback.
         parent: process id.
-        token: who calls proves with it who it is.
+        token: by which a worker that connects proves itself.
     """
     die_with(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the study to decide on
     line = Line(_connected(connection, token))
-    _prefer_to_die()
+    _raise_oom_score()
     # faulthandler keeps only the number of the file
     with (Path(folder) / TRACEBACK_FILE).open("w", encoding="utf-8") as file:
         faulthandler.enable(file)
         heartbeat = Heartbeat(Path(folder))
         from giveway.precompile import compile_kernels_once
-        from giveway.studies.execution import perform as performing  # noqa: F401 - no run is to wait for it
+        from giveway.studies.execution import perform as performing  # noqa: F401 - no run waits for it
         from giveway.sumo.library import import_libsumo
 
-        import_libsumo()  # what every run would find missing is no run's failure
-        compile_kernels_once()  # nor is half a minute of compiling a run's hang
+        import_libsumo()  # if it is missing, that is not the failure of a run
+        compile_kernels_once()  # half a minute of compiling must not look like a hanging run
         line.send(READY)
         with contextlib.suppress(EOFError):
             while message := line.receive():
@@ -59,7 +59,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
 
 
 def _answer(task: Task, heartbeat: Heartbeat, folder: Path) -> tuple[bytes, bytes]:
-    """Make the run, and say so: a message's kind and payload."""
+    """Make the run; the kind and payload of the message that says how it went."""
     from giveway.studies import identity
     from giveway.studies.execution import perform as performing
 
@@ -83,7 +83,7 @@ def _one_line(error: Exception) -> str:
 
 
 def _connected(connection: int, token: str) -> socket.socket:
-    """The socket, on a number at which careless native code does not strike."""
+    """The socket, on a high file descriptor, which careless native code is unlikely to use."""
     if sys.platform == "win32":
         called = socket.create_connection(("127.0.0.1", connection))
         called.sendall(token.encode())
@@ -97,6 +97,6 @@ def _connected(connection: int, token: str) -> socket.socket:
     return socket.socket(fileno=high)
 
 
-def _prefer_to_die() -> None:
-    with contextlib.suppress(OSError):  # there is such a thing on Linux only
+def _raise_oom_score() -> None:
+    with contextlib.suppress(OSError):  # exists on Linux only
         Path("/proc/self/oom_score_adj").write_text(_OOM_SCORE, encoding="ascii")

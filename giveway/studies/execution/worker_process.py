@@ -1,4 +1,4 @@
-"""A worker as its study sees it: given runs, watched, ended, and asked how it died."""
+"""A worker seen from its study: it is given runs, watched, ended, and asked why it ended."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from fmus.text import printable
 from giveway.processes.causes import cause_of_end, stood_still, text_in
 from giveway.processes.child import STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Stillness
-from giveway.studies.execution.errors import WorkerError
+from giveway.studies.execution.executor import WorkerError
 from giveway.studies.execution.starting import START_LIMIT, start
 from giveway.studies.execution.wire import (
     ERROR,
@@ -36,37 +36,36 @@ if TYPE_CHECKING:
     from giveway.studies.execution.limits import Limits
     from giveway.studies.record import Task
 
-_POLL: Final = 0.25  # [s] between two looks at a worker that does not say anything
-_DYING_WORDS: Final = 2.0  # [s] for a hanging worker to write where it hangs
-_DYING: Final = 2.0  # [s] from a connection's end to that of its process
-_MOST_PRINTED: Final = 1 << 26  # [bytes] after which what it prints is forgotten
-_TAIL: Final = 4096  # [bytes] of which the last line is of interest
+_POLL: Final = 0.25  # [s] between two looks at a worker that sends nothing
+_REPORTING: Final = 2.0  # [s] for a hanging worker to write its traceback
+_ENDING: Final = 2.0  # [s] from a connection's end to that of its process
+_MOST_PRINTED: Final = 1 << 26  # [bytes] after which what it has printed is dropped
+_TAIL: Final = 4096  # [bytes] in which the last line is searched for
 _GROWTH: Final = 256.0  # [MB] that a worker may hold more than after its first run
 _FRAME: Final = re.compile(r'File "([^"]+)", line (\d+) in (\w+)')
 
 
-class NotStartedError(Exception):
-    """A worker has ended before it could do anything; the message tells what it printed."""
-
-
-class IdleDeathError(Exception):
-    """A worker has ended while it had nothing to do, or before it had begun with the run."""
+class NotBegunError(Exception):
+    """A worker has ended before it had begun with a run; the message tells why."""
 
 
 class RunDiedError(Exception):
-    """The run took its worker along; the message is the cause, on one line."""
+    """The run ended its worker; the message is the cause, on one line."""
 
 
 class RunRaisedError(Exception):
-    """The run has raised what no run raises on purpose; the message is one line."""
+    """The run has raised an unexpected exception; the message is one line."""
 
 
 class WorkerProcess:
-    """A process that makes one run at a time; for one thread, which lives longer than it.
+    """A process that makes one run at a time; used by one thread, which outlives it.
 
     Args:
-        folder: for this worker; made here, gone with it.
+        folder: for this worker; made here, and removed with it.
         limits: of its runs.
+
+    Attributes:
+        overgrown: whether it holds so much more memory than at first that it should be replaced.
 
     Raises:
         OSError: it cannot be started.
@@ -77,8 +76,8 @@ class WorkerProcess:
         self._folder = folder
         self._poll = min(_POLL, limits.hang / 4, limits.run / 4)
         self._first_memory: float | None = None
-        self._grown = False
-        self._buried = False
+        self.overgrown = False
+        self._removed = False
         temporary = folder / "tmp"
         temporary.mkdir(parents=True)
         self._heartbeat = Heartbeat.supervised_by(os.getpid(), folder)
@@ -93,7 +92,7 @@ class WorkerProcess:
         """Wait until it has imported everything.
 
         Raises:
-            NotStartedError: it will not.
+            NotBegunError: it has ended, or takes too long.
         """
         waited = 0.0
         try:
@@ -103,20 +102,20 @@ class WorkerProcess:
                     raise EOFError
                 if waited > START_LIMIT:
                     msg = f"it was not ready after {waited:g} s"
-                    raise NotStartedError(msg)
+                    raise NotBegunError(msg)
             if message[0] != READY:
                 raise GarbledError
         except (EOFError, GarbledError):
-            cause = self._cause_of_death()
-            raise NotStartedError(self._last_words() or cause) from None
+            cause = self._cause_of_end()
+            raise NotBegunError(self._last_printed() or cause) from None
 
     def perform(self, task: Task) -> RunRecord:
         """Make a run.
 
         Raises:
-            IdleDeathError: the worker is dead, and the run had not begun.
-            RunDiedError: the worker is dead, and the run is why.
-            RunRaisedError: the worker lives, but should not be trusted any more.
+            NotBegunError: the worker has ended before the run began.
+            RunDiedError: the run has ended the worker.
+            RunRaisedError: the worker runs, but should not be used any more.
             WorkerError: the worker would not make the run that was planned.
         """
         self._heartbeat.beat(Phase.STARTING)
@@ -134,42 +133,37 @@ class WorkerProcess:
                 raise GarbledError
             record = RunRecord.from_json(payload.decode())
         except (EOFError, OSError):
-            cause = self._cause_of_death()
+            cause = self._cause_of_end()
         except (GarbledError, ValueError):
             cause = "native code wrote into files that are not its own"
             self.end()
         else:
-            self._weigh(record.computing.memory)
+            self._note_memory(record.computing.memory)
             return record
         if self._heartbeat.read().phase is Phase.STARTING:
-            raise IdleDeathError(cause)
-        raise RunDiedError(self._obituary(cause))
-
-    @property
-    def overgrown(self) -> bool:
-        """Whether it holds so much more memory than at first that a new one is better."""
-        return self._grown
+            raise NotBegunError(cause)
+        raise RunDiedError(self._failure(cause))
 
     def end(self) -> None:
-        """Kill it, and its process group where there are groups; any number of times."""
-        if self._buried:
-            return  # its number may be somebody else's by now
+        """Kill it, with its process group where there are groups; may be called repeatedly."""
+        if self._removed:
+            return  # another process may have its number by now
         with suppress(OSError):
             if sys.platform == "win32":
                 self._process.kill()
             else:
                 os.killpg(self._process.pid, signal.SIGKILL)
 
-    def bury(self) -> None:
-        """End it, and remove what it has left; in its own thread."""
+    def remove(self) -> None:
+        """End it, and remove its folder; to be called in its own thread."""
         self.end()
         self._process.wait()
-        self._buried = True
+        self._removed = True
         self._line.close()
         shutil.rmtree(self._folder, ignore_errors=True)
 
     def _answer(self) -> tuple[bytes, bytes]:
-        """Wait for it; a worker whose run stands still or takes too long is killed."""
+        """Wait for the answer; kill a worker whose run stands still or takes too long."""
         stillness = Stillness(self._heartbeat)
         taken = 0.0
         while (message := self._line.receive(self._poll)) is None:
@@ -179,7 +173,7 @@ class WorkerProcess:
                 self._kill(stood_still(quiet))
             elif taken >= self._limits.run:
                 self._kill(f"not finished within {taken:g} s, the limit of a run,")
-            if self._process.poll() is not None:  # what it has started may hold the connection
+            if self._process.poll() is not None:  # its child may hold the connection
                 raise EOFError
             with suppress(OSError):
                 if self._printed.stat().st_size > _MOST_PRINTED:
@@ -187,38 +181,37 @@ class WorkerProcess:
         return message
 
     def _kill(self, cause: str) -> None:
-        """Let it say where it hangs, which takes a signal, then kill it.
+        """Have it write where it hangs, then kill it.
 
         Raises:
             RunDiedError: always.
         """
-        obituary = cause
         if sys.platform != "win32":
             with suppress(OSError):
                 self._process.send_signal(signal.SIGABRT)
             with suppress(subprocess.TimeoutExpired):
-                self._process.wait(_DYING_WORDS)
-        obituary = self._obituary(cause)
+                self._process.wait(_REPORTING)
+        failure = self._failure(cause)
         self.end()
-        raise RunDiedError(obituary)
+        raise RunDiedError(failure)
 
-    def _cause_of_death(self) -> str:
-        """Why it has died, or why it has to be taken for dead."""
+    def _cause_of_end(self) -> str:
+        """Why it has ended, or why it counts as ended."""
         try:
-            code = self._process.wait(_DYING)
+            code = self._process.wait(_ENDING)
         except subprocess.TimeoutExpired:
             self.end()
             return "native code closed files that are not its own"
-        self.end()  # whatever it has started
+        self.end()  # with the processes that it has started
         return cause_of_end(code)
 
-    def _obituary(self, cause: str) -> str:
-        """Cause, place and last words, on one line."""
+    def _failure(self, cause: str) -> str:
+        """Cause, place and what was printed last, on one line."""
         pulse = self._heartbeat.read()
         place = "" if pulse.phase in LOOP else self._python_place()
-        words = self._last_words()
+        words = self._last_printed()
         if not words and pulse.phase in {Phase.LOADING, Phase.SUMO}:
-            words = self._last_words(self._printed_by_sumo)
+            words = self._last_printed(self._printed_by_sumo)
         said = f", after printing '{words}'" if words else ""
         return f"{cause} {pulse.place}{place}{said}"
 
@@ -230,7 +223,7 @@ class WorkerProcess:
         file, line, function = found.groups()
         return f" (Python was in {function}, {Path(file).name} line {line})"
 
-    def _last_words(self, printed: Path | None = None) -> str:
+    def _last_printed(self, printed: Path | None = None) -> str:
         """The last line that it printed."""
         printed = printed or self._printed
         try:
@@ -242,7 +235,7 @@ class WorkerProcess:
         lines = (printable(line) for line in reversed(text.splitlines()))
         return next((line for line in lines if line), "")
 
-    def _weigh(self, memory: float) -> None:
+    def _note_memory(self, memory: float) -> None:
         if self._first_memory is None:
             self._first_memory = memory
-        self._grown = memory > self._first_memory + _GROWTH
+        self.overgrown = memory > self._first_memory + _GROWTH

@@ -1,4 +1,4 @@
-"""The table of differences: every metric, in every situation, of every context."""
+"""The table of differences: every metric in every situation of every context."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from giveway.studies.columns import COMPARISON_COLUMNS
+from giveway.studies.columns import COMPARISON_COLUMNS, numbers_of
+from giveway.studies.contexts import other_factors
 from giveway.studies.statistics.bootstrap import Interval, mean_interval, seed_of
 from giveway.studies.statistics.metrics import METRICS
-from giveway.studies.statistics.pairs import other_factors, paired
+from giveway.studies.statistics.pairs import paired
 from giveway.studies.statistics.rounding import mean, median, tabulated, to_decimals
 from giveway.studies.statistics.signed_rank import SignedRank, q_values, signed_rank
 from giveway.studies.statistics.situations import SITUATIONS, share, within
@@ -99,7 +100,7 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
     ]
     names = [*other_factors(design, comparison), *(column.name for column in COMPARISON_COLUMNS)]
     frame = pd.DataFrame(rows, columns=[*names, "better", "direction", "excludes_zero"])
-    numbers = [column.name for column in COMPARISON_COLUMNS if column.type == "number"]
+    numbers = numbers_of(COMPARISON_COLUMNS)
     frame[numbers] = frame[numbers].astype(np.float64)
     frame["q_value"] = q_values(frame["p_value"].to_numpy())
     frame["verdict"] = [_verdict(row, comparison) for row in frame.to_dict("records")]
@@ -145,8 +146,9 @@ def _numbers(found: Differences, between: Interval, test: SignedRank) -> dict[st
 def _verdict(row: Mapping[Hashable, Any], comparison: Comparison) -> str:
     """Both must agree: the interval about the size of the mean, the test after correction.
 
-    A verdict thus never contradicts the interval beside it, nor the many tests that were made;
-    where a few large differences pull the mean to the other side than most pairs, there is none.
+    A verdict thus contradicts neither the interval in its row nor the correction for many tests.
+    Where a few large differences pull the mean to the other side than most pairs, no difference
+    is shown.
     """
     if np.isnan(row["q_value"]):
         return NOT_AVAILABLE

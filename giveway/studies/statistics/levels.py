@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from giveway.studies.columns import LEVEL_COLUMNS
+from giveway.studies.columns import LEVEL_COLUMNS, numbers_of
 from giveway.studies.statistics.bootstrap import mean_interval, seed_of
 from giveway.studies.statistics.metrics import METRICS
 from giveway.studies.statistics.pairs import cleaned, without_result
@@ -50,9 +50,7 @@ def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Dat
     ]
     names = [factor.name for factor in design.factors]
     frame = pd.DataFrame(rows, columns=[*names, *(column.name for column in LEVEL_COLUMNS)])
-    numbers = [column.name for column in LEVEL_COLUMNS if column.type == "number"]
-    frame[numbers] = frame[numbers].astype(np.float64)
-    return tabulated(frame, numbers)
+    return tabulated(frame, numbers_of(LEVEL_COLUMNS))
 
 
 def _row(

@@ -1,4 +1,4 @@
-"""Two runs on the same crowd make a pair: what all differences are differences of."""
+"""Pairs of runs on the same crowd, from which all differences are computed."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from giveway.errors import ConfigError
+from giveway.studies.contexts import baseline_level, contexts
 from giveway.studies.record import CRASHED, FAILED, Scalar
 from giveway.studies.statistics.metrics import METRICS
 
@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from giveway.studies.contexts import Context
     from giveway.studies.definition import Comparison
-    from giveway.studies.design import Cell, Design, Factor, Level
+    from giveway.studies.design import Design
 
     Array = NDArray[np.float64]
 
@@ -30,18 +31,20 @@ class Pairs:
     """One ego's runs under two levels, all else equal, seed by seed.
 
     Attributes:
-        context: the value of each other factor.
+        context: the level of each other factor.
         ego: SUMO id; empty without one.
         treatment: label of the level that is compared.
         baseline: label of the level that is subtracted.
+        seeds: of the pairs (n,).
         treated: metrics of the treatment's runs (n, metrics), nan where there is no number.
-        based: the same of the baseline's runs; row i of both has the same seed.
+        based: the same of the baseline's runs; row i of both has seed i.
     """
 
-    context: dict[str, Scalar]
+    context: Context
     ego: str
     treatment: str
     baseline: str
+    seeds: NDArray[np.int64]
     treated: Array
     based: Array
 
@@ -56,15 +59,15 @@ class Pairs:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What tells them from all others; the same with treatment and baseline swapped."""
-        context = (f"{name}={value}" for name, value in self.context.items())
+        """Names that no other pairs have; the same with treatment and baseline swapped."""
+        context = (f"{name}={level.value}" for name, level in self.context.levels.items())
         return (*context, self.ego, *sorted((self.treatment, self.baseline)))
 
     @property
     def row(self) -> dict[str, Scalar]:
         """The columns by which a table names them."""
-        who = {"ego": self.ego, "treatment": self.treatment, "baseline": self.baseline}
-        return {**self.context, **who}
+        compared = {"ego": self.ego, "treatment": self.treatment, "baseline": self.baseline}
+        return {name: level.value for name, level in self.context.levels.items()} | compared
 
 
 @dataclass(frozen=True)
@@ -75,16 +78,11 @@ class _Side:
     values: Array
 
 
-def other_factors(design: Design, comparison: Comparison) -> list[str]:
-    """The names of the factors that make the context."""
-    return [factor.name for factor in design.factors if factor.name != comparison.factor]
-
-
 def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterator[Pairs]:
     """All pairs, context by context in the design's order, then ego, then treatment.
 
-    A run that failed or crashed belongs to each ego of its context, for it would have had them
-    all. Where no seed was run under both levels there is nothing to yield.
+    A run that failed or crashed belongs to each ego of its context, as it would have had them
+    all. Levels that share no seed have no pairs.
 
     Args:
         runs: a row per run and ego, as ``runs.csv``.
@@ -94,53 +92,28 @@ def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterat
     Raises:
         ConfigError: the study has no such factor, or the factor no such level.
     """
-    factor = design.factor(comparison.factor)
-    baseline = _baseline(factor, comparison)
+    compared = design.factor(comparison.factor).levels
+    baseline = baseline_level(design, comparison)
     by_cell = dict(iter(cleaned(runs).groupby("cell")))
     nothing = cleaned(runs.iloc[:0])
-    for cells in _contexts(design, factor):
-        tables = {label: by_cell.get(cell.number, nothing) for label, cell in cells.items()}
+    for context in contexts(design, comparison):
+        tables = {label: by_cell.get(cell, nothing) for label, cell in context.cells.items()}
         if baseline.label not in tables:
             continue
-        some = next(iter(cells.values()))
-        context = {n: level.value for n, level in some.levels.items() if n != factor.name}
         for ego in _egos(tables):
             based = _side(tables[baseline.label], ego)
-            for level in factor.levels:
+            for level in compared:
                 if level is baseline or level.label not in tables:
                     continue
                 treated = _side(tables[level.label], ego)
-                _, i, j = np.intersect1d(treated.seeds, based.seeds, return_indices=True)
+                seeds, i, j = np.intersect1d(treated.seeds, based.seeds, return_indices=True)
                 if i.size:
-                    sides = treated.values[i], based.values[j]
+                    sides = seeds, treated.values[i], based.values[j]
                     yield Pairs(context, ego, level.label, baseline.label, *sides)
 
 
-def _baseline(factor: Factor, comparison: Comparison) -> Level:
-    if comparison.baseline is None:
-        return factor.levels[-1]
-    level = factor.level(comparison.baseline)
-    if level is None:
-        known = ", ".join(level.label for level in factor.levels)
-        msg = (
-            f"comparison.baseline = '{comparison.baseline}': no level of {factor.name}; "
-            f"expected one of {known}"
-        )
-        raise ConfigError(msg)
-    return level
-
-
-def _contexts(design: Design, factor: Factor) -> list[dict[str, Cell]]:
-    """The cells that differ in ``factor`` alone, by its level's label."""
-    found: dict[tuple[str, ...], dict[str, Cell]] = {}
-    for cell in design.cells:
-        key = tuple(level.label for name, level in cell.levels.items() if name != factor.name)
-        found.setdefault(key, {})[cell.levels[factor.name].label] = cell
-    return list(found.values())
-
-
 def cleaned(runs: pd.DataFrame) -> pd.DataFrame:
-    """The columns that matter, whatever a CSV reader or an empty table made of their types."""
+    """The columns that are compared, with the types that a CSV reader may have lost."""
     frame = runs.reindex(columns=["cell", "seed", "ego", "ending", *_NAMES])
     frame["ego"] = frame["ego"].fillna("").astype(str)
     for name in _NAMES:
@@ -156,7 +129,7 @@ def without_result(frame: pd.DataFrame) -> pd.Series[bool]:
 
 
 def _egos(tables: dict[str, pd.DataFrame]) -> list[str]:
-    """The egos of a context; without any run that has a result there is the nameless one."""
+    """The egos of a context; one without a name if no run has a result."""
     names = {str(ego) for table in tables.values() for ego in table["ego"][~without_result(table)]}
     return sorted(names) or [""]
 

@@ -1,4 +1,4 @@
-"""Numbers as tables hold them, and arithmetic that no size of them upsets."""
+"""Numbers as tables hold them, and means and medians that no large number makes overflow."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import pandas as pd
     from numpy.typing import NDArray
 
@@ -26,12 +28,16 @@ def to_decimals(values: Array) -> Array:
     return np.asarray(np.where(fine, np.round(np.where(fine, values, 0.0), DECIMALS), values) + 0.0)
 
 
-def tabulated(frame: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
+def tabulated(frame: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
     """``frame`` as it is written: six decimals, probabilities with six significant digits.
 
     What a table holds in memory is thus what is read back from its file.
+
+    Args:
+        frame: of numbers and words; it is changed.
+        names: of the columns that hold numbers; these become floats.
     """
-    for name in columns:
+    for name in names:
         values = frame[name].to_numpy(np.float64)
         if name in _PROBABILITIES:
             frame[name] = [float(f"{value:.{_DIGITS}g}") for value in values]

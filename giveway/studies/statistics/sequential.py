@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from giveway.studies.columns import PRECISION_COLUMNS
+from giveway.studies.columns import PRECISION_COLUMNS, numbers_of
+from giveway.studies.contexts import other_factors
 from giveway.studies.statistics.comparing import differences, interval
 from giveway.studies.statistics.metrics import metric
-from giveway.studies.statistics.pairs import other_factors, paired
+from giveway.studies.statistics.pairs import paired
 from giveway.studies.statistics.rounding import mean, tabulated
 
 if TYPE_CHECKING:
@@ -75,8 +76,7 @@ def precise_enough(
         rows.append(found | {"unit": wanted.unit, "seeds": look})
     frame = pd.DataFrame(rows, columns=names)
     enough = bool(rows) and all(bool(row["precise"]) for row in rows)
-    numbers = [column.name for column in PRECISION_COLUMNS if column.type == "number"]
-    return enough, tabulated(frame, numbers)
+    return enough, tabulated(frame, numbers_of(PRECISION_COLUMNS))
 
 
 def _whole_seeds(runs: pd.DataFrame, cells: int) -> list[int]:

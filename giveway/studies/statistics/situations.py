@@ -8,8 +8,9 @@ import numpy as np
 import pandas as pd
 
 from giveway.studies.columns import SITUATION_COLUMNS
+from giveway.studies.contexts import other_factors
 from giveway.studies.definition import Situation
-from giveway.studies.statistics.pairs import other_factors, paired
+from giveway.studies.statistics.pairs import paired
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -76,7 +77,7 @@ def within(pairs: Pairs, situation: Situation) -> Mask:
 
 
 def share(pairs: Pairs, situation: Situation) -> float:
-    """Of the pairs that are not lost, how many are in the situation; nan if all are lost."""
+    """The share of the situation among the pairs that are not lost; nan if all are lost."""
     return _mean(within(pairs, situation), kept(pairs))
 
 

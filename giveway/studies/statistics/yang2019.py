@@ -1,4 +1,4 @@
-"""The paper's Table 2 beside ours: Yang & Özgüner 2019 (arXiv 1907.05178), section 5.2."""
+"""The paper's Table 2 compared with ours: Yang & Özgüner 2019 (arXiv 1907.05178), section 5.2."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def table2(
     treatment: str = "mpc-paper",
     baseline: str = "pid-paper",
 ) -> pd.DataFrame:
-    """The nine numbers of Table 2, each beside ours.
+    """The nine numbers of Table 2, each with ours.
 
     Args:
         comparison: the table of ``compare``.

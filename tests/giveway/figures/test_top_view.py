@@ -11,7 +11,8 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import Polygon
 
 from giveway.figures import crowd_view_figure, top_view_figure
-from giveway.figures.top_view import SLENDEREST, VIEW, rectangle
+from giveway.figures.top_view import VIEW, rectangle
+from giveway.figures.view import SLENDEREST
 from giveway.geometry.bodies import VehicleShape
 from giveway.records.tracks import BackgroundTrack, CrowdTrack
 

@@ -1,0 +1,67 @@
+"""What several commands print and write alike: findings, the place of a file, its errors."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from giveway.errors import ResultsError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
+
+    from rich.console import Console
+
+
+def findings_table(
+    title: str, styles: Mapping[str, str], findings: Iterable[tuple[str, str, str, str]]
+) -> Table:
+    """A row per finding.
+
+    Args:
+        title: above the table.
+        styles: of the levels.
+        findings: level, subject, text and remedy of each; the remedy may be empty.
+    """
+    table = Table(
+        title=Text(title), title_justify="left", show_header=False, box=None, pad_edge=False
+    )
+    table.add_column(no_wrap=True)
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold", ratio=1)
+    for level, subject, finding, remedy in findings:
+        text = Text(finding)  # not markup: ids, names and paths may hold brackets
+        if remedy:
+            text.append(f"\n-> {remedy}", style="italic")
+        table.add_row(Text(level, style=styles[level]), Text(subject), text)
+    return table
+
+
+def print_place(console: Console, what: str, path: Path) -> None:
+    """Tell where something has been written, on one line, so that the path can be copied."""
+    where = f"{what} in [bold]{escape(str(path))}[/bold]"
+    console.print(where, highlight=False, soft_wrap=True)
+
+
+@contextmanager
+def writing(file: Path, remedy: str) -> Iterator[None]:
+    """Make the folder of a file that is about to be written.
+
+    Args:
+        file: that is written within the context.
+        remedy: what to do if it cannot be.
+
+    Raises:
+        ResultsError: the folder or the file cannot be written.
+    """
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        yield
+    except OSError as error:
+        msg = f"{file}: cannot be written ({error.strerror or error}); {remedy}"
+        raise ResultsError(msg) from error

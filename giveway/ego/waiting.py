@@ -1,0 +1,126 @@
+"""An ego before it departs: its vehicle FMU is loaded, its controller is set up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, sqrt
+from typing import TYPE_CHECKING
+
+from controller import SafetyParameters
+from fmus import FmuError
+from giveway.config.presets import parameters_of
+from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
+from giveway.errors import VehicleError
+from pedestrian_model import Predictor
+
+if TYPE_CHECKING:
+    from contextlib import ExitStack
+
+    from controller import Controller
+    from fmus import Vehicle
+    from giveway.config import EgoRunConfig
+
+_WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut off at two of them in x and in y
+
+
+@dataclass
+class WaitingEgo:
+    """An ego that has not departed yet: its vehicle FMU is loaded, its controller is set up.
+
+    Attributes:
+        config: of the ego.
+        vehicle: its FMU.
+        description: of the FMU, for the manifest.
+        controller: decides on its force.
+        predictor: of the crowd; None: the controller looks at the present only.
+    """
+
+    config: EgoRunConfig
+    vehicle: Vehicle
+    description: dict[str, object]
+    controller: Controller
+    predictor: Predictor | None
+    walking_speed_limit: float  # [m/s]
+    safety: SafetyParameters | None  # None: nothing watches over the controller
+
+    @property
+    def id(self) -> str:
+        """SUMO's id of the vehicle."""
+        return self.config.ego_id
+
+    @property
+    def taken_over(self) -> bool:
+        """Whether the vehicle is the scenario's."""
+        return bool(self.config.ego.take_over)
+
+    def start(self, speed: float) -> None:
+        """Set the FMU to where it departs.
+
+        Raises:
+            VehicleError: it fails.
+        """
+        try:
+            self.vehicle.start(position=0.0, speed=speed)
+        except FmuError as error:
+            raise VehicleError(str(error)) from error
+
+    @property
+    def clearance(self) -> float:
+        """The distance that the safety layer keeps to pedestrians' bodies [m]."""
+        return 0.0 if self.safety is None else self.safety.margin + self.safety.position_error
+
+    @property
+    def horizon(self) -> int:
+        """Steps that are looked ahead; the first one in any case."""
+        return max(1, self.controller.horizon)
+
+
+def make_waiting_ego(
+    config: EgoRunConfig,
+    controller: Controller,
+    time_step: float,
+    stack: ExitStack,
+) -> WaitingEgo:
+    """Load one ego's vehicle FMU and join it with its controller.
+
+    Args:
+        config: of the ego.
+        controller: decides on its force.
+        time_step: of the co-simulation [s].
+        stack: closes the FMU.
+
+    Raises:
+        VehicleError: the FMU cannot be loaded.
+    """
+    crowd = parameters_of(config.crowd.preset)
+    expected = parameters_of(config.perception.preset or config.crowd.preset)
+    try:
+        vehicle, description = open_for(config, time_step, stack)
+    except FmuError as error:
+        raise VehicleError(str(error)) from error
+    ahead = controller.horizon
+    predictor = Predictor(expected, time_step, ahead) if ahead else None
+    fastest = max(crowd.max_speed, expected.max_speed)
+    safety = safety_parameters(config, time_step) if config.safety_layer else None
+    return WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety)
+
+
+def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameters:
+    """The limits that the safety layer counts on; the body's width is not known yet.
+
+    Args:
+        config: of the ego.
+        time_step: of the co-simulation [s].
+    """
+    safety, walking = config.safety, parameters_of(config.crowd.preset)
+    reaction = safety.reaction_time
+    return SafetyParameters(
+        walking_acceleration=walking.max_acceleration,
+        walking_speed=walking.max_speed,
+        body_radius=walking.body_radius,
+        margin=safety.margin + model_margin(config, time_step),
+        position_error=_WITHIN * config.perception.position_noise,
+        force_limit=config.mpc.force_limit,
+        force_rate_limit=config.mpc.force_rate_limit if safety.rate_limited else inf,
+        reaction_time=identified_reaction_time(config) if reaction is None else reaction,
+    )

@@ -1,0 +1,62 @@
+"""The rectangle of the plane that a picture shows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+SLENDEREST = 2.2  # the overview is at most so much taller than wide, and twice so much wider
+
+
+class Box(NamedTuple):
+    """Limits of a view [m]."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    @classmethod
+    def around(cls, points: NDArray[np.float64], margin: float) -> Box:
+        """The points (n, 2) [m] with a margin [m] around them."""
+        left, bottom = points.min(axis=0) - margin
+        right, top = points.max(axis=0) + margin
+        return cls(float(left), float(bottom), float(right), float(top))
+
+    @classmethod
+    def centred(cls, middle: NDArray[np.float64], size: tuple[float, float]) -> Box:
+        """Width and height [m] around a point (2,) [m]."""
+        half = np.array(size) / 2.0
+        return cls(*(middle - half).tolist(), *(middle + half).tolist())
+
+    def less_slender(self) -> Box:
+        """The same view, widened where it is too slender to be drawn next to or above others."""
+        width, height = self.right - self.left, self.top - self.bottom
+        more_x = max(0.0, height / SLENDEREST - width) / 2.0
+        more_y = max(0.0, width / (2.0 * SLENDEREST) - height) / 2.0
+        return Box(self.left - more_x, self.bottom - more_y, self.right + more_x, self.top + more_y)
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height [m]."""
+        return self.right - self.left, self.top - self.bottom
+
+    @property
+    def aspect(self) -> float:
+        """Height over width."""
+        return (self.top - self.bottom) / (self.right - self.left)
+
+    def touches(self, points: NDArray[np.float64]) -> bool:
+        """Whether the points' own box meets this one."""
+        low, high = points.min(axis=0), points.max(axis=0)
+        apart = high[0] < self.left or low[0] > self.right
+        return bool(not (apart or high[1] < self.bottom or low[1] > self.top))
+
+    def apply(self, axes: Axes) -> None:
+        """Show this view in ``axes``, to scale."""
+        axes.set(xlim=(self.left, self.right), ylim=(self.bottom, self.top), aspect="equal")

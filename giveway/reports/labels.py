@@ -1,0 +1,56 @@
+"""How the levels and contexts of a study are labelled in its report."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from giveway.studies.contexts import baseline_level, other_factors
+from giveway.studies.contexts import contexts as contexts_of
+from giveway.studies.design import label_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from giveway.studies.contexts import Context
+    from giveway.studies.folder import StudyFolder
+
+
+def contexts(study: StudyFolder) -> list[Context]:
+    """The contexts of a study in the order of its design."""
+    return contexts_of(study.design, study.definition.comparison)
+
+
+def compared_labels(study: StudyFolder) -> list[str]:
+    """The labels of the compared factor's levels, the baseline's among them."""
+    return [level.label for level in study.design.factor(study.definition.comparison.factor).levels]
+
+
+def baseline_label(study: StudyFolder) -> str:
+    """The label of the level that is subtracted."""
+    return baseline_level(study.design, study.definition.comparison).label
+
+
+def treatment_labels(study: StudyFolder) -> list[str]:
+    """The labels of the levels that are compared with the baseline."""
+    baseline = baseline_label(study)
+    return [label for label in compared_labels(study) if label != baseline]
+
+
+def level_label(value: object) -> str:
+    """The label of the level whose value stands in a frame, whatever type it was read as."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return ""
+    if isinstance(value, str):
+        return value.lower() if value in {"True", "False"} else value
+    return label_of(value)
+
+
+def context_key(study: StudyFolder, row: Mapping[Any, Any]) -> tuple[str, ...]:
+    """The ``Context.key`` of a row of a table."""
+    names = other_factors(study.design, study.definition.comparison)
+    return tuple(level_label(row[name]) for name in names)

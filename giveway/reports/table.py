@@ -1,0 +1,72 @@
+"""A table of the report, and its cells."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from giveway.reports.wording import number
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell of a table.
+
+    Attributes:
+        text: what it says.
+        kind: class of its look: number, better, worse, none, na, code.
+        link: of the text; relative to the report.
+    """
+
+    text: str
+    kind: str = ""
+    link: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of the report.
+
+    Attributes:
+        name: its id in the page.
+        caption: what it shows.
+        headings: of the columns.
+        rows: of cells, as many as headings.
+        filters: columns by whose values rows can be chosen.
+        note: beneath it.
+    """
+
+    name: str
+    caption: str
+    headings: Sequence[str]
+    rows: Sequence[Sequence[Cell]]
+    filters: tuple[int, ...] = ()
+    note: str = ""
+
+    @property
+    def numeric(self) -> list[bool]:
+        """Which columns hold numbers."""
+        return [
+            bool(self.rows) and all(row[k].kind in {"number", "na"} for row in self.rows)
+            for k in range(len(self.headings))
+        ]
+
+
+def number_cell(value: float, digits: int = 2) -> Cell:
+    """A number; N.A. where there is none."""
+    return Cell(number(value, digits), "number" if math.isfinite(value) else "na")
+
+
+def whole_cell(value: object) -> Cell:
+    """A whole number, however it was read."""
+    return Cell(f"{int(str(value).partition('.')[0]):,}", "number")
+
+
+def verdict_cell(verdict: str) -> Cell:
+    """Better, worse, no difference shown, N.A., in its colour."""
+    kinds = {"better": "better", "worse": "worse"}
+    return Cell(verdict, kinds.get(verdict, "none"))
