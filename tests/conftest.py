@@ -14,7 +14,8 @@ import pytest
 if TYPE_CHECKING:
     from types import ModuleType
 
-ZOO = Path(__file__).parent / "support" / "fmus"
+SUPPORT = Path(__file__).parent / "support"
+ZOO = SUPPORT / "fmus"
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell without job control starts what is in its background deaf to Ctrl-C, which tests send.
@@ -33,6 +34,36 @@ def _load_zoo() -> ModuleType:
         sys.modules["fmu_zoo"] = module
         spec.loader.exec_module(module)
     return sys.modules["fmu_zoo"]
+
+
+def _load_support() -> None:
+    """Make the package tests/support, which is on no path, known as ``support``."""
+    spec = importlib.util.spec_from_file_location(
+        "support", SUPPORT / "__init__.py", submodule_search_locations=[str(SUPPORT)]
+    )
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["support"] = module
+    spec.loader.exec_module(module)
+
+
+_load_support()
+pytest_plugins = [
+    "support.clips",
+    "support.commands",
+    "support.running",
+    "support.runs",
+    "support.scenarios",
+    "support.studies",
+]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """With several workers (``-n``), keep neighbours together: they share expensive fixtures."""
+    if getattr(config.option, "numprocesses", None) and config.option.dist == "no":
+        config.option.dist = "worksteal"
 
 
 @pytest.fixture(scope="session")

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pandas as pd
@@ -14,7 +15,8 @@ import pytest
 
 from giveway.processes.heartbeat import Heartbeat
 
-LONG = ["--pedestrians", "3000", "--spawn-area", "20,-200,120,-10", "--no-pictures"]
+MANY = 600
+LONG = ["--pedestrians", str(MANY), "--spawn-area", "20,-200,120,-10", "--no-pictures"]
 LONG += ["--regulation-reference-speed", "0.1", "--time-limit", "120"]
 
 
@@ -67,7 +69,7 @@ def test_a_native_crash_keeps_the_rows_and_says_where_it_was(tmp_path: Path) -> 
     manifest = json.loads((tmp_path / "r" / "manifest.json").read_text())
     assert manifest["ending"] == "crashed"
     ledger = manifest["pedestrians"]
-    assert ledger["added"] == 3000 == ledger["arrived"] + ledger["walking"]
+    assert ledger["added"] == MANY == ledger["arrived"] + ledger["walking"]
     ego = pd.read_csv(tmp_path / "r" / "ego.csv")
     crowd = pd.read_csv(tmp_path / "r" / "trajectories.csv")
     assert len(ego) > 1
@@ -87,10 +89,10 @@ def test_a_crash_before_the_first_row_leaves_nothing_behind(tmp_path: Path) -> N
     assert not (tmp_path / "r").exists()
 
 
-def test_former_results_survive_a_crash_before_the_first_row(tmp_path: Path) -> None:
-    words = ["--pedestrians", "0", "--no-pictures"]
-    first = start(tmp_path, *words)
-    first.communicate(timeout=200)
+def test_former_results_survive_a_crash_before_the_first_row(
+    type_here: Callable[..., subprocess.CompletedProcess[str]], tmp_path: Path
+) -> None:
+    first = type_here("run", "--pedestrians", 0, "--no-pictures", "--out", "r")
     assert first.returncode == 0
     before = {path.name: path.read_bytes() for path in (tmp_path / "r").iterdir()}
     process = start(tmp_path, *LONG, "--force")

@@ -1,8 +1,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,25 +12,18 @@ from sumo_scenarios import Scenario, find
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-PROBES = Path(__file__).with_name("probes.py")
+PROBES = Path(__file__).parents[1] / "support" / "programs" / "scenario_probes.py"
 
 
 @pytest.fixture
-def probe(tmp_path: Path) -> Callable[..., dict[str, Any]]:
-    """Run one look of probes.py at a scenario, in a process and a working folder of its own."""
+def probe(tmp_path: Path, run_program: Callable[..., Any]) -> Callable[..., dict[str, Any]]:
+    """Run one look of scenario_probes.py, in a process and a working folder of its own."""
 
     def run(
         name: str, config: Path, step_length: float | None = None, **arguments: Any
     ) -> dict[str, Any]:
         request = {"config": str(config), "step_length": step_length} | arguments
-        result = subprocess.run(
-            [sys.executable, PROBES, name, json.dumps(request)],
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-            cwd=tmp_path,
-        )
+        result = run_program(PROBES, name, json.dumps(request), cwd=tmp_path)
         assert result.returncode == 0, f"exit code {result.returncode}: {result.stderr}"
         seen: dict[str, Any] = json.loads(result.stdout)
         return seen

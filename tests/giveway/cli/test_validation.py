@@ -1,0 +1,102 @@
+"""``giveway validate`` and ``giveway calibrate`` as a user types them."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from giveway.cli import main
+from giveway.config.presets import parameters_of
+from pedestrian_model import SIM
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture
+def dataset(tmp_path, write_clip, straight_walks) -> Path:
+    x, v = straight_walks(200, [[-4, 1.6], [3, -2], [0, 4]], [[1, 0], [-1, 0.3], [1.2, 0.1]])
+    cart = np.tile([0.0, 0.0, 0.1, 0.5], (200, 1))
+    folder = tmp_path / "citr" / "trajectories_filtered"
+    write_clip(folder / "vci_front", "front_interaction_01", x, v, cart)
+    write_clip(folder / "p2p_uni", "unidirection_no_vehicle_01", x, v)
+    write_clip(folder / "p2p_uni", "unidirection_no_vehicle_02", x[::-1], -v)
+    return tmp_path / "citr"
+
+
+def giveway(*words: object) -> int:
+    with pytest.raises(SystemExit) as end:
+        main([str(word) for word in words])
+    return int(end.value.code or 0)
+
+
+def test_validate_prints_both_tables_and_writes_csvs_and_pictures(dataset, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert giveway("validate", dataset, "--preset", "TABLE2", "--out", out) == 0
+    said = capsys.readouterr().out
+    assert "3 clips, 1 with a vehicle, 9 pedestrians" in said
+    for words in ("goalCV", "VCI without f_v", "within 2 m of the vehicle", "closest [m]"):
+        assert words in said
+    names = {"errors.csv", "contacts.csv"}
+    names |= {f"{n}.{kind}" for n in ("growth", "tracks", "places") for kind in ("png", "svg")}
+    assert {path.name for path in out.iterdir()} == names
+    errors = pd.read_csv(out / "errors.csv")
+    assert len(errors) == 2 * 3 * 2 * 5  # subsets, horizons, metrics, predictors
+    assert errors["horizon"].unique().tolist() == [0.73, 2.0, 4.0]
+    cv = errors.query("predictor == 'CV' and subset == 'all'")
+    assert cv["mean"].abs().max() < 1e-5
+    again = tmp_path / "again"
+    giveway("validate", dataset, "--preset", "TABLE2", "--out", again, "--quiet")
+    for name in ("errors.csv", "contacts.csv", "growth.png"):
+        assert (again / name).read_bytes() == (out / name).read_bytes()
+
+
+def test_results_are_not_replaced_unasked(dataset, tmp_path, capsys) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "errors.csv").write_text("old\n")
+    assert giveway("validate", dataset, "--out", out, "--quiet") == 2
+    assert "replace them with --force" in capsys.readouterr().err
+    assert giveway("validate", dataset, "--out", out, "--quiet", "--force") == 0
+    (out / "thesis.tex").write_text("")
+    assert giveway("validate", dataset, "--out", out, "--quiet", "--force") == 2
+    assert "holds 'thesis.tex'" in capsys.readouterr().err
+
+
+def test_a_wrong_folder_is_one_line(tmp_path, capsys) -> None:
+    assert giveway("validate", tmp_path / "nowhere") == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert error.count("\n") == 1
+    assert "no such folder" in error
+
+
+def test_calibrate_writes_a_preset_that_can_be_validated_with(dataset, tmp_path, capsys) -> None:
+    file = tmp_path / "mine.toml"
+    words = ("calibrate", dataset, "--parameters", "repulsion_strength, navigation_strength")
+    assert giveway(*words, "--out", file, "--evaluations", 10) == 0
+    said = capsys.readouterr().out
+    assert "held-out error" in said
+    assert "Not converged after 10 evaluations" in said
+    fitted = parameters_of(str(file))
+    assert fitted.repulsion_strength != SIM.repulsion_strength
+    assert fitted.mass == SIM.mass
+    origin = tomllib.loads(file.read_text())["provenance"]
+    assert origin["fitted"] == ["repulsion_strength", "navigation_strength"]
+    assert len(origin["training_clips"]) + len(origin["held_out_clips"]) == 3
+    assert origin["training_error_after"] <= origin["training_error_before"]
+    assert giveway(*words, "--out", file) == 2
+    assert "replace it with --force" in capsys.readouterr().err
+    assert giveway("validate", dataset, "--preset", file, "--out", tmp_path / "o", "-q") == 0
+
+
+def test_calibrate_refuses_an_unknown_parameter(dataset, tmp_path, capsys) -> None:
+    out = tmp_path / "mine.toml"
+    assert giveway("calibrate", dataset, "--parameters", "vehicle_force", "--out", out) == 2
+    assert "--parameters vehicle_force: unknown parameter" in capsys.readouterr().err
+    assert giveway("calibrate", dataset, "--out", tmp_path / "mine.txt") == 2
+    assert "expected the name of a preset file" in capsys.readouterr().err

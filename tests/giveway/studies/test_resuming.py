@@ -1,0 +1,247 @@
+"""A study that is interrupted, killed, out of disk or changed goes on, and nothing is lost."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from giveway.errors import ConfigError, GivewayError, ResultsError
+from giveway.studies.folder import StudyFolder
+from giveway.studies.study import StudyInterruptedError, StudyOptions
+
+
+def test_an_interrupted_study_goes_on_where_it_was(
+    small_study, study_of, small_study_text, tables_of, tmp_path
+):
+    def interrupt(progress):
+        if progress.made == 7:
+            raise KeyboardInterrupt
+
+    with pytest.raises(StudyInterruptedError, match="7 of 20 runs are kept"):
+        study_of(small_study_text, tmp_path / "half", interrupt)
+    half = StudyFolder.open(tmp_path / "half")
+    assert len(half.records) == 7
+    assert len(pd.read_csv(half.path / "runs.csv")) == 7
+
+    states = []
+    whole = study_of(small_study_text, tmp_path / "half", states.append, resume=True)
+    assert states[-1].kept == 7
+    assert states[-1].made == 13
+    assert tables_of(whole.path) == tables_of(small_study.path)
+
+
+def test_ctrl_c_twice_while_the_tables_are_made_is_still_one_line(
+    small_study, study_of, small_study_text, tables_of, tmp_path, monkeypatch
+):
+    import shutil
+
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    folder = shutil.copytree(small_study.path, tmp_path / "copy")
+    monkeypatch.setattr("giveway.studies.study.write_tables", interrupted)
+    with pytest.raises(StudyInterruptedError, match="20 of 20 runs are kept"):
+        study_of(small_study_text, folder, resume=True)
+    monkeypatch.undo()
+    assert not StudyFolder.open(folder).complete
+    study_of(small_study_text, folder, resume=True)
+    assert tables_of(folder) == tables_of(small_study.path)
+
+
+def test_a_folder_that_has_become_read_only_is_said_in_one_line(
+    small_study, study_of, small_study_text, tmp_path, monkeypatch
+):
+    import shutil
+
+    def read_only(self, missing_ok=False):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(self))
+
+    folder = shutil.copytree(small_study.path, tmp_path / "copy")
+    monkeypatch.setattr(Path, "unlink", read_only)
+    with pytest.raises(ResultsError, match=r"cannot be removed \(Read-only file system\)"):
+        study_of(small_study_text, folder, resume=True)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
+def test_a_killed_study_goes_on_where_it_was(small_study, small_study_text, tables_of, tmp_path):
+    file = tmp_path / "small.toml"
+    file.write_text(small_study_text, encoding="utf-8")
+    command = [sys.executable, "-m", "giveway", "study", str(file), "--out", str(tmp_path / "out")]
+    command += ["--jobs", "2", "--quiet", "--no-report"]
+    child = subprocess.Popen(command, start_new_session=True)
+    records = tmp_path / "out" / "records"
+    deadline = time.monotonic() + 120.0
+    while len(list(records.glob("*/*.json"))) < 3:
+        assert child.poll() is None
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    os.kill(child.pid, signal.SIGKILL)
+    child.wait()
+    made = {path: path.read_bytes() for path in records.glob("*/*.json")}
+    assert 3 <= len(made) < 20
+
+    done = subprocess.run([*command, "--resume"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert {path: path.read_bytes() for path in made} == made  # none was made again
+    ours, theirs = tables_of(tmp_path / "out"), tables_of(small_study.path)
+    assert ours.keys() == theirs.keys()
+    assert [name for name in ours if ours[name] != theirs[name]] == []
+
+
+def test_a_record_that_somebody_broke_is_made_again(
+    small_study, study_of, small_study_text, tables_of, tmp_path
+):
+    folder = study_of(small_study_text, tmp_path / "broken").path
+    victims = sorted(folder.glob("records/*/*.json"))[:2]
+    victims[0].write_text('{"run": "c1-s1"', encoding="utf-8")
+    victims[1].unlink()
+    (victims[0].parent / "left-over.new").write_text("half")
+    states = []
+    study_of(small_study_text, folder, states.append, resume=True)
+    assert states[-1].made == 2
+    assert tables_of(folder) == tables_of(small_study.path)
+
+
+def test_more_seeds_can_be_added_later(study_of, small_study_text, tmp_path):
+    few = small_study_text.replace("replications = 5", "replications = 2")
+    folder = study_of(few, tmp_path / "grown").path
+    states = []
+    grown = study_of(few.replace("= 2\n[run]", "= 4\n[run]"), folder, states.append, resume=True)
+    assert (states[-1].kept, states[-1].made) == (8, 8)
+    assert len(grown.runs) == 16
+
+
+def test_a_study_is_not_overwritten_unasked(small_study, study_of, small_study_text):
+    with pytest.raises(ResultsError, match="a study is there; go on with it by --resume"):
+        study_of(small_study_text, small_study.path)
+
+
+def test_a_folder_with_somebody_elses_files_is_left_alone(study_of, small_study_text, tmp_path):
+    (tmp_path / "thesis.tex").touch()
+    with pytest.raises(ResultsError, match=r"holds 'thesis\.tex'"):
+        study_of(small_study_text, tmp_path, force=True)
+    assert list(tmp_path.iterdir()) == [tmp_path / "thesis.tex"]
+
+
+def test_two_processes_do_not_work_on_one_study(study_of, small_study_text, tmp_path):
+    def second(progress):
+        if progress.made == 1:
+            with pytest.raises(ResultsError, match="another giveway study is at work"):
+                study_of(small_study_text, tmp_path / "one", resume=True)
+
+    study_of(small_study_text.replace("= 5", "= 1"), tmp_path / "one", second)
+
+
+def test_a_full_disk_keeps_what_is_there(
+    study_of, small_study_text, tables_of, tmp_path, monkeypatch
+):
+    real = Path.replace
+    written = []
+
+    def full(self, target):
+        if self.parent.parent.name == "records":
+            written.append(self)
+            if len(written) > 4:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self))
+        return real(self, target)
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(ResultsError, match=r"No space left.*go on with --resume"):
+        study_of(small_study_text, tmp_path / "full")
+    monkeypatch.undo()
+    states = []
+    study_of(small_study_text, tmp_path / "full", states.append, resume=True)
+    assert states[-1].kept == 4
+
+
+def test_a_comparison_of_half_a_study_is_not_taken_for_the_whole(
+    small_study, study_of, small_study_text, tables_of, tmp_path
+):
+    """Somebody has the report written while the study is at work."""
+    from giveway.studies.output import write_tables
+
+    def look(progress):
+        if progress.made == 17:
+            write_tables(StudyFolder.open(tmp_path / "out"), whole=True)
+
+    study = study_of(small_study_text, tmp_path / "out", look)
+    assert tables_of(study.path) == tables_of(small_study.path)
+
+
+@pytest.mark.parametrize("name", ["runs.csv", "study.toml", "manifest.json", "datapackage.json"])
+def test_a_kill_while_a_file_is_written_does_not_keep_it_from_going_on(
+    small_study, study_of, small_study_text, tables_of, tmp_path, monkeypatch, name
+):
+    import shutil
+
+    class KilledError(BaseException):
+        pass
+
+    def killed(self, target):
+        if target.name == name:
+            raise KilledError
+        return real(self, target)
+
+    folder = shutil.copytree(small_study.path, tmp_path / "copy")
+    real = Path.replace
+    monkeypatch.setattr(Path, "replace", killed)
+    with pytest.raises(KilledError):
+        study_of(small_study_text, folder, resume=True)
+    monkeypatch.undo()
+    study_of(small_study_text, folder, resume=True)
+    assert tables_of(folder) == tables_of(small_study.path)
+
+
+def test_definition_and_manifest_of_two_studies_are_not_mixed(
+    study_of, small_study_text, tmp_path, monkeypatch
+):
+    folder = study_of(small_study_text.replace("= 5", "= 1"), tmp_path / "mixed").path
+    text = (folder / "study.toml").read_text(encoding="utf-8")
+    (folder / "study.toml").write_text(text.replace("[3, 2]", "[2, 3]"), encoding="utf-8")
+    with pytest.raises(ResultsError, match=r"other cells than study\.toml.*--resume"):
+        StudyFolder.open(folder)
+
+
+def test_another_study_does_not_go_on_in_this_folder(study_of, small_study_text, small_study):
+    other = small_study_text.replace('"small"', '"other"')
+    with pytest.raises(ResultsError, match="holds the study 'small'; expected 'other'"):
+        study_of(other, small_study.path, resume=True)
+
+
+def test_a_note_beside_a_study_does_no_harm(small_study, study_of, small_study_text, tmp_path):
+    import shutil
+
+    folder = shutil.copytree(small_study.path, tmp_path / "noted")
+    (folder / "note.txt").touch()
+    study_of(small_study_text, folder, resume=True)
+    with pytest.raises(ResultsError, match=r"holds 'note\.txt'"):
+        study_of(small_study_text, folder, force=True)
+    assert (folder / "note.txt").is_file()
+
+
+def test_what_contradicts_itself_is_refused():
+    with pytest.raises(ConfigError, match="--resume and --force"):
+        StudyOptions(resume=True, force=True)
+    with pytest.raises(ConfigError, match="--jobs and --cluster"):
+        StudyOptions(jobs=2, cluster="local:2")
+
+
+def test_a_cluster_that_is_not_there_costs_nothing(
+    small_study, study_of, small_study_text, tmp_path
+):
+    import shutil
+
+    folder = shutil.copytree(small_study.path, tmp_path / "kept")
+    before = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    with pytest.raises(GivewayError, match="cannot be reached"):
+        study_of(small_study_text, folder, resume=True, jobs=None, cluster="tcp://127.0.0.1:1")
+    after = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    assert before == after

@@ -1,0 +1,121 @@
+"""Networks that netgenerate makes, and SUMO's own people walking in them."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+import shapely
+import sumo
+
+from giveway.walkways import WalkNetwork, WalkRoute
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+SUMO_HOME = Path(sumo.SUMO_HOME)
+WALKS = Path(__file__).parents[2] / "support" / "programs" / "sumo_walks.py"
+PAVED = ["--sidewalks.guess", "--crossings.guess", "--walkingareas"]
+NETWORKS = {
+    # 3 x 3 signalised junctions, 120 m apart, A0 in the south-west, C2 in the north-east
+    "grid": ["--grid", "--grid.number", "3", "--grid.length", "120", "-j", "traffic_light", *PAVED],
+    "spider": ["--spider", "--arms", "5", "--circles", "2", "--tls.guess", *PAVED],
+    "random": ["--rand", "--rand.iterations", "25", "--seed", "4", "--tls.guess", *PAVED],
+    # the same grid without anything for pedestrians: they walk on the road
+    "bare": ["--grid", "--grid.number", "3", "--grid.length", "120"],
+}
+
+
+@dataclass(frozen=True)
+class Built:
+    """A network file, and what giveway reads in it."""
+
+    file: Path
+    network: WalkNetwork
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Built]:
+    """Build one of NETWORKS, once."""
+    done: dict[str, Built] = {}
+
+    def build(name: str) -> Built:
+        if name not in done:
+            file = tmp_path_factory.mktemp(name) / f"{name}.net.xml"
+            command = [SUMO_HOME / "bin" / "netgenerate", *NETWORKS[name], "-o", file]
+            subprocess.run(command, check=True, capture_output=True)
+            done[name] = Built(file, WalkNetwork.read(file))
+        return done[name]
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def walked() -> Callable[[WalkRoute, tuple[float, float]], shapely.LineString]:
+    """The way of somebody alone: from line to line, each time to the nearest point of it."""
+
+    def trace(route: WalkRoute, start: tuple[float, float]) -> shapely.LineString:
+        places = [np.array(start)]
+        for point, (d_x, d_y, half) in zip(route.waypoints, route.passages, strict=True):
+            left, room = np.array([-d_y, d_x]), max(half - 0.27, 0.0)
+            places.append(point + np.clip((places[-1] - point) @ left, -room, room) * left)
+        return shapely.LineString(places)
+
+    return trace
+
+
+@pytest.fixture(scope="session")
+def grid(built: Callable[[str], Built]) -> WalkNetwork:
+    return built("grid").network
+
+
+@pytest.fixture(scope="session")
+def bare(built: Callable[[str], Built]) -> WalkNetwork:
+    return built("bare").network
+
+
+@pytest.fixture(scope="session")
+def bundled_city() -> Path:
+    """The pedestrian scenario that ships with SUMO: a real junction, its network gzipped."""
+    return SUMO_HOME / "tools" / "game" / "fokr_bs_demo.sumocfg"
+
+
+@pytest.fixture(scope="session")
+def sumo_walks(
+    built: Callable[[str], Built], tmp_path_factory: pytest.TempPathFactory, bundled_city: Path
+) -> Callable[[str], dict[str, Any]]:
+    """What SUMO's own people do in a network (sumo_walks.py), once for each."""
+    done: dict[str, dict[str, Any]] = {}
+
+    def walk(name: str) -> dict[str, Any]:
+        if name not in done:
+            folder = tmp_path_factory.mktemp(f"{name}_walks")
+            if name == "bundled city":
+                command = ["-c", bundled_city, "--gui-settings-file", "", "--step-length", "1"]
+            else:
+                command = ["-n", built(name).file, "-r", _trips(built(name).file, folder)]
+            request = {"command": [str(part) for part in command], "steps": 500}
+            (folder / "request.json").write_text(json.dumps(request))
+            files = folder / "request.json", folder / "seen.json"
+            subprocess.run([sys.executable, WALKS, *files], check=True, capture_output=True)
+            done[name] = json.loads((folder / "seen.json").read_text())
+        return done[name]
+
+    return walk
+
+
+def _trips(network: Path, folder: Path) -> Path:
+    """120 walks in two minutes, each with up to 400 m between its ends."""
+    trips = folder / "walks.rou.xml"
+    command = [
+        *(sys.executable, SUMO_HOME / "tools" / "randomTrips.py", "-n", network, "-o", trips),
+        *("--pedestrians", "-e", "120", "-p", "1", "--seed", "3", "--max-distance", "400"),
+    ]
+    subprocess.run(command, check=True, capture_output=True, cwd=folder)
+    return trips

@@ -1,0 +1,28 @@
+"""Real runs, shared by the tests that look at them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from giveway import RunResult
+
+
+@pytest.fixture(scope="session")
+def run_once() -> Callable[..., RunResult]:
+    """Run a configuration through the real SUMO, FMU and solver; equal ones only once."""
+    results: dict[str, RunResult] = {}
+
+    def run(**config: object) -> RunResult:
+        key = repr(sorted(config.items()))
+        if key not in results:
+            import giveway
+
+            results[key] = giveway.run(config)
+        return results[key]
+
+    return run
