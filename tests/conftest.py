@@ -7,33 +7,15 @@ import re
 import signal
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
-if TYPE_CHECKING:
-    from types import ModuleType
-
 SUPPORT = Path(__file__).parent / "support"
-ZOO = SUPPORT / "fmus"
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell without job control starts what is in its background deaf to Ctrl-C, which tests send.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-
-
-def _load_zoo() -> ModuleType:
-    """The package tests/support/fmus, which is on no path, under the name ``fmu_zoo``."""
-    if "fmu_zoo" not in sys.modules:
-        spec = importlib.util.spec_from_file_location(
-            "fmu_zoo", ZOO / "__init__.py", submodule_search_locations=[str(ZOO)]
-        )
-        assert spec is not None
-        assert spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        sys.modules["fmu_zoo"] = module
-        spec.loader.exec_module(module)
-    return sys.modules["fmu_zoo"]
 
 
 def _load_support() -> None:
@@ -72,7 +54,9 @@ def zoo(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -
     if importlib.util.find_spec("ziglang") is None:
         pytest.skip("ziglang is not installed: pip install giveway[build]")
     assert pytestconfig.cache is not None
-    return _load_zoo().Zoo(tmp_path_factory.mktemp("zoo"), pytestconfig.cache.mkdir("fmu_zoo"))
+    from support.fmus import Zoo
+
+    return Zoo(tmp_path_factory.mktemp("zoo"), pytestconfig.cache.mkdir("fmu_zoo"))
 
 
 @pytest.fixture(scope="session")

@@ -5,10 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 from xml.etree import ElementTree as Xml
 
-from fmu_zoo.cars import INPUT_ARRAY, LOAD, OUTPUT_ARRAY, QUANTITIES, REFERENCES, input_elements
+from support.fmus.cars import (
+    INPUT_ARRAY,
+    LOAD,
+    OUTPUT_ARRAY,
+    QUANTITIES,
+    REFERENCES,
+    input_elements,
+)
 
 if TYPE_CHECKING:
-    from fmu_zoo.cars import Car
+    from support.fmus.cars import Car
 
 IDENTIFIER: Final = "car"
 BASE: Final = {  # unit: base units; one not listed has those of its quantity's own unit

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 
+from support.fmus import FAULTS
+
 HERE = Path(__file__).parent
 ROLES = ("force", "drive_brake", "acceleration", "throttle_brake", "speed_setpoint")
 VERSIONS_AND_KINDS = [
@@ -21,13 +23,11 @@ VERSIONS_AND_KINDS = [
 ]
 
 
-def test_the_menu_and_the_source_know_every_fault(zoo):
-    import fmu_zoo  # known once the fixture has loaded it
-
+def test_the_menu_and_the_source_know_every_fault():
     menu = (HERE / "README.md").read_text(encoding="utf-8").partition("## What it can do wrong")[2]
     source = (HERE / "source" / "faults.c").read_text(encoding="utf-8").partition("FAULTS[]")[2]
-    assert re.findall(r"^\| `(\w+)`", menu, re.M) == list(fmu_zoo.FAULTS)
-    assert set(re.findall(r'\{"(\w+)", \w+\}', source)) == set(fmu_zoo.FAULTS)
+    assert re.findall(r"^\| `(\w+)`", menu, re.M) == list(FAULTS)
+    assert set(re.findall(r'\{"(\w+)", \w+\}', source)) == set(FAULTS)
 
 
 @pytest.mark.parametrize("role", ROLES)

@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import tomlkit
-from fmu_zoo import compiling
-from fmu_zoo.cars import Car, Fault, profile, settings
-from fmu_zoo.description import IDENTIFIER, describe
-from fmu_zoo.faults import FAULTS
 
 from fmus.archive.packing import write_archive
+from support.fmus import compiling
+from support.fmus.cars import Car, Fault, profile, settings
+from support.fmus.description import IDENTIFIER, describe
+from support.fmus.faults import FAULTS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
