@@ -18,8 +18,8 @@ from giveway.metrics import (
     Critical,
     pedestrian_metrics,
     post_encroachment_time,
+    proximity,
     summarise,
-    time_to_collision,
 )
 from giveway.records.tracks import CrowdTrack, EgoTrack
 
@@ -90,7 +90,7 @@ def main() -> None:
         judged = ego, crowd, VehicleShape(), BODY_RADIUS
         table = pedestrian_metrics(*judged)
         calls: tuple[Callable[[], object], ...] = (
-            lambda judged=judged: time_to_collision(*judged),
+            lambda judged=judged: proximity(*judged),
             lambda judged=judged: post_encroachment_time(*judged),
             lambda judged=judged: pedestrian_metrics(*judged),
             lambda ego=ego, table=table: summarise(

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib.util
 import os
 import sys
-import tempfile
 from pathlib import Path
 
 from giveway.errors import InstallationError
@@ -36,7 +34,12 @@ def check_rooms() -> None:
 
 
 def kernel_cache() -> Path:
-    """Where compiled kernels are kept: the user's cache, or a temporary folder without one."""
+    """Where compiled kernels are kept.
+
+    The user's choice comes first, then a folder in the user's cache, then a temporary one.
+    """
+    import tempfile  # none of these is needed before numba is
+
     from platformdirs import user_cache_path
 
     chosen = os.environ.get("NUMBA_CACHE_DIR")
@@ -51,7 +54,12 @@ def kernel_cache() -> Path:
 
 
 def _fingerprint() -> str:
-    """Changes with any file that may hold kernels: numba sees a change in a kernel's own only."""
+    """A text that changes with any file that may hold kernels.
+
+    Numba looks at the file of a kernel alone, and not at those of the kernels inlined into it.
+    """
+    import hashlib
+
     house = Path(__file__).resolve().parent.parent
     stamps = [
         (str(path), status.st_mtime_ns, status.st_size)
@@ -63,8 +71,28 @@ def _fingerprint() -> str:
 
 
 def choose_kernel_cache() -> None:
-    """Keep numba's cache out of the package folder, which may be read-only and is not ours."""
-    folder = str(kernel_cache())
-    os.environ.setdefault("NUMBA_CACHE_DIR", folder)
+    """Keep numba's cache out of the package folder, which may be read-only and is not ours.
+
+    Numba reads the choice once, when it is imported, and only then is it made: it costs a look at
+    every file of three packages, which most of what one can do with giveway does not need.
+    """
     if "numba" in sys.modules:  # imported before us: it has read the environment already
-        sys.modules["numba"].config.CACHE_DIR = folder
+        _name_kernel_cache()
+        sys.modules["numba"].config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
+    else:
+        sys.meta_path.insert(0, _BeforeNumba())
+
+
+class _BeforeNumba:
+    """Makes the choice when numba is about to be imported, whoever imports it.
+
+    An entry of ``sys.meta_path``, where Python asks for every module; it never finds one itself.
+    """
+
+    def find_spec(self, fullname: str, _path: object, _target: object = None) -> None:
+        if fullname == "numba":
+            _name_kernel_cache()
+
+
+def _name_kernel_cache() -> None:
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(kernel_cache()))

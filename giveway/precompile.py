@@ -1,4 +1,4 @@
-"""The one-time compilation of the numerical kernels, made visible."""
+"""The one-time compilation of the numerical kernels, with a message for the user."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ _MESSAGE = "Compiling the numerical kernels (once after installation, about half
 def compile_kernels_once(console: Console | None = None) -> None:
     """Compile and cache every kernel of a run, with a message, unless that has been done.
 
-    A tiny run touches them all; numba keeps the machine code in the user's cache folder.
+    A few tiny runs call them all; numba keeps the machine code in the user's cache folder.
 
     Args:
-        console: for the message; None: without a word.
+        console: for the message; None prints nothing.
     """
     marker = kernel_cache() / f"{_MARKER}{numba.__version__}"
     if marker.exists():
@@ -52,13 +52,13 @@ def compile_kernels_once(console: Console | None = None) -> None:
 
 
 def forget_old_kernels(folder: Path) -> None:
-    """Remove the kernels of versions that nobody has run for a month.
+    """Remove the kernels of versions that have not been run for a month.
 
     Args:
-        folder: of the present ones; its neighbours are the others.
+        folder: of the present kernels; those of other versions are in the folders beside it.
     """
     if not fnmatch(folder.name, _FOLDERS):
-        return  # the user's own choice: nothing there is known to be ours
+        return  # the user has chosen it, so the folders beside it need not be ours
     for other in folder.parent.glob(_FOLDERS):
         used = [file.stat().st_mtime for file in (other, *other.glob(f"{_MARKER}*"))]
         if other != folder and time.time() - max(used) > _KEPT:
@@ -66,12 +66,12 @@ def forget_old_kernels(folder: Path) -> None:
 
 
 def _tiny_run() -> None:
-    """Pass through every kernel once: a free drive, people in the way, cars, walls."""
+    """Call every kernel once: a free drive, people on the path, background vehicles, walls."""
     from giveway.api import run
     from giveway.records.progress import Ending
 
     people = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
-    hard = {"soft": False, "gap_choice": False}  # nothing is planned then but braking by the PID
+    hard = {"soft": False, "gap_choice": False}  # then nothing is planned, and the PID brakes
     for settings in (
         {"time_limit": 0.2, "crowd": {"pedestrians": 0}},
         {"time_limit": 0.2, "crowd": people},
@@ -90,13 +90,13 @@ def _tiny_run() -> None:
 
 
 def _solve_without_solution() -> None:
-    """From 1 m/s, 0.21 m are too few to stop in, which takes a certificate to prove."""
+    """A problem without a solution, which takes a certificate: 0.21 m to stop from 1 m/s."""
     mpc = Mpc(LongitudinalModel(), MpcParameters())
     ahead = np.full(mpc.parameters.horizon, mpc.parameters.safe_distance + 0.21)
     mpc.solve(0.0, 1.0, 0.0, ahead)
 
 
 def _come_and_go() -> None:
-    """People join a crowd and leave it."""
+    """Pedestrians join a crowd and leave it."""
     one = Crowd.create([(0.0, 0.0)], [(1.0, 0.0)], 1.4, [[(9.0, 0.0)]])
     one.concatenate(one).select(np.array([True, False]))

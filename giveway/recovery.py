@@ -1,4 +1,4 @@
-"""After a crash of native code: what the run had recorded, as a result like any other."""
+"""After a crash of native code: the rows that the run had recorded, as a result like any other."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def _result_of(
     endings = {
         ego.id: Ending.COMPLETED
         for ego in rows.egos()
-        if ego.track.position[-1] >= ego.goal  # it had left the road before the crash
+        if ego.track.position[-1] >= ego.goal  # it had reached its goal before the crash
     }
     return RunResult(
         config=config,

@@ -113,7 +113,7 @@ def _unknown(text: str, bundled: tuple[str, ...]) -> str:
 
 
 def _neighbours(path: Path) -> dict[str, str]:
-    """What lies where `path` was looked for and could be a scenario: lower-case name to path."""
+    """What could be a scenario in the folder of `path`: lower-case name to path."""
     try:
         entries = sorted(path.parent.iterdir())
         return {

@@ -13,10 +13,11 @@ from giveway.cli.printing import print_place
 from giveway.cli.progress import counting
 from giveway.config.presets import parameters_of
 from giveway.precompile import compile_kernels_once
+from giveway.results.folder import check_folder
 from giveway.validation import read_clips, validate
 from giveway.validation.contacts import ORDER
 from giveway.validation.evaluation import EVERYWHERE, NEAR
-from giveway.validation.output import check_folder, write_validation
+from giveway.validation.output import FILES, write_validation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,7 +38,7 @@ def validate_command(
     console = Console(quiet=quiet)
     parameters = parameters_of(preset)
     folder = out or Path("results") / f"validation_{Path(preset).stem}"
-    check_folder(folder, force=force)
+    check_folder(folder, force=force, ours=FILES, writer="giveway validate")
     clips = read_clips(dataset)
     compile_kernels_once(console)
     with counting(console, "Predicting") as count:

@@ -55,14 +55,14 @@ class Parts:
     departures: Departures
     roster: Roster
     crowd_model: CrowdModel
-    exchange: Exchange | None  # None: the scenario's walkers stay SUMO's
+    exchange: Exchange | None  # None: the scenario's own pedestrians stay SUMO's
     surroundings: Surroundings
-    yielding: Yielding | None  # None: SUMO's cars do not look for pedestrians
+    yielding: Yielding | None  # None: background vehicles do not yield to pedestrians
     remarks: tuple[str, ...]  # what the user should know
 
     @property
     def all_remarks(self) -> tuple[str, ...]:
-        """The remarks, with what has come up on the way."""
+        """The remarks, with those that came up during the run."""
         remarks = [
             f"ego '{name}': its {count} stop(s) are left out; the vehicle FMU drives on"
             for name, count in self.sumo.vehicles.dropped_stops.items()
@@ -228,9 +228,9 @@ def _host(config: RunConfig, network: WalkNetwork, net_file: Path) -> str:
 
 
 def _crowd(spawned: Spawned) -> Crowd:
-    """Everybody already walks: at the desired speed, towards the destination."""
-    way = spawned.destination - spawned.position
-    direction = way / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)[:, None]
+    """The added pedestrians, who walk already: at the desired speed, towards the destination."""
+    route = spawned.destination - spawned.position
+    direction = route / np.maximum(np.hypot(route[:, 0], route[:, 1]), 1e-9)[:, None]
     try:
         return Crowd.create(
             spawned.position,

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from giveway.ego.waiting import WaitingEgo
-    from giveway.sumo.lanes import Way
+    from giveway.sumo.lanes import LanePath
     from giveway.sumo.session import SumoSession
     from giveway.sumo.vehicles import VehicleState
 
@@ -39,7 +39,7 @@ class Departures:
         time_step: [s] of the co-simulation.
 
     Raises:
-        ScenarioError, ConfigError: an ego to be inserted has no way, or no file declares one that
+        ScenarioError, ConfigError: an ego to be inserted has no route, or no file declares one that
             is to be taken over.
     """
 
@@ -59,14 +59,14 @@ class Departures:
         self._paths = {ego.id: self._path_of_inserted(ego) for ego in egos if not ego.taken_over}
 
     def _require_declared(self, name: str) -> None:
-        """A vehicle that no file declares need not be waited for."""
+        """Refuse to wait for a vehicle that no file declares."""
         hint = undeclared(name, self._session.start.read)
         if hint is not None:
             msg = f"--ego {name}: no such vehicle in the routes of {self._config_file}; {hint}"
             raise ScenarioError(msg)
 
     def _require_undeclared(self, name: str) -> None:
-        """Two vehicles cannot have the same id, be it that one departs later."""
+        """Refuse an id that a vehicle of the scenario has, even if that departs later."""
         if declares(name, self._session.start.read):
             msg = (
                 f"--ego-id {name}: {self._config_file} has a vehicle of this id; choose another, "
@@ -81,17 +81,17 @@ class Departures:
 
     @property
     def first_path(self) -> EgoPath | None:
-        """The way of the first ego to be inserted, if there is one."""
+        """The path of the first ego to be inserted, if there is one."""
         return next((path for path, _ in self._paths.values()), None)
 
     def run_until_first(self, goes_on: Callable[[float], bool]) -> None:
-        """Let the scenario run by itself until somebody is due.
+        """Let the scenario run by itself until an ego is due.
 
         Args:
             goes_on: asked at each SUMO step, with SUMO's clock [s].
 
         Raises:
-            ScenarioError: nobody ever is.
+            ScenarioError: none ever is.
         """
         session = self._session
         began = session.time
@@ -125,10 +125,10 @@ class Departures:
         return [self._enter(ego) for ego in ready]
 
     def require_all(self) -> None:
-        """Make sure that everybody has departed.
+        """Make sure that every ego has departed.
 
         Raises:
-            ScenarioError: somebody has not.
+            ScenarioError: one has not.
         """
         if self.waiting:
             raise ScenarioError(self._never(self.waiting[0]))
@@ -162,7 +162,7 @@ class Departures:
 
     # --- inserted -----------------------------------------------------------------------------
 
-    def _path_of_inserted(self, ego: WaitingEgo) -> tuple[EgoPath, Way]:
+    def _path_of_inserted(self, ego: WaitingEgo) -> tuple[EgoPath, LanePath]:
         settings = ego.config.ego
         if settings.depart_time >= self._session.end:
             msg = (
@@ -178,12 +178,12 @@ class Departures:
                 "or drive none with --no-ego"
             )
             raise ConfigError(msg)
-        way = self._session.lanes.along(
+        lane_path = self._session.lanes.along(
             settings.route, settings.lane, start=settings.depart_position
         )
-        path = EgoPath.through(way.points)
+        path = EgoPath.through(lane_path.points)
         self._require_room(ego, path, settings.depart_position)
-        return path, way
+        return path, lane_path
 
     def _require_room(self, ego: WaitingEgo, path: EgoPath, departure: float) -> None:
         distance = ego.config.ego.travel_distance
@@ -207,7 +207,7 @@ class Departures:
         if ego.taken_over:
             return self._take_over(ego)
         settings, vehicle = ego.config.ego, ego.config.vehicle
-        path, way = self._paths[ego.id]
+        path, lane_path = self._paths[ego.id]
         speed = DEFAULT_SPEED if settings.initial_speed is None else settings.initial_speed
         self._session.vehicles.insert(
             ego.id,
@@ -217,16 +217,16 @@ class Departures:
             speed=speed,
         )
         shape = VehicleShape(vehicle.length or BODY.length, vehicle.width or BODY.width)
-        return self._on_the_road(ego, path, way, settings.depart_position, shape, speed)
+        return self._on_the_road(ego, path, lane_path, settings.depart_position, shape, speed)
 
     def _take_over(self, ego: WaitingEgo) -> Ego:
         state = self._session.vehicles.state(ego.id)
         vehicle = ego.config.vehicle
         shape = VehicleShape(vehicle.length or state.length, vehicle.width or state.width)
-        way = self._session.lanes.along(
+        lane_path = self._session.lanes.along(
             state.edges, state.lane, kind=state.kind, start=state.lane_position
         )
-        path, departure, lights = _joined(way, state)
+        path, departure, lights = _joined(lane_path, state)
         self._require_room(ego, path, departure)
         self._session.vehicles.adopt(state, shape)
         speed = ego.config.ego.initial_speed
@@ -237,7 +237,7 @@ class Departures:
         self,
         ego: WaitingEgo,
         path: EgoPath,
-        way: Way,
+        lane_path: LanePath,
         departure: float,
         shape: VehicleShape,
         speed: float,
@@ -246,7 +246,7 @@ class Departures:
         ego.start(speed)
         goal = config.ego.travel_distance
         lights = Lights(
-            way.lights if config.regulation.traffic_lights else (),
+            lane_path.lights if config.regulation.traffic_lights else (),
             comfortable=config.regulation.comfortable_deceleration,
             hardest=config.mpc.force_limit / config.vehicle.mass,
         )
@@ -261,19 +261,19 @@ class Departures:
         )
 
 
-def _joined(way: Way, state: VehicleState) -> tuple[EgoPath, float, Way]:
+def _joined(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, LanePath]:
     """The path of a vehicle that is taken over, its front bumper's station, and its lights.
 
-    SUMO's front bumper lies on the lane's centre line as a rule; a vehicle beside it (changing
-    lanes, or with SUMO's sublane model) joins the line within ``_MERGE``.
+    As a rule the front bumper is on the lane's centre line. A vehicle beside it (one that changes
+    lanes, or is moved by SUMO's sublane model) joins the line within ``_MERGE``.
     """
-    path = EgoPath.through(way.points)
+    path = EgoPath.through(lane_path.points)
     station, lateral = path.locate(state.x, state.y, near=state.lane_position)
     if abs(lateral) <= _ON_THE_LINE:
-        return path, station, way
+        return path, station, lane_path
     share = (path.stations - station) / _MERGE
     beside = path.vertices[share > 1.0]
     joined = EgoPath.through([(state.x, state.y), *beside])
     shift = joined.length - (path.length - station)
-    lights = [light._replace(station=light.station - station + shift) for light in way.lights]
-    return joined, 0.0, type(way)(joined.vertices, tuple(lights))
+    lights = [light._replace(station=light.station - station + shift) for light in lane_path.lights]
+    return joined, 0.0, type(lane_path)(joined.vertices, tuple(lights))

@@ -2,8 +2,8 @@
 
 The order of one step, from t_k to t_k+1 (Yang & Özgüner 2019, algorithm 1):
 
-1. where SUMO has just stepped, read it: egos that depart, walkers who enter or leave the zone,
-   lights, SUMO's own vehicles and whom they yield to;
+1. where SUMO has just stepped, read it: egos that depart, persons who enter or leave the zone,
+   lights, background vehicles and the pedestrians they yield to;
 2. for each ego: predict the crowd, solve for the force u(k);
 3. record the state at t_k and u(k);
 4. step the vehicles and the crowd, both from the state at t_k, so that their order is irrelevant;
@@ -45,7 +45,12 @@ ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arriv
 
 
 def looks_ahead(period: float | None, time_step: float) -> int:
-    """Every how many steps of look-ahead a prediction is kept for a ``period`` [s]; 0: never."""
+    """The steps of look-ahead between two predictions that are kept; 0: none is kept.
+
+    Args:
+        period: between them [s]; None: none is kept.
+        time_step: [s].
+    """
     return 0 if period is None else max(1, round(period / time_step))
 
 
@@ -173,8 +178,7 @@ class Loop:
                 self._recorder.drive(ego.id, ego.shape, ego.goal)
         if parts.exchange is not None:
             parts.exchange.update(self._places())
-        people = self._roster.crowd.position
-        self._mirror.read(self._egos, people)
+        self._mirror.read(self._egos, self._roster.crowd.position)
         for ego in self._egos:
             if ego.lights.systems:
                 states = parts.sumo.light_states(ego.lights.systems)
@@ -225,7 +229,7 @@ class Loop:
         return acting
 
     def _record_crowd(self) -> None:
-        """Everybody near an ego, and from time to time everybody."""
+        """Record the pedestrians near an ego, and from time to time all of them."""
         roster = self._roster
         if len(roster.ids) > self._named:
             self._recorder.name_pedestrians(roster.ids[self._named :])
@@ -239,7 +243,9 @@ class Loop:
     ) -> None:
         present = self._roster.present
         people = present if whom is None else present[whom]
-        every = min(self._looks, len(predicted))  # of a period beyond the horizon, its end is kept
+        every = min(
+            self._looks, len(predicted)
+        )  # for a period beyond the horizon, the horizon's end is kept
         kept = predicted[every - 1 :: every]
         looks = np.arange(every, len(predicted) + 1, every, dtype=np.float64)
         self._recorder.predictions(ego_id, people, self._time_step * looks, kept)
@@ -296,7 +302,7 @@ class Loop:
         )
 
     def _step_crowd(self) -> None:
-        """Move the crowd under the vehicles at t_k; who has arrived leaves."""
+        """Move the crowd under the vehicles at t_k; pedestrians that have arrived leave."""
         parts, roster = self._parts, self._roster
         if not len(roster.present):
             return

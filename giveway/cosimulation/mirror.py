@@ -1,4 +1,4 @@
-"""What SUMO and our own world tell each other: poses of vehicles in, places of people out."""
+"""The exchange with SUMO: poses of background vehicles in, positions of pedestrians out."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ Array = NDArray[np.float64]
 _INFLUENCE_RANGE = 10.0  # [m] from a vehicle's contour: the influence is exp(-26) of the strongest
 _NOSE = 1.5  # [s] the contour's nose is no longer than this times the speed
 _NONE = np.empty(0, dtype=np.int64)
-_STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
+_STANDING = 1e-6  # [m/s] below this speed a pedestrian keeps its last angle
 
 
 class Mirror:
-    """Keeps SUMO where our world is, and our world's background vehicles where SUMO's are.
+    """Keeps SUMO's persons and egos where ours are, and our background vehicles where SUMO's are.
 
-    SUMO steps once every ``substeps`` control steps; in between its vehicles go on straight at
-    the speed they had.
+    SUMO steps once every ``substeps`` control steps; in between, background vehicles go straight on
+    at the speed they had.
 
     Args:
         session: the running simulation.
         time_step: of the control [s].
         substeps: control steps per SUMO step.
-        horizon: N, steps that anybody looks ahead.
+        horizon: N, the most steps that any ego looks ahead.
 
     Attributes:
         background: SUMO's own vehicles at its latest instant.
@@ -76,22 +76,22 @@ class Mirror:
 
     # --- from SUMO ----------------------------------------------------------------------------
 
-    def read(self, egos: Sequence[Ego], people: Array) -> None:
-        """Take over where SUMO's own vehicles are now.
+    def read(self, egos: Sequence[Ego], pedestrians: Array) -> None:
+        """Read where the background vehicles are now.
 
         Args:
             egos: on the road, in the order of their rows.
-            people: (n, 2) [m] the pedestrians now.
+            pedestrians: (n, 2) [m] positions now.
 
         Raises:
-            VehicleError: SUMO has a vehicle at no finite place.
+            VehicleError: a position in SUMO is not finite.
         """
         self.background = background = self._session.vehicles.background()
         near = _NONE
         if background.ids:
             self._require_finite(background)
             drives = [(*ego.pose[:2], ego.vehicle.speed) for ego in egos]
-            near = _relevant(background, people, drives, self._span)
+            near = _relevant(background, pedestrians, drives, self._span)
         if self.poses.shape[1] != len(egos) + len(near) or self._driven != egos:
             self._allocate(egos, len(near))
         if len(near):
@@ -120,13 +120,13 @@ class Mirror:
             ego.corridor.fill_poses(self.poses, row, ego.front, ego.vehicle.speed)
 
     def drop(self, row: int) -> None:
-        """Take the ego in ``row`` out of the vehicles, between two of SUMO's steps or not."""
+        """Remove the ego in ``row`` from the vehicles; possible at every control step."""
         self._egos -= 1
         self.poses = np.ascontiguousarray(np.delete(self.poses, row, axis=1))
         self.vehicles = Vehicles(self.poses[0])
 
     def carry_on(self) -> None:
-        """Move SUMO's vehicles on by one control step, since SUMO itself does not step yet."""
+        """Move background vehicles on by one control step in which SUMO itself does not step."""
         if self.poses.shape[1] > self._egos:
             carry_on(self.poses, self._egos, self._time_step)
 
@@ -136,7 +136,7 @@ class Mirror:
         """Move everybody in SUMO to where they are at the control step ``step``, and step SUMO.
 
         Raises:
-            CrowdError, VehicleError: a value that SUMO must not be given (it hangs on them).
+            CrowdError, VehicleError: a position is not finite, on which SUMO would hang.
             SumoError: SUMO failed or disagrees.
         """
         places = [(ego.id, ego.check_pose(step)) for ego in egos]
@@ -153,32 +153,32 @@ class Mirror:
         x, y = crowd.position.T.tolist()
         self._session.mirror(places, roster.names, x, y, angles.tolist())
 
-    def _reserve(self, people: int) -> None:
-        if people > len(self._angles):
-            more = max(people, 2 * len(self._angles))
+    def _reserve(self, pedestrians: int) -> None:
+        if pedestrians > len(self._angles):
+            more = max(pedestrians, 2 * len(self._angles))
             self._angles = np.concatenate([self._angles, np.zeros(more - len(self._angles))])
             self._row = np.empty(more)
 
 
 def _relevant(
     vehicles: BackgroundVehicles,
-    people: Array,
+    pedestrians: Array,
     egos: Sequence[tuple[float, float, float]],
     ahead: float,
 ) -> NDArray[np.int64]:
-    """Indices of the vehicles that matter to anybody within ``ahead`` [s].
+    """Indices of the vehicles that matter to a pedestrian or an ego within ``ahead`` [s].
 
     Args:
-        vehicles: SUMO's.
-        people: (n, 2) [m].
+        vehicles: the background vehicles.
+        pedestrians: (n, 2) [m].
         egos: x, y [m] and speed [m/s] of each.
         ahead: [s].
     """
     speed = np.abs(vehicles.speed)
     reach = _INFLUENCE_RANGE + vehicles.length + vehicles.width + (_NOSE + ahead) * speed
     matters = np.zeros(len(vehicles.ids), dtype=np.bool_)
-    if len(people):
-        low, high = people.min(axis=0), people.max(axis=0)
+    if len(pedestrians):
+        low, high = pedestrians.min(axis=0), pedestrians.max(axis=0)
         matters |= (
             (vehicles.x >= low[0] - reach)
             & (vehicles.x <= high[0] + reach)
@@ -216,9 +216,10 @@ def carry_on(poses: Array, egos: int, time_step: float) -> None:
 def walking_angles(
     position: Array, velocity: Array, present: NDArray[np.int64], memory: Array, angles: Array
 ) -> int:
-    """Fill each one's angle [deg, 0 = north, clockwise]; the first not finite state, or -1.
+    """Fill each pedestrian's angle [deg, 0 = north, clockwise].
 
-    ``memory`` holds the angles of all pedestrians: who stands keeps the last one.
+    ``memory`` holds the last angle of all pedestrians, which is kept while one stands. Returns the
+    index of the first state that is not finite, or -1.
     """
     for j in range(len(present)):
         v_x, v_y = velocity[j, 0], velocity[j, 1]

@@ -1,4 +1,4 @@
-"""When a scenario without an end is to be ended: nobody that giveway drives will ever move."""
+"""Ends a scenario without an end in which no ego moves any more."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Standstill:
     """Watches whether any ego moves."""
 
     def __init__(self) -> None:
-        self._driven = 0.0  # [m] by all egos, when one was last seen to move
+        self._driven = 0.0  # [m] driven by all egos when one last moved
         self._since = 0.0  # [s] that instant
 
     @property

@@ -1,4 +1,4 @@
-"""Is everything there that a run needs? Environment and scenario, each finding with its remedy."""
+"""Checks of the environment and of scenarios before a run; each finding names its remedy."""
 
 from giveway.doctor.environment import examine_environment
 from giveway.doctor.finding import Finding

@@ -1,4 +1,4 @@
-"""What scenario files contain, counted as their bytes stream by: cheap on files of any size."""
+"""What scenario files contain, counted while their bytes are read: cheap on files of any size."""
 
 from __future__ import annotations
 
@@ -7,13 +7,11 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from giveway.scenario_files.reading import opened
+from giveway.scenario_files.reading import pieces
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-_CHUNK: Final = 1 << 22  # [bytes]
-_LONGEST: Final = 4096  # [bytes] a tag that begins in one chunk ends within this in the next
 _DEMAND = re.compile(rb"<(vehicle|trip|flow|person|personFlow|tlLogic)[\s>]")
 _REMOTE = re.compile(rb"\b(?:file|href|dest|output|imgFile)\s*=\s*[\"'](https?://[^\"']{1,200})")
 _NET = re.compile(rb"<net\s([^>]*)>")
@@ -28,8 +26,8 @@ class Contents:
     """What one or several files contain.
 
     Attributes:
-        elements: how many of each of vehicle, trip, flow, person, personFlow, tlLogic, and in a
-            network walkingarea, crossing, sidewalk; commented-out ones are counted too.
+        elements: the number of each of vehicle, trip, flow, person, personFlow, tlLogic, and in a
+            network of walkingarea, crossing, sidewalk; those in comments are counted, too.
         network: the attributes of the ``<net>`` element.
         remote: addresses that are referred to.
     """
@@ -40,12 +38,12 @@ class Contents:
 
     @property
     def vehicles(self) -> int:
-        """Vehicles and trips; those that flows bring are not among them."""
+        """The number of vehicles and trips, without those of flows."""
         return self.elements["vehicle"] + self.elements["trip"]
 
     @property
     def persons(self) -> int:
-        """Persons and flows of persons."""
+        """The number of persons and flows of persons."""
         return self.elements["person"] + self.elements["personFlow"]
 
 
@@ -55,15 +53,8 @@ def read_contents(file: Path, into: Contents) -> None:
     Raises:
         OSError, EOFError: it cannot be read.
     """
-    with opened(file) as stream:
-        tail = b""
-        while chunk := stream.read(_CHUNK):
-            text = tail + chunk
-            last = text.rfind(b"<", max(0, len(text) - _LONGEST))
-            end = last if last >= 0 else len(text)
-            _count(text[:end], into)
-            tail = text[end:]
-        _count(tail, into)
+    for text in pieces(file):
+        _count(text, into)
 
 
 def _count(text: bytes, into: Contents) -> None:

@@ -68,7 +68,7 @@ def _rooms() -> list[Finding]:
 
 
 def _packages() -> list[Finding]:
-    """Every package that giveway asks for, against the bounds that it declares."""
+    """Compare every package that giveway needs with the versions that it declares."""
     findings = []
     for requirement in _requirements():
         subject = requirement.name
@@ -88,7 +88,7 @@ def _packages() -> list[Finding]:
 
 
 def _requirements() -> list[Requirement]:
-    """What giveway declares to need: as installed, or in the repository that it runs from."""
+    """The requirements that giveway declares, as installed or in the repository it runs from."""
     try:
         declared = metadata.requires("giveway") or []
     except metadata.PackageNotFoundError:
@@ -109,7 +109,7 @@ def _requirements() -> list[Requirement]:
 
 
 def _sumo() -> list[Finding]:
-    """Load libsumo in a process of its own, which it may take down."""
+    """Load libsumo in a process of its own, which may crash."""
     remedy = "pip install --force-reinstall 'libsumo>=1.28,<1.29'"
     try:
         result = subprocess.run(
@@ -147,7 +147,7 @@ def _vehicle() -> list[Finding]:
 
 
 def _solver() -> list[Finding]:
-    """Solve the MPC's own problem, with nobody in the way."""
+    """Solve the MPC's problem with no pedestrian on the path."""
     remedy = "pip install --force-reinstall 'osqp>=1.1,<1.2'"
     try:
         mpc = Mpc(LongitudinalModel(), MpcParameters())
@@ -160,7 +160,7 @@ def _solver() -> list[Finding]:
 
 
 def _kernels() -> list[Finding]:
-    """Numba compiles, and keeps what it has compiled."""
+    """Check that numba compiles and can keep what it has compiled."""
     import numba
 
     try:

@@ -26,20 +26,20 @@ class Finding:
 
 
 def ok(subject: str, text: str) -> Finding:
-    """All is well."""
+    """A finding that all is well."""
     return Finding("ok", subject, text)
 
 
 def note(subject: str, text: str, remedy: str = "") -> Finding:
-    """Good to know."""
+    """A finding that is good to know."""
     return Finding("note", subject, text, remedy)
 
 
 def warning(subject: str, text: str, remedy: str) -> Finding:
-    """May spoil a run."""
+    """A finding that may spoil a run."""
     return Finding("warning", subject, text, remedy)
 
 
 def error(subject: str, text: str, remedy: str) -> Finding:
-    """Stops a run."""
+    """A finding that stops a run."""
     return Finding("error", subject, text, remedy)

@@ -1,4 +1,4 @@
-"""A scenario: are its files there, what is in them, and what would a run make of it."""
+"""Checks of a scenario: whether its files are there, what they contain, what a run would do."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from collections import Counter
     from pathlib import Path
 
-_CONTROL_STEP: Final = 0.05  # [s] a run's own is this or the longest below that divides SUMO's
+_CONTROL_STEP: Final = 0.05  # [s] at most; a run takes the longest step that divides SUMO's
 _NETWORK_VERSION: Final = (1, 20)  # what SUMO 1.28's netconvert writes
 _OLDEST_NETWORK: Final = (1, 0)  # before it, walkingareas and lefthand mean something else
 
 
 def examine_scenario(scenario: str | Path, patience: float = PATIENCE) -> list[Finding]:
-    """Look at a scenario as a run would meet it; SUMO tries it in a process of its own.
+    """Look at a scenario as a run would use it; SUMO tries it in a process of its own.
 
     Args:
         scenario: a bundled name, a folder or a .sumocfg.
@@ -89,7 +89,7 @@ def _network(files: ScenarioFiles, network: Contents, demand: Contents) -> list[
 
 
 def _walkways(network: Counter[str], demand: Contents) -> Finding:
-    """Where SUMO's own persons can walk; ours need no infrastructure."""
+    """Where SUMO's own persons can walk; giveway's pedestrians need no infrastructure."""
     subject = "walkways"
     if network["walkingarea"] and network["sidewalk"]:
         text = (

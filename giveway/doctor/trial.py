@@ -1,16 +1,16 @@
-"""The probe from outside: what SUMO made of the scenario, whatever became of it."""
+"""The probe of a scenario as its parent process sees it, also if SUMO crashes or hangs."""
 
 from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any, Final
 
 from giveway.doctor.finding import Finding, error, note, ok, warning
+from giveway.processes.causes import cause_of_end
 
 PATIENCE: Final = 120.0  # [s] for loading and a moment's running
 _HOUSE: Final = Path(__file__).resolve().parents[2]
@@ -24,7 +24,7 @@ def try_in_sumo(config_file: Path, patience: float = PATIENCE) -> list[Finding]:
         config_file: the .sumocfg.
         patience: how long to wait [s].
     """
-    # -P: a controller.py in the user's folder is not our controller
+    # -P: a controller.py in the user's folder must not come before giveway's own.
     command = [sys.executable, "-P", "-m", "giveway.sumo.probe", str(config_file)]
     ours = os.pathsep.join(filter(None, (str(_HOUSE), os.environ.get("PYTHONPATH"))))
     try:
@@ -47,9 +47,9 @@ def try_in_sumo(config_file: Path, patience: float = PATIENCE) -> list[Finding]:
 
 
 def judged(config_file: Path, result: subprocess.CompletedProcess[str]) -> list[Finding]:
-    """What the probe's process left behind: an exit code, JSON, SUMO's messages."""
+    """The findings from what the probe left: an exit code, JSON, SUMO's messages."""
     if result.returncode < 0:
-        name = signal.Signals(-result.returncode).name
+        name = cause_of_end(result.returncode)
         remedy = f"look at it alone: sumo -c {config_file}; report it to the authors of SUMO"
         return [error("SUMO", f"SUMO crashed ({name})", remedy)]
     if result.returncode != 0:
@@ -66,7 +66,7 @@ def judged(config_file: Path, result: subprocess.CompletedProcess[str]) -> list[
 
 
 def _reasons(stderr: str, refused: str) -> str:
-    """All that SUMO said: on stderr, and in the exception, which often says only that it failed."""
+    """All of SUMO's reasons: on stderr, and the exception's, which often says only "failed"."""
     lines = [line.strip() for line in stderr.splitlines()]
     said = [line.removeprefix("Error:").strip() for line in lines if line.startswith("Error:")]
     return "; ".join(dict.fromkeys([*said, *([] if refused == "Process Error" else [refused])]))
@@ -107,14 +107,14 @@ def _outputs(seen: dict[str, Any]) -> list[Finding]:
 
 
 def _remarks(seen: dict[str, Any]) -> list[Finding]:
-    """What a run changes, beyond what the scenario's own findings say."""
+    """What a run changes, if the findings on the scenario do not say it already."""
     said = ("outputs", "pedestrian.model", "random")
     parted = [remark.partition(": ") for remark in seen["remarks"]]
     return [note(option, text) for option, _, text in parted if option not in said]
 
 
 def _egos(seen: dict[str, Any]) -> list[Finding]:
-    """Vehicles that can be taken over, and a route for one of our own."""
+    """The vehicles that can be taken over, and a route for an ego that is inserted."""
     vehicles: dict[str, list[str]] = seen["vehicles"]
     if not vehicles:
         text = f"no road vehicle departs before {seen['time']:g} s"

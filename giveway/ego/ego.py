@@ -1,4 +1,4 @@
-"""One vehicle that giveway drives: its FMU, its controller, its way."""
+"""One vehicle that giveway drives: its FMU, its controller, its path."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Ego:
         path: of the ego.
         departure: station [m] of the front bumper where the FMU's position is 0.
         shape: of its body.
-        lights: the traffic lights on its way.
+        lights: the traffic lights on its path.
         goal: the FMU's position [m] at which it is done.
         time_step: [s].
     """

@@ -12,7 +12,7 @@ from giveway.ego.in_front import closest_in_front, window
 from giveway.ego.threats import Alarm, conflicts_and_calm
 from giveway.geometry.kernel import kernel
 from giveway.geometry.path import body_pose
-from giveway.metrics.critical import CRITICAL_TTC
+from giveway.metrics.conflicts import CRITICAL_TTC
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _BEHIND = 10.0  # [m] so far back, or as far as people walk in the horizon, they are looked for
-_ONCOMING = -0.8  # cosine of the angle to the ego's way there
+_ONCOMING = -0.8  # cosine of the angle to the ego's path there
 _OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
 _FINEST_OUTLINE = 0.1  # [m] and at least
 

@@ -1,4 +1,4 @@
-"""The traffic lights on the ego's way: where it has to stop, if anywhere."""
+"""The traffic lights on the ego's path: where it has to stop, if anywhere."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ _YELLOW = frozenset("yY")
 
 
 class Lights:
-    """Watches the lights of one ego's way.
+    """Watches the lights on one ego's path.
 
     At yellow the ego stops if it can with the comfortable deceleration, and goes on if not; at
     red it stops if it can at all.
 
     Args:
-        lights: in the order of the way.
+        lights: in the order of the path.
         comfortable: deceleration [m/s^2] that is demanded at yellow.
         hardest: deceleration [m/s^2] that the vehicle is capable of.
 
     Attributes:
-        systems: SUMO's ids of the traffic lights on the way.
+        systems: SUMO's ids of the traffic lights on the path.
     """
 
     def __init__(self, lights: Sequence[Light], *, comfortable: float, hardest: float) -> None:

@@ -1,4 +1,4 @@
-"""The safety layer of one ego on its way."""
+"""The safety layer of one ego on its path."""
 
 from __future__ import annotations
 

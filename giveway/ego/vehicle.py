@@ -161,8 +161,8 @@ def _require_sound(
 def model_margin(config: EgoRunConfig, time_step: float) -> float:
     """What the MPC keeps beyond the safe distance [m]: what the identified model is wrong by.
 
-    Over a horizon that is longer than the fit's it grows with the square, as the way under an
-    acceleration that is not accounted for.
+    Over a horizon longer than the fit's it grows with the square of the horizon, as does the
+    distance driven under an acceleration that is not accounted for.
 
     Args:
         config: of the ego.

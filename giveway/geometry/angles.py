@@ -6,16 +6,10 @@ A heading is in radians, counter-clockwise from +x.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.geometry.kernel import kernel
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from giveway.geometry.kernel import Array, kernel
 
 
 def heading_to_angle(heading: float) -> float:

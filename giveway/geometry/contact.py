@@ -12,7 +12,7 @@ from math import hypot, inf, sqrt
 from giveway.geometry.kernel import kernel
 
 AT_REST = 1e-12
-"""[m/s] Relative speeds below this are none at all: contact would be ages away."""
+"""[m/s] A relative speed below this counts as none: a contact would be ages away."""
 
 
 @kernel

@@ -1,15 +1,21 @@
-"""numba's ``njit`` for the house's own kernels: cached on disk, strict IEEE arithmetic."""
+"""numba's ``njit`` for giveway's own kernels, cached on disk, with strict IEEE arithmetic.
+
+The type of the arrays that they take stands here, too.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
+import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
+Array = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def kernel(function: Function) -> Function:
-    """Compile ``function`` at its first call; no fastmath: bytes do not depend on the CPU."""
+    """Compile ``function`` at its first call; without fastmath bytes do not depend on the CPU."""
     return cast("Function", njit(cache=True, error_model="numpy")(function))

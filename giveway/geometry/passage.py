@@ -1,20 +1,13 @@
-"""Where a path comes past a point."""
+"""Where a path passes a point."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from giveway.geometry.kernel import kernel
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from giveway.geometry.kernel import Array, kernel
 
 SIGHT = 100.0
-"""[m] along the path: who or what is farther ahead counts as out of sight."""
+"""[m] along the path; persons and things farther ahead count as out of sight."""
 
 
 @kernel
@@ -29,14 +22,30 @@ def look(
     half_width: float,
     reach: float,
 ) -> tuple[float, bool]:
-    """Station of a point's closest passage in front (else inf), and could it walk there?"""
+    """Where a path comes by a point in front of the ego, and whether that may come to pass.
+
+    Args:
+        vertices: (k + 1, 2) [m] of the path.
+        stations: (k + 1,) [m] of its vertices.
+        first: the first segment that counts.
+        last: the last segment that counts.
+        x: of the point [m].
+        y: of the point [m].
+        front: the station [m] of the ego's front.
+        half_width: of the corridor along the path [m].
+        reach: how far [m] the point could move.
+
+    Returns:
+        The station [m] of the closest passage within the corridor, inf without one; and whether
+        the point, moved by ``reach``, could be within the corridor.
+    """
     end = len(vertices) - 2
     closest = np.inf
     reachable = False
     beyond_before = False  # is (x, y) beyond the end of the segment before?
     for i in range(first, last + 1):
-        # Each segment counts on its own: a path that crosses itself or turns back comes past
-        # the same place twice, and only the passage ahead matters.
+        # Each segment counts on its own: a path that crosses itself or turns back passes the same
+        # place twice, and only the passage ahead matters.
         x_0, y_0 = vertices[i, 0], vertices[i, 1]
         length = stations[i + 1] - stations[i]
         e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length

@@ -1,4 +1,4 @@
-"""The ego's path: a polyline along which the vehicle's one-dimensional motion is laid out.
+"""The ego's path: a polyline along which the one-dimensional motion of its FMU is laid out.
 
 A *station* is the arc length [m] along the polyline; the ego's station is that of the centre of
 its front bumper, which is also SUMO's reference point of a vehicle. Beyond its ends the path goes
@@ -13,12 +13,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from giveway.errors import ScenarioError
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import Array, kernel
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    Array = NDArray[np.float64]
+    from numpy.typing import ArrayLike
 
 
 class Pose(NamedTuple):
@@ -70,10 +68,10 @@ class EgoPath:
         return float(self.stations[-1])
 
     def pose(self, station: float, length: float = 0.0) -> Pose:
-        """A body's pose whose front's middle is at ``station`` [m]; its rear's is on the path too.
+        """The pose of a body whose front and rear both have their middle on the path.
 
         Args:
-            station: [m].
+            station: of the front's middle [m].
             length: of the body [m]; 0 gives the path's own direction.
         """
         return Pose(*body_pose(self.vertices, self.stations, self.headings, station, length))

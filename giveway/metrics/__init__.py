@@ -1,8 +1,7 @@
 """What happened between ego and pedestrians, in the numbers that traffic engineers use."""
 
-from giveway.metrics.conflicts import clearance, deceleration_to_avoid_crash, time_to_collision
+from giveway.metrics.conflicts import CRITICAL_TTC, Critical, Proximity, conflicts, proximity
 from giveway.metrics.contacts import FRONTAL, NO_CONTACT, SIDE, contacts
-from giveway.metrics.critical import CRITICAL_TTC, Critical, conflicts
 from giveway.metrics.encroachment import post_encroachment_time
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS, pedestrian_metrics
 from giveway.metrics.summary import (
@@ -22,14 +21,13 @@ __all__ = [
     "STOP_SPEED",
     "SUMMARY_FIELDS",
     "Critical",
+    "Proximity",
     "Summary",
-    "clearance",
     "conflicts",
     "contacts",
-    "deceleration_to_avoid_crash",
     "pedestrian_metrics",
     "post_encroachment_time",
+    "proximity",
     "summarise",
-    "time_to_collision",
     "waiting_times",
 ]

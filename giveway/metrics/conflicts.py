@@ -1,4 +1,4 @@
-"""How close every pedestrian and the ego came, record by record.
+"""How close every pedestrian and the ego came, and how many were close to a collision course.
 
 The ego is its true rectangle, a pedestrian a circle of ``body_radius``; both are exact at the
 control instants. Lengths in m, times in s.
@@ -6,8 +6,9 @@ control instants. Lengths in m, times in s.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import cos, inf, sin
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,10 +22,41 @@ if TYPE_CHECKING:
     from giveway.records.tracks import CrowdTrack, EgoTrack
 
 
-def clearance(
+CRITICAL_TTC = 1.5
+"""[s] Below it an encounter is a conflict: the threshold of SSAM (Gettman & Head 2003, FHWA), in
+the range that observers of Hayward's (1972) near misses found."""
+
+
+class Proximity(NamedTuple):
+    """How close the pedestrian of each of R crowd records and the ego were; all are (R,).
+
+    Attributes:
+        clearance: [m] distance between the pedestrian's skin and the ego's bodywork; negative where
+            the circle overlaps the rectangle.
+        time_to_collision: [s] until the first contact if both kept their velocity: 0 when they
+            touch already, inf when they never do on these courses. The usual surrogate (Hayward
+            1972) without its usual shortcut of one line of travel: the rectangle moves along its
+            heading at its present speed, the circle along its present velocity, and the first
+            contact of the two shapes is solved exactly. A pedestrian walking into the side of a
+            standing ego therefore has a finite time to collision too.
+        deceleration: [m/s^2] the deceleration to avoid a crash (DRAC, Cooper & Ferguson 1976), the
+            constant braking that would just spare a pedestrian ahead: c^2 / (2 d) with the closing
+            speed c and the distance d to be closed. Here c is along the ego's heading and
+            d = c * (time to collision): braking by it, the ego has matched the pedestrian's speed
+            along its heading when it reaches the place of contact. It is 0 for a pedestrian who is
+            not on a collision course, is not ahead of the front bumper (braking is no remedy
+            there), or is touched already (no braking helps any more).
+    """
+
+    clearance: NDArray[np.float64]
+    time_to_collision: NDArray[np.float64]
+    deceleration: NDArray[np.float64]
+
+
+def proximity(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
-) -> NDArray[np.float64]:
-    """Distance between the pedestrian's skin and the ego's bodywork, for every crowd record.
+) -> Proximity:
+    """How close every pedestrian and the ego came, record by record, in one pass.
 
     Args:
         ego: the ego's track, T instants.
@@ -32,60 +64,12 @@ def clearance(
         shape: the ego's rectangle.
         body_radius: radius of a pedestrian [m].
 
-    Returns:
-        (R,) [m], negative where the circle overlaps the rectangle.
-
     Raises:
         ValueError: a record points outside the ego's track.
     """
-    return proximity(ego, crowd, shape, body_radius)[0]
-
-
-def time_to_collision(
-    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
-) -> NDArray[np.float64]:
-    """Time until first contact if both kept their velocity, for every crowd record.
-
-    The usual surrogate (Hayward 1972) without its usual shortcut of one line of travel: the
-    rectangle moves along its heading at its present speed, the circle along its present velocity,
-    and the first contact of the two shapes is solved exactly. A pedestrian walking into the side
-    of a standing ego therefore has a finite time to collision too.
-
-    Returns:
-        (R,) [s]: 0 when touching already, inf when never on these courses.
-
-    Raises:
-        ValueError: a record points outside the ego's track.
-    """
-    return proximity(ego, crowd, shape, body_radius)[1]
-
-
-def deceleration_to_avoid_crash(
-    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
-) -> NDArray[np.float64]:
-    """The constant braking that would just spare a pedestrian ahead, for every crowd record.
-
-    DRAC (Cooper & Ferguson 1976) is c^2 / (2 d) with the closing speed c and the distance d to be
-    closed. Here c is along the ego's heading and d = c * (time to collision): braking by it, the
-    ego has matched the pedestrian's speed along its heading when it reaches the place of contact.
-
-    Returns:
-        (R,) [m/s^2]: 0 for whoever is not on a collision course, is not ahead of the front
-        bumper (braking is no remedy there), or is touched already (no braking helps any more).
-
-    Raises:
-        ValueError: a record points outside the ego's track.
-    """
-    return proximity(ego, crowd, shape, body_radius)[2]
-
-
-def proximity(
-    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Clearance, time to collision and DRAC of every record, in one pass; shapes (R,)."""
     check_records(ego, crowd)
     records = crowd.x.size
-    clearances, ttcs, dracs = np.empty(records), np.empty(records), np.empty(records)
+    found = Proximity(np.empty(records), np.empty(records), np.empty(records))
     _proximity(
         centre_poses(ego, shape),
         as_floats(ego.speed),
@@ -94,14 +78,54 @@ def proximity(
         as_floats(crowd.y),
         as_floats(crowd.vx),
         as_floats(crowd.vy),
-        shape.length / 2.0,
-        shape.width / 2.0,
-        float(body_radius),
-        clearances,
-        ttcs,
-        dracs,
+        contact_body(shape, body_radius),
+        found,
     )
-    return clearances, ttcs, dracs
+    return found
+
+
+@dataclass(frozen=True)
+class Critical:
+    """The conflicts of a drive.
+
+    Attributes:
+        pedestrians: how many pedestrians had one.
+        share: of the control instants at which somebody had one.
+    """
+
+    pedestrians: int
+    share: float
+
+
+def conflicts(
+    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float, stop_speed: float
+) -> Critical:
+    """Count whose time to collision is below ``CRITICAL_TTC`` while the ego moves.
+
+    A pedestrian who walks up to a standing ego is on a collision course too, but in no danger.
+
+    Args:
+        ego: the ego's track, T instants.
+        crowd: the crowd's track.
+        shape: the ego's rectangle.
+        body_radius: radius of a pedestrian [m].
+        stop_speed: the ego moves above it [m/s].
+
+    Raises:
+        ValueError: a record points outside the ego's track.
+    """
+    ttc = proximity(ego, crowd, shape, body_radius).time_to_collision
+    critical = (ttc < CRITICAL_TTC) & (ego.speed[crowd.step] > stop_speed)
+    instants = np.unique(crowd.step[critical]).size
+    return Critical(
+        pedestrians=int(np.unique(crowd.pedestrian[critical]).size),
+        share=instants / ego.time.size if ego.time.size else 0.0,
+    )
+
+
+def contact_body(shape: VehicleShape, body_radius: float) -> tuple[float, float, float]:
+    """What decides on a contact, as the kernels take it: half length, half width, radius [m]."""
+    return shape.length / 2.0, shape.width / 2.0, float(body_radius)
 
 
 def centre_poses(ego: EgoTrack, shape: VehicleShape) -> NDArray[np.float64]:
@@ -118,12 +142,12 @@ def centre_poses(ego: EgoTrack, shape: VehicleShape) -> NDArray[np.float64]:
 
 
 def as_floats(column: NDArray[np.floating]) -> NDArray[np.float64]:
-    """The column as the kernels are compiled for; a copy only if it is laid out otherwise."""
+    """The column in the layout that the kernels are compiled for; a copy only if it has another."""
     return np.ascontiguousarray(column, dtype=np.float64)
 
 
 def as_integers(column: NDArray[np.integer]) -> NDArray[np.int64]:
-    """The column as the kernels are compiled for; a copy only if it is laid out otherwise."""
+    """The column in the layout that the kernels are compiled for; a copy only if it has another."""
     return np.ascontiguousarray(column, dtype=np.int64)
 
 
@@ -168,13 +192,11 @@ def _proximity(
     y: NDArray[np.float64],
     vx: NDArray[np.float64],
     vy: NDArray[np.float64],
-    half_length: float,
-    half_width: float,
-    radius: float,
-    out_clearance: NDArray[np.float64],
-    out_ttc: NDArray[np.float64],
-    out_drac: NDArray[np.float64],
+    body: tuple[float, float, float],
+    out: Proximity,
 ) -> None:
+    half_length, half_width, radius = body
+    out_clearance, out_ttc, out_drac = out
     for r in range(step.size):
         k = step[r]
         c, s = poses[k, 2], poses[k, 3]
@@ -182,7 +204,7 @@ def _proximity(
         w_x, w_y = to_frame(vx[r], vy[r], c, s)
         w_x -= speed[k]
         out_clearance[r] = signed_distance(p_x, p_y, half_length, half_width) - radius
-        first, last = contact_interval(p_x, p_y, w_x, w_y, half_length, half_width, radius)
+        first, last = contact_interval(p_x, p_y, w_x, w_y, *body)
         out_ttc[r] = max(first, 0.0) if last >= 0.0 else inf
         avoidable = out_clearance[r] > 0.0 and 0.0 < out_ttc[r] < inf
         ahead = p_x > half_length and w_x < 0.0

@@ -1,7 +1,7 @@
-"""Who moved into whom: every overlap of a pedestrian with the ego is frontal or lateral.
+"""Whether the ego moved into a pedestrian: every overlap of the two is frontal or lateral.
 
-The ego is answerable for whom it drives into, not for who walks into its side or into a standing
-car. The rule, and its odd cases, stand in docs/results.md.
+The ego is answerable for the pedestrians that it drives into, not for those who walk into its side
+or into it while it stands. The rule, and its odd cases, stand in docs/results.md.
 """
 
 from __future__ import annotations
@@ -13,7 +13,13 @@ import numpy as np
 
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import kernel
-from giveway.metrics.conflicts import as_floats, as_integers, centre_poses, check_records
+from giveway.metrics.conflicts import (
+    as_floats,
+    as_integers,
+    centre_poses,
+    check_records,
+    contact_body,
+)
 from giveway.metrics.groups import PedestrianGroups
 
 if TYPE_CHECKING:
@@ -26,7 +32,7 @@ NO_CONTACT = ""
 SIDE = "side"
 FRONTAL = "frontal"
 MOVING = 0.01
-"""[m/s] Above it the ego moves: a centimetre a second is less than any controller creeps at."""
+"""[m/s] The ego moves above it; no controller creeps as slowly as a centimetre a second."""
 
 _NAMES = np.array([NO_CONTACT, SIDE, FRONTAL])
 _SIDE, _FRONTAL = 1, 2
@@ -51,7 +57,7 @@ def contacts(
         crowd: the crowd's track, R records of n pedestrians in time order.
         shape: the ego's rectangle.
         body_radius: radius of a pedestrian [m].
-        clearance: (R,) [m] of :func:`giveway.metrics.clearance`; below zero is a contact.
+        clearance: (R,) [m] of :func:`giveway.metrics.proximity`; below zero is a contact.
 
     Returns:
         (n,) ``frontal`` if any contact was; else ``side`` if there was one; else empty.
@@ -73,9 +79,7 @@ def contacts(
         as_floats(crowd.vx[order]),
         as_floats(crowd.vy[order]),
         as_floats(clearance[order]),
-        shape.length / 2.0,
-        shape.width / 2.0,
-        float(body_radius),
+        contact_body(shape, body_radius),
         kinds,
     )
     return np.asarray(_NAMES[kinds], dtype=np.str_)
@@ -89,15 +93,16 @@ def _first_touch(
     speed: NDArray[np.float64],
     x: NDArray[np.float64],
     y: NDArray[np.float64],
-    half_length: float,
-    half_width: float,
-    radius: float,
+    body: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """Where along the ego the centre is when a contact begins in the step before k, and v then."""
+    """The contact that begins in the step before k: where along the ego, and the ego's speed then.
+
+    The place [m] is the pedestrian's centre in the ego's frame.
+    """
     b, e = poses[k - 1], poses[k]
     b_x, b_y = to_frame(x[r - 1] - b[0], y[r - 1] - b[1], b[2], b[3])
     e_x, e_y = to_frame(x[r] - e[0], y[r] - e[1], e[2], e[3])
-    first, _ = contact_interval(b_x, b_y, e_x - b_x, e_y - b_y, half_length, half_width, radius)
+    first, _ = contact_interval(b_x, b_y, e_x - b_x, e_y - b_y, *body)
     share = min(max(first, 0.0), 1.0) if first < inf else 1.0
     return b_x + share * (e_x - b_x), speed[k - 1] + share * (speed[k] - speed[k - 1])
 
@@ -113,12 +118,11 @@ def _classify(
     vx: NDArray[np.float64],
     vy: NDArray[np.float64],
     clearance: NDArray[np.float64],
-    half_length: float,
-    half_width: float,
-    radius: float,
+    body: tuple[float, float, float],
     kinds: NDArray[np.int64],
 ) -> None:
     """Fill ``kinds`` (n,); the records are those of pedestrian 0, then 1, ..., each in order."""
+    half_length, _, _ = body
     for i in range(kinds.size):
         for r in range(bounds[i], bounds[i + 1]):
             if clearance[r] >= 0.0:
@@ -130,7 +134,7 @@ def _classify(
             frontal = p_x > half_length and speed[k] > MOVING and speed[k] > w_x
             followed = r > bounds[i] and step[r - 1] == k - 1
             if followed and clearance[r - 1] >= 0.0:
-                at, v = _first_touch(k, r, poses, speed, x, y, half_length, half_width, radius)
+                at, v = _first_touch(k, r, poses, speed, x, y, body)
                 frontal = frontal or (at > half_length and v > MOVING)
             elif not followed:
                 frontal = frontal or (p_x > half_length and speed[k] > MOVING)

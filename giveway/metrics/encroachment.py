@@ -9,7 +9,13 @@ import numpy as np
 
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import kernel
-from giveway.metrics.conflicts import as_floats, as_integers, centre_poses, check_records
+from giveway.metrics.conflicts import (
+    as_floats,
+    as_integers,
+    centre_poses,
+    check_records,
+    contact_body,
+)
 from giveway.metrics.groups import PedestrianGroups
 
 if TYPE_CHECKING:
@@ -61,9 +67,7 @@ def post_encroachment_time(
         as_integers(crowd.step[groups.order]),
         as_floats(crowd.x[groups.order]),
         as_floats(crowd.y[groups.order]),
-        shape.length / 2.0,
-        shape.width / 2.0,
-        float(body_radius),
+        contact_body(shape, body_radius),
     )
 
 
@@ -95,14 +99,13 @@ def _touch_in_step(
     y: float,
     time: NDArray[np.float64],
     poses: NDArray[np.float64],
-    half_length: float,
-    half_width: float,
-    radius: float,
+    body: tuple[float, float, float],
 ) -> tuple[float, float]:
     """When the ego touches a circle standing at (x, y) during step k; (inf, -inf) if it does not.
 
     Seen from the ego the circle moves; that motion is taken as straight within a step.
     """
+    half_length, half_width, radius = body
     end = min(k + 1, time.size - 1)
     p_x, p_y = to_frame(x - poses[k, 0], y - poses[k, 1], poses[k, 2], poses[k, 3])
     q_x, q_y = to_frame(x - poses[end, 0], y - poses[end, 1], poses[end, 2], poses[end, 3])
@@ -122,6 +125,27 @@ def _touch_in_step(
 
 
 @kernel
+def _separation_in_step(
+    k: int,
+    t: float,
+    x: float,
+    y: float,
+    time: NDArray[np.float64],
+    poses: NDArray[np.float64],
+    body: tuple[float, float, float],
+) -> float:
+    """Time between t and the ego's touch of a circle at (x, y) in step k; inf without one."""
+    first, last = _touch_in_step(k, x, y, time, poses, body)
+    return max(first - t, t - last, 0.0)
+
+
+@kernel
+def _out_of_reach(b: int, x: float, y: float, blocks: NDArray[np.float64]) -> bool:
+    """Whether the ego touches no circle at (x, y) in any step of block b."""
+    return bool((x - blocks[b, 0]) ** 2 + (y - blocks[b, 1]) ** 2 > blocks[b, 2])
+
+
+@kernel
 def _separation(
     t: float,
     x: float,
@@ -131,9 +155,7 @@ def _separation(
     time: NDArray[np.float64],
     poses: NDArray[np.float64],
     blocks: NDArray[np.float64],
-    half_length: float,
-    half_width: float,
-    radius: float,
+    body: tuple[float, float, float],
 ) -> float:
     """Time between t and the ego's nearest touch of a circle at (x, y); inf if beyond cutoff.
 
@@ -145,23 +167,39 @@ def _separation(
     k = min(step, steps - 1)
     while k < steps and time[k] - t < min(nearest, cutoff):
         b = k // BLOCK
-        if (x - blocks[b, 0]) ** 2 + (y - blocks[b, 1]) ** 2 > blocks[b, 2]:
+        if _out_of_reach(b, x, y, blocks):
             k = (b + 1) * BLOCK
             continue
-        first, last = _touch_in_step(k, x, y, time, poses, half_length, half_width, radius)
-        nearest = min(nearest, max(first - t, t - last, 0.0))
+        nearest = min(nearest, _separation_in_step(k, t, x, y, time, poses, body))
         k += 1
 
     k = min(step, steps) - 1
     while k >= 0 and t - time[k + 1] < min(nearest, cutoff):
         b = k // BLOCK
-        if (x - blocks[b, 0]) ** 2 + (y - blocks[b, 1]) ** 2 > blocks[b, 2]:
+        if _out_of_reach(b, x, y, blocks):
             k = b * BLOCK - 1
             continue
-        first, last = _touch_in_step(k, x, y, time, poses, half_length, half_width, radius)
-        nearest = min(nearest, max(first - t, t - last, 0.0))
+        nearest = min(nearest, _separation_in_step(k, t, x, y, time, poses, body))
         k -= 1
     return nearest
+
+
+@kernel
+def _separation_on_the_way(
+    share: float,
+    k: int,
+    x: tuple[float, float],
+    y: tuple[float, float],
+    cutoff: float,
+    time: NDArray[np.float64],
+    poses: NDArray[np.float64],
+    blocks: NDArray[np.float64],
+    body: tuple[float, float, float],
+) -> float:
+    """The separation after a ``share`` of step k, walking from (x[0], y[0]) to (x[1], y[1])."""
+    t = share * (time[k + 1] - time[k])
+    at_x, at_y = x[0] + share * (x[1] - x[0]), y[0] + share * (y[1] - y[0])
+    return _separation(time[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, body)
 
 
 @kernel
@@ -174,9 +212,7 @@ def _smallest_between(
     time: NDArray[np.float64],
     poses: NDArray[np.float64],
     blocks: NDArray[np.float64],
-    half_length: float,
-    half_width: float,
-    radius: float,
+    body: tuple[float, float, float],
 ) -> float:
     """The smallest separation during step k of a walk from (x[0], y[0]) to (x[1], y[1]).
 
@@ -184,16 +220,12 @@ def _smallest_between(
     swept strip if the walk crosses it, because the ego's corners are rounded. Beyond the edge it
     is inf; ``leaving`` says on which side of the edge to look while both trials are beyond.
     """
-    body = half_length, half_width, radius
-    duration = time[k + 1] - time[k]
     smallest = inf
     low, high = 0.0, 1.0
     for _ in range(SECTIONS):
         early, late = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-        t, at_x, at_y = early * duration, x[0] + early * (x[1] - x[0]), y[0] + early * (y[1] - y[0])
-        at_early = _separation(time[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, *body)
-        t, at_x, at_y = late * duration, x[0] + late * (x[1] - x[0]), y[0] + late * (y[1] - y[0])
-        at_late = _separation(time[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, *body)
+        at_early = _separation_on_the_way(early, k, x, y, cutoff, time, poses, blocks, body)
+        at_late = _separation_on_the_way(late, k, x, y, cutoff, time, poses, blocks, body)
         smallest = min(smallest, at_early, at_late)
         if at_early < at_late or (at_early == at_late and leaving):
             high = late
@@ -210,24 +242,21 @@ def _smallest_separations(
     step: NDArray[np.int64],
     x: NDArray[np.float64],
     y: NDArray[np.float64],
-    half_length: float,
-    half_width: float,
-    radius: float,
+    body: tuple[float, float, float],
 ) -> NDArray[np.float64]:
     """The post-encroachment times; pedestrian i has the records bounds[i] to bounds[i + 1]."""
-    blocks = _blocks(poses, half_length, half_width, radius)
-    body = half_length, half_width, radius
+    blocks = _blocks(poses, *body)
     at_record = np.empty(x.size)
     pets = np.full(bounds.size - 1, nan)
     for i in range(pets.size):
         nearest = inf
         for r in range(bounds[i], bounds[i + 1]):
             k = step[r]
-            # A separation shrinks by less than a period within one, hence this much is of use.
+            # Within a period a separation shrinks by less than a period: what is larger than the
+            # cutoff cannot lead to the smallest value.
             period = time[k] - time[max(k - 1, 0)]
-            at_record[r] = _separation(
-                time[k], x[r], y[r], k, nearest + 2.0 * period, time, poses, blocks, *body
-            )
+            cutoff = nearest + 2.0 * period
+            at_record[r] = _separation(time[k], x[r], y[r], k, cutoff, time, poses, blocks, body)
             nearest = min(nearest, at_record[r])
         for r in range(bounds[i] + 1, bounds[i + 1]):
             k = step[r - 1]
@@ -237,7 +266,7 @@ def _smallest_separations(
                 walk = (x[r - 1], x[r]), (y[r - 1], y[r])
                 cutoff = nearest + 2.0 * period
                 between = _smallest_between(
-                    k, *walk, ends[0] < ends[1], cutoff, time, poses, blocks, *body
+                    k, *walk, ends[0] < ends[1], cutoff, time, poses, blocks, body
                 )
                 nearest = min(nearest, between)
         if nearest < inf:

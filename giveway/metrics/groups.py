@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class PedestrianGroups:
-    """Reductions over each pedestrian's records; results are (n,), nan for who has no record.
+    """Reductions over each pedestrian's records; results are (n,), nan for those without records.
 
     ``order`` (R,) sorts the records by pedestrian and keeps their order in time; pedestrian i then
     owns the places ``bounds[i]`` to ``bounds[i + 1]``.

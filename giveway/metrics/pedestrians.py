@@ -10,8 +10,8 @@ import pandas as pd
 from giveway.metrics.conflicts import proximity
 from giveway.metrics.contacts import contacts
 from giveway.metrics.encroachment import post_encroachment_time
-from giveway.metrics.fields import Quantity, columns_of
 from giveway.metrics.groups import PedestrianGroups
+from giveway.records.columns import Quantity, columns_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -65,7 +65,8 @@ def pedestrian_metrics(
         body_radius: radius of a pedestrian [m].
 
     Returns:
-        n rows in the order of ``crowd.ids``; who was never seen has nan throughout, and no contact.
+        n rows in the order of ``crowd.ids``; a pedestrian who was never seen has nan throughout,
+        and no contact.
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -99,5 +100,5 @@ def pedestrian_metrics(
 
 
 def durations(ego: EgoTrack) -> NDArray[np.float64]:
-    """What each instant stands for: the time until the next one; nothing for the last. (T,) [s]."""
+    """(T,) [s] the time from each instant to the next one; 0 for the last."""
     return np.append(np.diff(ego.time), 0.0)

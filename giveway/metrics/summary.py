@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from giveway.metrics.contacts import FRONTAL, SIDE
-from giveway.metrics.fields import Quantity, columns_of
+from giveway.records.columns import Quantity, columns_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     import pandas as pd
     from numpy.typing import NDArray
 
-    from giveway.metrics.critical import Critical
+    from giveway.metrics.conflicts import Critical
     from giveway.records.tracks import EgoTrack
 
 STOP_SPEED = 0.2
 """[m/s] Below it the ego stands: Yang & Özgüner 2019, section 2.1, treat it as an obstacle then."""
-SAFETY = "safety"  # who acts where the safety layer does
+SAFETY = "safety"  # the name under which the safety layer acts
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def summarise(
     stop_speed: float = STOP_SPEED,
     controller: str,
 ) -> Summary:
-    """Boil a run down to one row.
+    """Summarise a run in one row.
 
     A step is one control instant. An instant stands for the time until the next one, so a stop
     lasts from the first instant below ``stop_speed`` to the first one that is not, or to the end
@@ -150,7 +150,7 @@ def summarise(
         side_contacts=int(np.count_nonzero(per_pedestrian["contact"] == SIDE)),
         overlap_time=float(np.nansum(per_pedestrian["overlap_time"].to_numpy())),
         minimum_ttc=_extreme(per_pedestrian["minimum_ttc"].to_numpy(), np.min),
-        conflicts=critical.persons,
+        conflicts=critical.pedestrians,
         share_below_ttc=critical.share,
         minimum_pet=_extreme(per_pedestrian["post_encroachment_time"].to_numpy(), np.min),
         maximum_drac=_extreme(per_pedestrian["maximum_drac"].to_numpy(), np.max),

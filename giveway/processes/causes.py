@@ -1,13 +1,21 @@
-"""How a process ended, in words: from its exit code, and from what it left in its folder."""
+"""How a process ended, in words: from its exit code, and from what it left in its folder.
+
+The supervisor of a run and that of a study's workers both watch a child's heartbeat; what they say
+about the end of a child, and how they let a hanging one speak, is the same and stands here.
+"""
 
 from __future__ import annotations
 
+import os
 import signal
+import subprocess
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+_LAST_WORDS = 2.0  # [s] for a hanging process to write its traceback
 WINDOWS_CAUSES = {
     0xC0000005: "access violation",
     0xC000001D: "illegal instruction",
@@ -31,13 +39,23 @@ def cause_of_end(returncode: int) -> str:
     return f"exit({returncode}) called by native code"
 
 
+def let_speak(process: subprocess.Popen[bytes]) -> None:
+    """Let a hanging process write where it hangs, which takes a signal; it may survive that."""
+    if os.name == "nt":
+        return
+    with suppress(OSError):
+        process.send_signal(signal.SIGABRT)
+    with suppress(subprocess.TimeoutExpired):
+        process.wait(_LAST_WORDS)
+
+
 def stood_still(seconds: float) -> str:
-    """Why a process was killed that showed no sign of life for so long."""
+    """Why a process was killed that had shown no sign of life for so many ``seconds``."""
     return f"no progress for {seconds:g} s"
 
 
 def text_in(file: Path) -> str:
-    """What a dead process has written there; empty without the file."""
+    """What a dead process has written into ``file``; empty without the file."""
     try:
         return file.read_text(encoding="utf-8", errors="replace").strip()
     except OSError:

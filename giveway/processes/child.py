@@ -1,4 +1,4 @@
-"""The child's half of a supervised run: it says where it is, and never outlives its supervisor."""
+"""The child's half of a supervised run: it says where it stands, and dies with its supervisor."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import IO, TYPE_CHECKING, Self
 from giveway.processes.heartbeat import Heartbeat, Phase
 
 if TYPE_CHECKING:
-    from types import FrameType, TracebackType
+    from types import FrameType
 
 JOURNAL_VARIABLE = "GIVEWAY_JOURNAL"  # names the journal's folder to the child
 TRACEBACK_FILE = "traceback.txt"  # where Python stood when native code died
@@ -35,12 +35,13 @@ def take_journal_folder() -> Path | None:
 
 
 class Supervised:
-    """Round everything that a supervised process does; in the main thread.
+    """The context, in the main thread, round everything that a supervised process does.
 
     An end that is not reported by leaving this context is a crash, even one with exit code 0.
 
     Args:
-        folder: of the journal, from :func:`take_journal_folder`; None does nothing.
+        folder: of the journal, from :func:`take_journal_folder`; with None the context does
+            nothing.
     """
 
     def __init__(self, folder: Path | None) -> None:
@@ -61,17 +62,12 @@ class Supervised:
             signal.signal(signal.SIGINT, self._interrupt_once)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> None:
         if self._folder is not None:
             self._heartbeat.finish(_exit_code(error))
 
     def listen(self) -> None:
-        """Let a Ctrl-C through, which the supervisor has held back while Python started.
+        """Let a Ctrl-C through that the supervisor has held back while Python started.
 
         Raises:
             KeyboardInterrupt: there has been one.
@@ -103,11 +99,11 @@ def die_with(supervisor: int) -> None:
     """End this process at once when its supervisor has been killed; its rows are journalled.
 
     Linux does it itself, even while native code hangs, when the *thread* that started this process
-    ends. Other Unixes leave it to a thread here, which native code that keeps Python's lock holds
-    up; Windows has no such relation between processes.
+    ends. On other Unixes a thread of this process does it, which has to wait while native code
+    keeps Python's lock; Windows has no such relation between processes.
 
     Args:
-        supervisor: process id; 0 does nothing.
+        supervisor: its process id; 0 means that there is none.
     """
     if not supervisor or not hasattr(os, "getppid") or sys.platform == "win32":
         return

@@ -1,8 +1,8 @@
 """Where a run stands, visible to another process even after this one has died.
 
-Sixty-four bytes of shared memory in a file: the child stores, its supervisor reads. A store costs
-what an assignment costs, so every phase of every control step is told. Nothing heavy is imported:
-the supervisor has to be there at once.
+It is 64 bytes of shared memory in a file: the child stores, its supervisor reads. A store costs no
+more than an assignment, so every phase of every control step is told. Nothing heavy is imported,
+since the supervisor has to be there at once.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _MILLISECONDS = 1000.0  # per second: SUMO's own resolution
 class Phase(enum.IntEnum):
     """What a run is doing."""
 
-    STARTING = 0  # Python itself, before anybody told otherwise
+    STARTING = 0  # Python itself starts; the value before the first beat
     LOADING = 1
     CONTROLLING = 2
     VEHICLE = 3
@@ -65,11 +65,11 @@ class Pulse(NamedTuple):
 
 
 class Heartbeat:
-    """The child's side stores, the supervisor's side reads; both map the same file.
+    """The shared memory of a child, which stores, and its supervisor, which reads.
 
     Args:
-        folder: of the journal; the file is made if there is none. None: the same interface on
-            plain memory.
+        folder: of the journal; the file is made if there is none. With None the memory is this
+            process's own.
 
     Raises:
         OSError: the file cannot be made or mapped.
@@ -80,7 +80,7 @@ class Heartbeat:
             self._slots = memoryview(bytearray(_LAYOUT.size)).cast("q")
             return
         path = folder / HEARTBEAT_FILE
-        # Written, not only sized: a store into a hole of a full disk would kill us (SIGBUS).
+        # Zeros are written: a store into a hole of a file on a full disk would kill us (SIGBUS).
         with path.open("r+b" if path.exists() else "w+b", buffering=0) as file:
             if len(file.read()) < _LAYOUT.size:
                 file.seek(0)
@@ -111,14 +111,14 @@ class Heartbeat:
     def read(self) -> Pulse:
         """The latest state."""
         phase, step, time, code, supervisor = self._slots[: _SUPERVISOR + 1].tolist()
-        known = Phase(phase) if phase in _PLACES else Phase.LOADING  # a wild pointer was here
+        known = Phase(phase) if phase in _PLACES else Phase.LOADING  # overwritten by a wild pointer
         return Pulse(known, step, time / _MILLISECONDS, code, supervisor)
 
 
 class Stillness:
-    """How long a heartbeat has stood still, for whoever looks at it now and then.
+    """How long a heartbeat has stood still, for a supervisor that looks at it now and then.
 
-    Looks are counted and not the clock, which goes on while both sides are suspended.
+    The time between looks is added up; the clock would go on while both processes are suspended.
 
     Args:
         heartbeat: to look at.
@@ -130,7 +130,7 @@ class Stillness:
         self._quiet = 0.0
 
     def look(self, passed: float) -> tuple[Pulse, float]:
-        """The pulse, and for how long [s] it has been the same.
+        """The pulse, and for how long [s] it has not changed.
 
         Args:
             passed: [s] since the last look.

@@ -1,9 +1,9 @@
-"""A run in a process of its own, so that a crash of native code ends the run and not the report.
+"""A run in a process of its own, so that a crash of native code does not end the report with it.
 
 SUMO, the FMU and the solvers are native code: they can end their process by a signal, by an
 ``exit()`` in the middle of a step, or never return. The supervisor starts the run as a child that
 shares its terminal, waits, and tells what became of it; the rows are in the journal. It imports
-nothing heavy: it only waits.
+nothing heavy, since it only waits.
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
-from giveway.processes.causes import WINDOWS_CAUSES, cause_of_end, stood_still, text_in
+from giveway.processes.causes import WINDOWS_CAUSES, cause_of_end, let_speak, stood_still, text_in
 from giveway.processes.child import JOURNAL_VARIABLE, STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
+from giveway.processes.interrupts import SignalHandler
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from types import FrameType, TracebackType
+    from types import FrameType
 
 HANG_LIMIT = 120.0  # [s] of wall clock without a sign of life from the loop
 _PREFIX = "giveway-journal-"
 _KEPT = 86400.0  # [s] that the journal of a killed supervisor stays for whoever wants its rows
 _PATIENCE = 10.0  # [s] a child gets to write its rows before a second signal kills it
 _TEARDOWN_LIMIT = 10.0  # [s] from "done" to the process's end; native destructors hang, too
-_DYING_WORDS = 2.0  # [s] for a hanging child to write its traceback
 _POLL = 1.0  # [s] between two looks at the heartbeat
 _SIGNALLED = 128  # a shell's exit code of a process that died of signal n is 128 + n
 _SHOW_CURSOR = "\r\x1b[2K\x1b[?25h"  # a progress bar that died has hidden it
@@ -48,8 +48,8 @@ class Verdict:
     Attributes:
         code: the exit code to pass on: the child's own, or a shell's 128 + n for a signal;
             never 0 after a crash.
-        crashed: it ended without having said so; what it had recorded is in the journal.
-        interrupted: it ended by, or after, a signal that the user sent us.
+        crashed: it ended without having told so; what it had recorded is in the journal.
+        interrupted: it ended by a signal that the user sent us, or after one.
         cause: "SIGSEGV", "no progress for 120 s", ...; empty unless crashed.
         pulse: where it stood.
         traceback: where Python stood, if it could tell, as faulthandler prints it.
@@ -137,7 +137,7 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
 
 
 def _temporary(journal: Path) -> dict[str, str]:
-    """Where the child puts its temporary files: what a crash leaves goes with the journal."""
+    """Variables that name the child's temporary folder, which is removed with the journal."""
     folder = journal / "tmp"
     folder.mkdir(exist_ok=True)
     return dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder))
@@ -145,9 +145,9 @@ def _temporary(journal: Path) -> dict[str, str]:
 
 @contextlib.contextmanager
 def _held_back() -> Iterator[None]:
-    """A child started here inherits a Ctrl-C that waits until :meth:`Supervised.listen`.
+    """Let a child that is started here inherit a blocked Ctrl-C, until :meth:`Supervised.listen`.
 
-    While Python itself starts it would end in a traceback.
+    While Python itself starts, a Ctrl-C would end in a traceback.
     """
     if sys.platform == "win32":
         yield
@@ -159,46 +159,32 @@ def _held_back() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, previous)
 
 
-class _Relay:
+class _Relay(SignalHandler):
     """Passes on the signals by which a user ends a run, so that the child decides when.
 
     Attributes:
         first: the first such signal.
-        killed: a second one had to kill the child.
+        killed: whether a second one had to kill the child.
     """
 
     def __init__(self) -> None:
+        names = ("SIGINT", "SIGTERM", "SIGHUP")
+        numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+        # Whoever ignores a signal, as nohup does, wants the child to ignore it, too.
+        super().__init__([n for n in numbers if signal.getsignal(n) is not signal.SIG_IGN])
         self.first: int | None = None
         self.killed = False
         self._at = 0.0
         self._child: subprocess.Popen[bytes] | None = None
-        self._previous: dict[int, Any] = {}
-
-    def __enter__(self) -> Self:
-        if threading.current_thread() is threading.main_thread():
-            for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-                number = getattr(signal, name, None)
-                # Whoever ignores a signal, like nohup, wants the child to ignore it, too.
-                if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
-                    self._previous[number] = signal.signal(number, self._pass_on)
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        for number, handler in self._previous.items():
-            signal.signal(number, handler)
 
     def connect(self, child: subprocess.Popen[bytes]) -> None:
-        """Name the child; what came before there was one is passed on now."""
+        """Name the child; a signal that came before is passed on now."""
         self._child = child
         if self.first is not None:
             self._send(self.first)
 
-    def _pass_on(self, number: int, _frame: FrameType | None) -> None:
+    def handle(self, number: int, _frame: FrameType | None) -> None:
+        """Pass on the first signal; the second one kills a child that has had its time."""
         if self.first is None:
             self.first, self._at = number, time.monotonic()
             self._send(number)
@@ -212,7 +198,7 @@ class _Relay:
 
 
 class _Watchdog:
-    """Looks at the heartbeat now and then, and kills a child whose loop stands still.
+    """Looks at the heartbeat once a second, and kills a child whose loop stands still.
 
     Attributes:
         waited: how long [s] the child had stood still when it was killed; 0 if it was not.
@@ -233,12 +219,7 @@ class _Watchdog:
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._over.set()
         self._thread.join()
 
@@ -253,16 +234,9 @@ class _Watchdog:
             pulse, quiet = stillness.look(self._poll)
             if quiet >= self._limit(pulse.phase):
                 self.waited = quiet
-                self._end()
+                let_speak(self._child)
+                self._child.kill()
                 return
-
-    def _end(self) -> None:
-        """Let the child say where it hangs, which takes a signal, then kill it."""
-        if os.name != "nt":
-            self._child.send_signal(signal.SIGABRT)
-            if self._over.wait(_DYING_WORDS):
-                return
-        self._child.kill()
 
 
 def _judge(
@@ -272,7 +246,7 @@ def _judge(
     if pulse.phase is Phase.DONE:
         return Verdict(pulse.code or max(returncode, 0), False, interrupted, "", pulse, "", "")
     if pulse.phase is Phase.STARTING and 0 < returncode < min(WINDOWS_CAUSES):
-        # Python did not come as far as us, and has said why.
+        # Python ended before it came to giveway's code, and has printed why.
         return Verdict(returncode, False, interrupted, "", pulse, "", "")
     return Verdict(
         code=_passed_on(returncode, relay),

@@ -1,1 +1,1 @@
-"""Rows gathered step by step, and kept where a crash cannot take them along."""
+"""Rows gathered step by step, and kept where they outlive a crash."""

@@ -1,16 +1,16 @@
-"""The rows of a run where a dying process cannot take them along.
+"""The rows of a run in a file that outlives its process.
 
 Native code (SUMO, the FMU, a solver) can end the process at any instruction. What has been handed
-to the operating system by then outlives it, so the run's tables live in memory as ever, and once
-per control step everything new is appended to one file by one write:
+to the operating system by then outlives it. So the run's tables live in memory, and once per
+control step everything new is appended to one file by one write:
 
     magic | record | record | ... ;  record = kind, table, bytes | payload
 
 A ``COMMIT`` record closes each write: a reader takes whole steps or nothing, whatever the end of
-the file looks like. Why written and not memory-mapped: a wild pointer, which is how native code
-dies, cannot reach rows that have been written; a full disk is an error number instead of a SIGBUS;
-it works on every disk and system; and rows are filled at the speed of plain memory. Appending
-through a mapped window was tried: as fast for small crowds, and slower for large ones.
+the file looks like. The file is written and not memory-mapped, for four reasons: a wild pointer,
+which is how native code dies, cannot reach rows that have been written; a full disk is an error
+number instead of a SIGBUS; it works on every disk and system; and rows are filled at the speed of
+plain memory. A mapped window was tried: it was as fast for small crowds, and slower for large ones.
 
 A journal is a safety net and never ends a run itself: when it cannot be written it says so in
 :attr:`Journal.failure`, and the run goes on from memory.
@@ -79,7 +79,7 @@ class JournalRows:
         start, self._count = self._count, self._count + rows
         if self._count > len(self._buffer):
             more = np.empty((max(self._count, 2 * len(self._buffer)), self._buffer.shape[1]))
-            more[:start] = self._buffer[:start]  # memory beyond is not taken until it is filled
+            more[:start] = self._buffer[:start]  # the system gives the rest when it is filled
             self._hold(more)
         return self._buffer[start : self._count]
 
@@ -137,8 +137,8 @@ class Journal:
     """The tables of one run.
 
     Args:
-        folder: where the journal is kept; None keeps nothing, with the same interface.
-        heartbeat: in use already; None makes one in the folder.
+        folder: where the journal is kept; with None nothing is kept.
+        heartbeat: the one in use; None makes one in the folder.
 
     Attributes:
         heartbeat: where the run stands.

@@ -25,7 +25,7 @@ class JournalContents:
     """What a journal holds.
 
     Attributes:
-        meta: what the rows belong to; empty if the run did not come that far.
+        meta: what the rows belong to; empty if the run ended before it was written.
         tables: (n, columns) each, by name.
         names: by name, each by index.
         commits: whole steps found.
@@ -52,7 +52,7 @@ def read_journal(folder: Path) -> JournalContents:
     if not rows_file.exists() or not rows_file.stat().st_size:
         return JournalContents(meta, {}, {}, 0, pulse)
     content = np.memmap(rows_file, np.uint8, mode="r").data
-    begun = bytes(content[: len(MAGIC)]).rstrip(b"\0")  # death may have come as early as that
+    begun = bytes(content[: len(MAGIC)]).rstrip(b"\0")  # the process may have died within it
     if not MAGIC.startswith(begun):
         msg = f"{rows_file}: is not a journal of giveway ({MAGIC.decode()} expected at its start)"
         raise ResultsError(msg)

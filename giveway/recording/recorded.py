@@ -40,13 +40,13 @@ class RecordedRows:
     def __init__(self, rows: dict[str, Array], names: dict[str, tuple[str, ...]]) -> None:
         self._rows = rows
         self._names = names
-        instants = len(rows["clock"])  # a journal may end within an instant: what it has counts
+        instants = len(rows["clock"])  # rows of an instant without a row here are left out
         self.time = np.ascontiguousarray(rows["clock"][:, 0])  # (T,) [s]
         self._ego = rows["ego"][rows["ego"][:, 0] < instants]
 
     @property
     def ledger(self) -> dict[str, int]:
-        """Where everybody was at the latest of SUMO's instants."""
+        """How many pedestrians were where at the latest of SUMO's instants."""
         rows = self._rows["ledger"]
         return {name: int(rows[-1, i]) for i, name in enumerate(LEDGER)} if len(rows) else {}
 

@@ -1,4 +1,4 @@
-"""The rows of a run, gathered step by step; our own state, not SUMO's mirror of it."""
+"""The rows of a run, gathered step by step, from our own state and not SUMO's mirror of it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import Array, kernel
 from giveway.recording.journal import Journal
 from giveway.recording.recorded import RecordedRows
 from giveway.records.rows import EGO_NUMBERS, LEDGER, EgoRow
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from giveway.geometry.bodies import VehicleShape
     from giveway.sumo.background import BackgroundVehicles
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 
@@ -27,7 +26,7 @@ class Recorder:
     """Collects what the loop knows at each control instant.
 
     Args:
-        journal: keeps the rows where a dying process cannot take them along.
+        journal: keeps the rows where they outlive this process.
     """
 
     def __init__(self, journal: Journal | None = None) -> None:
@@ -47,11 +46,6 @@ class Recorder:
         self._vehicles = names("vehicles")
         self._steps = 0
 
-    @property
-    def steps(self) -> int:
-        """Control instants recorded so far."""
-        return self._steps
-
     def instant(self, time: float) -> None:
         """Begin the next control instant, at ``time`` [s]."""
         self._clock.block(1)[0, 0] = time
@@ -68,7 +62,7 @@ class Recorder:
         self._drives.block(1)[0] = row
 
     def ledger(self, counts: Mapping[str, int]) -> None:
-        """Note where everybody is, at one of SUMO's instants."""
+        """Note how many pedestrians are where, at one of SUMO's instants."""
         self._ledger.block(1)[0] = [counts[name] for name in LEDGER]
 
     def ego(self, ego_id: str, row: EgoRow) -> None:
@@ -97,28 +91,28 @@ class Recorder:
             position: (n, 2) [m].
             velocity: (n, 2) [m/s].
             egos: (e, 2) [m] where the egos are.
-            within: [m] of an ego, who is further away is left out; infinite: nobody is.
+            within: [m] from an ego; pedestrians farther from every ego are left out.
         """
         block = self._crowd.block(len(present))
         filled = fill_near(self._steps - 1, present, position, velocity, egos, within, block)
         self._crowd.give_back(len(present) - filled)
 
     def predictions(
-        self, ego_id: str, people: Indices, look_ahead: Array, positions: Array
+        self, ego_id: str, pedestrians: Indices, look_ahead: Array, positions: Array
     ) -> None:
         """Record what an ego's controller expects of the crowd from the present instant on.
 
         Args:
-            ego_id: whose controller.
-            people: (n,) the indices of the pedestrians predicted.
+            ego_id: the ego whose controller it is.
+            pedestrians: (n,) the indices of those predicted.
             look_ahead: (m,) [s].
             positions: (m, n, 2) [m] then.
         """
-        block = self._predictions.block(look_ahead.size * people.size)
+        block = self._predictions.block(look_ahead.size * pedestrians.size)
         block[:, 0] = self._steps - 1
         block[:, 1] = self._egos.index(ego_id)
-        block[:, 2] = np.tile(people, look_ahead.size)
-        block[:, 3] = np.repeat(look_ahead, people.size)
+        block[:, 2] = np.tile(pedestrians, look_ahead.size)
+        block[:, 3] = np.repeat(look_ahead, pedestrians.size)
         block[:, 4:] = positions.reshape(-1, 2)
 
     def background(
@@ -175,7 +169,7 @@ def fill_near(
     within: float,
     block: Array,
 ) -> int:
-    """Fill the crowd's rows of one step with those within reach of an ego; how many they are."""
+    """Fill the crowd's rows of one step with the pedestrians near an ego; returns how many."""
     count = 0
     for i in range(len(present)):
         near = np.isinf(within)

@@ -7,9 +7,15 @@ the reference point and the angle convention of SUMO's floating car data (FCD).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args, get_type_hints
 
 ColumnType = Literal["number", "integer", "string", "boolean"]
+_TYPES: dict[type, ColumnType] = {
+    bool: "boolean",
+    int: "integer",
+    float: "number",
+    str: "string",
+}
 
 
 @dataclass(frozen=True)
@@ -20,6 +26,23 @@ class Column:
     type: ColumnType
     unit: str | None
     description: str
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Unit and meaning of a column, as the annotation of the attribute that holds its values."""
+
+    unit: str | None
+    meaning: str
+
+
+def columns_of(table: type) -> tuple[Column, ...]:
+    """The columns of a class whose every attribute is ``Annotated[type, Quantity(...)]``."""
+    columns = []
+    for name, hint in get_type_hints(table, include_extras=True).items():
+        python_type, quantity = get_args(hint)
+        columns.append(Column(name, _TYPES[python_type], quantity.unit, quantity.meaning))
+    return tuple(columns)
 
 
 _FRONT = "of the front bumper's centre (SUMO's reference point)"

@@ -11,7 +11,7 @@ class Ending(enum.StrEnum):
     """Why a run, or one ego's drive, ended."""
 
     COMPLETED = "completed"  # the ego has driven its distance
-    TIME_LIMIT = "time limit"  # it has not within the time limit
+    TIME_LIMIT = "time limit"  # the ego has not driven its distance within the time limit
     SCENARIO_END = "scenario end"  # the scenario's own end came first
     INTERRUPTED = "interrupted"  # the user wanted it to end
     FAILED = "failed"  # an error ended it
@@ -20,13 +20,13 @@ class Ending(enum.StrEnum):
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a run stands, for whoever watches."""
+    """Where a run stands, for those who watch it."""
 
-    time: float  # [s] since the run's first instant; 0 while SUMO runs up to it by itself
+    time: float  # [s] since the run's first instant; 0 while SUMO alone runs up to it
     clock: float  # [s] SUMO's
     position: float  # [m] driven by the first ego on the road; nan without one
-    goal: float  # [m] it is to drive; nan without one
-    speed: float  # [m/s] of it; nan without one
+    goal: float  # [m] that this ego is to drive; nan without one
+    speed: float  # [m/s] of this ego; nan without one
     acting: str  # which controller acts; empty without an ego
     pedestrians: int  # in the crowd
 

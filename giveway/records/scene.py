@@ -13,10 +13,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 SCENE_FILE = "scene.json"
 
@@ -37,7 +33,7 @@ class Scene:
     bodies: dict[str, Body] | None = None
 
     def body(self, vehicle: str, otherwise: Body) -> Body:
-        """Length and width [m] of a vehicle, as far as they are known."""
+        """Length and width [m] of a vehicle; ``otherwise`` if they are not known."""
         return (self.bodies or {}).get(vehicle, otherwise)
 
     def to_json(self) -> str:

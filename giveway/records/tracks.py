@@ -1,4 +1,4 @@
-"""What a run leaves behind, as arrays: the ego's track and the crowd's.
+"""What a run leaves behind, as arrays: the tracks of egos, crowd and background vehicles.
 
 The recorder fills these; metrics, tables and figures read them. Everything is SI, angles are
 mathematical (radians, counter-clockwise from +x) and x, y are the network's coordinates.
@@ -31,7 +31,7 @@ class EgoTrack:
     reference_speed: NDArray[np.float64]  # (T,) [m/s] of the controller that acted
     vehicle_gap: NDArray[np.float64]  # (T,) [m] to the closest vehicle in front; inf: none
     stop_gap: NDArray[np.float64]  # (T,) [m] to where a red light stops it; inf: none
-    acting: NDArray[np.str_]  # (T,) which controller acted: "mpc" or "pid"
+    acting: NDArray[np.str_]  # (T,) who acted: "mpc", "pid" or "safety"
     reason: NDArray[np.str_]  # (T,) why it acted, e.g. "optimal", "infeasible", "selected"
     solver_status: NDArray[np.str_]  # (T,) of the QP; empty where none ran
     solver_iterations: NDArray[np.int64]  # (T,)
@@ -50,7 +50,7 @@ class CrowdTrack:
     ids: tuple[str, ...]  # one per pedestrian
 
     def during(self, first: int, instants: int) -> CrowdTrack:
-        """The records of ``instants`` control instants from ``first`` on, counted from there."""
+        """The records of ``instants`` control instants from ``first`` on, which becomes step 0."""
         a, b = np.searchsorted(self.step, (first, first + instants))
         if first == 0 and b == len(self.step):
             return self
@@ -67,7 +67,7 @@ class CrowdTrack:
 
 @dataclass(frozen=True)
 class PredictionTrack:
-    """Where an ego's controller expected people to be, as flat records in time order."""
+    """Where an ego's controller expected pedestrians to be, as flat records in time order."""
 
     time: NDArray[np.float64]  # (P,) [s] the control instant of the prediction
     pedestrian: NDArray[np.int64]  # (P,) index into the crowd's ``ids``
@@ -93,7 +93,7 @@ class BackgroundTrack:
 
 @dataclass(frozen=True)
 class Timings:
-    """Computing times of each control step; they differ from run to run, so they stand apart."""
+    """Computing times of each control step, apart from all that is equal in equal runs."""
 
     NAMES: ClassVar[tuple[str, ...]] = (
         "prediction",

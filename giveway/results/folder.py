@@ -16,7 +16,7 @@ from giveway.results.names import FILES, SUMO_FOLDER
 from giveway.results.scene import scene_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from pathlib import Path
 
     import pandas as pd
@@ -28,12 +28,20 @@ _RUNNING = '{"ending": "running"}\n'
 _DECIMALS = 6  # micrometres, microseconds: finer than anything that is compared
 
 
-def check_folder(folder: Path, *, force: bool) -> None:
+def check_folder(
+    folder: Path, *, force: bool, ours: Collection[str] = FILES, writer: str = "giveway"
+) -> None:
     """Make sure that the results may go to ``folder``; nothing is changed.
+
+    Args:
+        folder: where they would go.
+        force: whether former results may be replaced.
+        ours: the names of the files that may be there.
+        writer: the program that writes them, for messages.
 
     Raises:
         ResultsError: it exists and ``force`` is not given, it is a file, or it holds files that
-            giveway did not write.
+            the writer did not write.
     """
     if not folder.exists():
         return
@@ -41,10 +49,10 @@ def check_folder(folder: Path, *, force: bool) -> None:
         msg = f"{folder}: is a file; expected a folder for the results, name another with --out"
         raise ResultsError(msg)
     present = sorted(path.name for path in folder.iterdir())
-    foreign = [name for name in present if name not in FILES]
+    foreign = [name for name in present if name not in ours]
     if foreign:
         msg = (
-            f"{folder}: holds '{foreign[0]}', which giveway did not write; "
+            f"{folder}: holds '{foreign[0]}', which {writer} did not write; "
             "name another folder with --out"
         )
         raise ResultsError(msg)
@@ -86,7 +94,7 @@ def take_folder(folder: Path, *, force: bool) -> bool:
 
 
 def release_folder(folder: Path) -> None:
-    """Take the folder of a run that could not begin away again."""
+    """Remove the folder that was taken for a run which could not begin."""
     shutil.rmtree(folder / SUMO_FOLDER, ignore_errors=True)
     with contextlib.suppress(OSError):
         (folder / "manifest.json").unlink()
@@ -130,7 +138,7 @@ def _summary(result: RunResult) -> dict[str, Any]:
 
 
 def _plain(row: dict[Any, Any]) -> dict[str, Any]:
-    """Python's own types, which JSON knows."""
+    """The row in Python's own types, which JSON knows."""
     return {str(k): v.item() if isinstance(v, np.generic) else v for k, v in row.items()}
 
 
@@ -143,10 +151,10 @@ def rounded_row(row: dict[Any, Any]) -> dict[str, Any]:
 
 
 def sumo_folder(folder: Path) -> Path:
-    """Where SUMO's own outputs go; those of a former run are taken away.
+    """The folder for SUMO's own outputs; those of a former run are removed.
 
     Raises:
-        ResultsError: they cannot be.
+        ResultsError: they cannot be removed.
     """
     try:
         shutil.rmtree(folder / SUMO_FOLDER, ignore_errors=False)
@@ -185,7 +193,7 @@ def package_of(name: str, title: str, schemas: Mapping[str, Sequence[Column]]) -
 
     Args:
         name: of the package.
-        title: for people.
+        title: of the package, for readers.
         schemas: the columns of each file, by its name without the suffix.
     """
     return {
@@ -219,7 +227,7 @@ def _fields(columns: Sequence[Column]) -> list[dict[str, str]]:
 
 
 def _rounded(frame: pd.DataFrame) -> pd.DataFrame:
-    """Floats to six decimals, without negative zeros: short, and the same bytes everywhere."""
+    """Floats to six decimals, without negative zeros: short, and the same bytes on every system."""
     frame = frame.copy()
     for name in frame.columns:
         if frame[name].dtype == np.float64:
@@ -240,7 +248,7 @@ def _write_json(path: Path, content: dict[str, Any]) -> None:
 
 
 def _json_ready(value: Any) -> Any:
-    """JSON has neither NaN nor infinity: they become null."""
+    """The value for JSON, which has neither NaN nor infinity: they become null."""
     if isinstance(value, dict):
         return {key: _json_ready(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

@@ -19,7 +19,7 @@ _SURE = 0.1  # half width of M's 95 % interval, relative, up to which a fit is w
 
 
 def remark(ego: EgoResult, time_step: float, margin: float) -> str:
-    """What the user should know of a vehicle whose FMU is not ours; empty if all is well.
+    """The remark on a vehicle that answers otherwise than its controller's model; else empty.
 
     Args:
         ego: how it drove.
@@ -42,7 +42,7 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
         f"{friction:g} N.s/m predict: off by up to {error:.2g} m in "
         f"{config.mpc.horizon * time_step:.3g} s"
     )
-    if margin > 0.0:  # identified: once more would find the same
+    if margin > 0.0:  # the vehicle has been identified; doing so again would find the same
         return (
             f"{missed}, {margin:.2g} m as identified: at forces that do not arrive, or too late; "
             f"see its limits with: giveway fmu check {fmu}{named}, and keep to them by "
@@ -55,21 +55,27 @@ def remark(ego: EgoResult, time_step: float, margin: float) -> str:
 
 
 def _trace(track: EgoTrack, time_step: float) -> Trace:
-    """A run's drive, with the way that the speeds add up to in the model's manner.
+    """A run's drive, with the distance that its speeds add up to by the model's forward Euler rule.
 
-    Where an FMU adds them up in another one (the exact way of a step is half a change of speed
-    more than forward Euler's), M and alpha are right all the same.
+    An FMU may add them up otherwise (the exact distance of a step is half a change of speed more);
+    M and alpha are right all the same.
     """
     steps = len(track.speed) - 1
-    way = np.concatenate(([0.0], np.cumsum(time_step * track.speed[:-1])))
+    distance = np.concatenate(([0.0], np.cumsum(time_step * track.speed[:-1])))
     nothing = np.zeros(steps)
     return Trace(
-        time_step, track.force[:-1], way, track.speed, track.acceleration, cost=nothing, warnings=()
+        time_step,
+        track.force[:-1],
+        distance,
+        track.speed,
+        track.acceleration,
+        cost=nothing,
+        warnings=(),
     )
 
 
 def _fitting(trace: Trace) -> str:
-    """M and alpha that fit better, in brackets; empty where the drive does not tell."""
+    """The M and alpha that fit better, in brackets; empty if the drive does not show them."""
     found = fit([prepare(trace)], actuator=False)
     if found is None or not found.intervals[0] <= _SURE * found.mass:
         return ""

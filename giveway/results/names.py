@@ -6,9 +6,9 @@ from giveway.records.scene import SCENE_FILE
 
 SUMO_FOLDER = "sumo"
 MARKS = ("", *(f"_{number}" for number in range(2, 100)))
-"""Ends of the names of pictures: of the first ego, the second one, ..."""
+"""Ends of the names of pictures, of the first ego, the second one and so on."""
 TABLES = ("ego", "trajectories", "pedestrians", "summary", "timing", "predictions")
-"""All that there can be; which of them a run has, its ``schemas`` say."""
+"""All tables that a run can have; its ``schemas`` say which of them it has."""
 FILES = frozenset(
     {
         *(f"{name}{suffix}" for name in TABLES for suffix in (".csv", ".parquet")),

@@ -22,21 +22,20 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
     from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.kernel import Array
     from giveway.results.run_result import EgoResult, RunResult
     from pedestrian_model import VciParameters
 
-    Array = NDArray[np.float64]
 
 _CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
 
 
 def write_pictures(result: RunResult, folder: Path) -> None:
-    """Write ``state.png`` and ``top_view.png`` of the first ego, ``state_2.png`` of the second ...
+    """Write the pictures of every ego; without one, the trajectories alone.
 
-    Without an ego there are only the trajectories.
+    The first ego's are ``state.png`` and ``top_view.png``, the second one's ``state_2.png`` ...
 
     Raises:
         ResultsError: a file cannot be written.

@@ -27,7 +27,7 @@ def sha256(content: bytes) -> str:
 
 
 def software_versions() -> dict[str, str]:
-    """Versions of everything whose version can change a number."""
+    """The versions of all software that can change a number."""
     versions = {"giveway": __version__, "python": platform.python_version()}
     for name in _PACKAGES:
         try:
@@ -81,10 +81,10 @@ def manifest(
         scenario: its scenario.
         config_text: the configuration as it is written.
         vehicles: each ego's FMU.
-        pedestrians: the ledger of who was moved.
+        pedestrians: the ledger of the pedestrians that giveway moved.
         traffic: what the yield layer did.
         sumo: seed and step length in effect.
-        time_step: of the co-simulation [s]; None: unknown, the process died.
+        time_step: of the co-simulation [s]; None if it is not known because the process died.
         remarks: for the user.
         ending: why the run ended.
         error: what ended it, if it failed.

@@ -33,14 +33,10 @@ from giveway.results.tables import ego_table, prediction_table, timing_table, tr
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy as np
-    from numpy.typing import NDArray
-
     from giveway.config import EgoRunConfig, RunConfig
+    from giveway.geometry.kernel import Array
     from giveway.recording.recorded import RecordedRows
     from sumo_scenarios import Scenario
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -56,7 +52,7 @@ class EgoResult:
         track: its rows, from that instant on.
         ending: why its drive ended.
         crowd: the crowd's records of these instants, counted from ``first``.
-        predictions: what its controller expected of the crowd, if that was to be recorded.
+        predictions: what its controller expected of the crowd, if that was recorded.
     """
 
     config: EgoRunConfig
@@ -106,13 +102,13 @@ class RunResult:
         ending: why the run ended.
         error: what ended it, if it failed.
         time: (T,) [s] the control instants.
-        egos: those that were on the road, in the order of their departure.
+        egos: the egos that were on the road, in the order of their departure.
         crowd_track, background_track: the rows as arrays, in SI units.
         elapsed: wall clock of the loop [s].
         manifest: versions, hashes, seeds, the pedestrians' ledger.
         sumo_messages: what SUMO printed.
         road: outlines (k, 2) [m] of the network's lanes, crossings and walkingareas.
-        remarks: what is not as the scenario has it, or as one may expect.
+        remarks: what differs from the scenario, or from what the user may expect.
     """
 
     config: RunConfig
@@ -196,7 +192,7 @@ class RunResult:
 
     @property
     def head(self) -> dict[str, Any]:
-        """What the run was: the first columns of the summary."""
+        """The run's settings and ending: the first columns of the summary."""
         return {
             "scenario": self.scenario.name,
             "controller": self.config.controller,
@@ -207,7 +203,7 @@ class RunResult:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """The run in one row: that of its first ego; without one, what the run was."""
+        """The run in one row, that of its first ego; without an ego, the head alone."""
         return self.head | (self._row(self.egos[0]) if self.egos else {})
 
     def _row(self, ego: EgoResult) -> dict[str, Any]:

@@ -9,18 +9,16 @@ import numpy as np
 from giveway.records.scene import Scene
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.geometry.kernel import Array
     from giveway.results.run_result import RunResult
 
-    Array = NDArray[np.float64]
 
 _AROUND = 60.0  # [m] of road kept beyond the places where somebody was
 _DECIMALS = 2  # centimetres
 
 
 def scene_of(result: RunResult) -> Scene:
-    """What of a run's surroundings a replay shows."""
+    """The part of a run's surroundings that a replay shows."""
     background = result.background_track
     _, first = np.unique(background.id, return_index=True)
     bodies = {
@@ -43,7 +41,7 @@ def _rounded(outline: Array) -> list[list[float]]:
 
 
 def _extent(result: RunResult) -> tuple[Array, Array]:
-    """The corners of where anybody was, and some room around."""
+    """The corners of the area in which anybody was, with some room around it."""
     tracks = [(result.crowd_track.x, result.crowd_track.y)]
     tracks += [(result.background_track.x, result.background_track.y)]
     tracks += [(ego.track.front_x, ego.track.front_y) for ego in result.egos]

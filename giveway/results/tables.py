@@ -18,8 +18,7 @@ from giveway.records.columns import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
+    from giveway.geometry.kernel import Array
     from giveway.records.tracks import (
         BackgroundTrack,
         CrowdTrack,
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
         Timings,
     )
 
-    Array = NDArray[np.float64]
 
 _STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
 

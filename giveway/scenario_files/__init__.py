@@ -5,9 +5,8 @@ that writes nothing beside the scenario.
 """
 
 from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, ScenarioFiles, read_scenario
-from giveway.scenario_files.person_ids import free_prefix
+from giveway.scenario_files.declared_ids import declares, free_prefix, undeclared
 from giveway.scenario_files.starting import Start, StartOptions, prepare_start
-from giveway.scenario_files.vehicle_ids import declares, undeclared
 
 __all__ = [
     "STRIPING",

@@ -7,9 +7,9 @@ import os
 import re
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeVar
 from urllib.parse import unquote
 
 from giveway.errors import ScenarioError
@@ -22,11 +22,14 @@ from giveway.scenario_files.options import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
+
+_Value = TypeVar("_Value")
 
 SUMO_SEED: Final = 23423  # what SUMO takes where neither scenario nor command line names a seed
 STRIPING: Final = "striping"  # SUMO's default pedestrian model, and the only one that can be moved
 
+_A_TIME: Final = "seconds, h:m:s or d:h:m:s"
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _TRUE = frozenset({"true", "1", "yes", "on", "x", "t"})
 _FALSE = frozenset({"false", "0", "no", "off", "-", "f"})
@@ -40,7 +43,7 @@ class ScenarioFiles:
         config_file: the .sumocfg.
         options: each option that it sets, under the name that SUMO's help lists, to its value.
         net_file: the road network.
-        route_files, additional_files: in SUMO's order of reading.
+        route_files, additional_files: in the order in which SUMO reads them.
         begin: first instant [s].
         end: last instant [s]; None if the scenario ends when nobody is left.
         step_length: SUMO's step [s].
@@ -82,11 +85,6 @@ class ScenarioFiles:
         """The scenario's own options about teleporting."""
         return {name: value for name, value in self.options.items() if "teleport" in name}
 
-    @property
-    def gui_settings(self) -> tuple[Path, ...]:
-        """The window's settings, which a run ignores."""
-        return _paths(self.config_file, self.options.get("gui-settings-file", ""))
-
     def is_set(self, option: str) -> bool:
         """Whether the scenario switches a yes-or-no option on."""
         return self.options.get(option, "").strip().lower() in _TRUE
@@ -122,15 +120,15 @@ class ScenarioFiles:
 
 
 def read_scenario(config_file: Path) -> ScenarioFiles:
-    """What ``config_file`` says; whether the files it names exist is asked separately.
+    """What ``config_file`` says; :attr:`ScenarioFiles.missing` tells which files do not exist.
 
     Options may stand in sections or flat, under any of SUMO's names, with the value in ``value``,
     ``v`` or as text; lists are separated by commas; ``${NAME}`` stands for an environment
     variable.
 
     Raises:
-        ScenarioError: the file is missing, empty, not XML, or names no network, a double option
-            or a value of the wrong kind.
+        ScenarioError: the file is missing, empty or not XML, or it names no network, an option
+            twice, or a value of the wrong kind.
     """
     config_file = Path(os.path.abspath(config_file))  # noqa: PTH100 - resolve() follows links
     options = _options(config_file)
@@ -149,22 +147,23 @@ def read_scenario(config_file: Path) -> ScenarioFiles:
             'add <net-file value="NETWORK.net.xml"/>'
         )
         raise ScenarioError(msg)
-    step_length = _time(config_file, options, "step-length", 1.0)
+    time = partial(_parsed, config_file, options, parse=seconds, expected=_A_TIME)
+    step_length, end = time("step-length"), time("end")
+    step_length = 1.0 if step_length is None else step_length
     if step_length <= 0.0:
         msg = f"{config_file}: step-length = {step_length:g}; expected more than 0 s, like 0.1"
         raise ScenarioError(msg)
-    end = _time(config_file, options, "end", -1.0)
     return ScenarioFiles(
         config_file=config_file,
         options=options,
         net_file=networks[0],
         route_files=_paths(config_file, options.get("route-files", "")),
         additional_files=_paths(config_file, options.get("additional-files", "")),
-        begin=_time(config_file, options, "begin", 0.0),
-        end=end if end >= 0.0 else None,
+        begin=time("begin") or 0.0,
+        end=None if end is None or end < 0.0 else end,
         step_length=step_length,
-        seed=_seed(config_file, options),
-        random=_flag(config_file, options, "random"),
+        seed=_parsed(config_file, options, "seed", int, "a whole number"),
+        random=bool(_parsed(config_file, options, "random", _truth, "true or false")),
         pedestrian_model=options.get("pedestrian.model", STRIPING).strip(),
         outputs={name: _names(options[name], name) for name in OUTPUTS if name in options},
     )
@@ -218,10 +217,10 @@ def _paths(config_file: Path, value: str) -> tuple[Path, ...]:
     return tuple(located(unquote(name), config_file) for name in _names(value, ""))
 
 
-def located(name: str, beside: Path) -> Path:
-    """The file that ``name`` means where it stands in the file ``beside``."""
+def located(name: str, named_in: Path) -> Path:
+    """The file that ``name`` means where it stands in the file ``named_in``."""
     path = Path(name).expanduser() if name.startswith("~/") else Path(name)
-    return Path(os.path.abspath(beside.parent / path))  # noqa: PTH100 - resolve() follows links
+    return Path(os.path.abspath(named_in.parent / path))  # noqa: PTH100 - resolve() follows links
 
 
 def seconds(text: str) -> float:
@@ -241,29 +240,25 @@ def seconds(text: str) -> float:
     return ((days * 24.0 + hours) * 60.0 + minutes) * 60.0 + rest
 
 
-def _time(config_file: Path, options: Mapping[str, str], name: str, default: float) -> float:
+def _truth(text: str) -> bool:
+    """Whether ``text`` is one of SUMO's words for true; a ValueError if it is none for false."""
+    if text.lower() not in _TRUE | _FALSE:
+        raise ValueError(text)
+    return text.lower() in _TRUE
+
+
+def _parsed(
+    config_file: Path,
+    options: Mapping[str, str],
+    name: str,
+    parse: Callable[[str], _Value],
+    expected: str,
+) -> _Value | None:
+    """The value of an option; None if it is not set."""
     if name not in options:
-        return default
-    try:
-        return seconds(options[name].strip())
-    except ValueError:
-        msg = f"{config_file}: {name} = '{options[name]}'; expected seconds, h:m:s or d:h:m:s"
-        raise ScenarioError(msg) from None
-
-
-def _seed(config_file: Path, options: Mapping[str, str]) -> int | None:
-    if "seed" not in options:
         return None
     try:
-        return int(options["seed"])
+        return parse(options[name].strip())
     except ValueError:
-        msg = f"{config_file}: seed = '{options['seed']}'; expected a whole number"
+        msg = f"{config_file}: {name} = '{options[name]}'; expected {expected}"
         raise ScenarioError(msg) from None
-
-
-def _flag(config_file: Path, options: Mapping[str, str], name: str) -> bool:
-    value = options.get(name, "false").strip().lower()
-    if value not in _TRUE | _FALSE:
-        msg = f"{config_file}: {name} = '{options[name]}'; expected true or false"
-        raise ScenarioError(msg)
-    return value in _TRUE

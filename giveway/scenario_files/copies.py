@@ -8,7 +8,7 @@ from giveway.errors import ScenarioError
 from giveway.scenario_files.configuration import located
 from giveway.scenario_files.markup import rewrite
 from giveway.scenario_files.outputs import OutputFolder, is_file
-from giveway.scenario_files.reading import opened
+from giveway.scenario_files.reading import opened, pieces
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,7 +38,8 @@ _DEVICES: Final = ("device.ssm.file", "device.toc.file")  # parameters of a type
 _SSM: Final = "has.ssm.device"
 _ELEMENTS: Final = frozenset({*_WRITES, *_READS, "param", "poly", "poi", "vType"})
 
-# What a file that writes or refers to another must contain; searched before anything is parsed.
+# A file that writes or refers to another file contains one of these; they are searched for first,
+# since that is far faster than to parse the file.
 _SIGNS: Final = tuple(
     sign.encode()
     for sign in (
@@ -48,14 +49,13 @@ _SIGNS: Final = tuple(
         *('"file"', "'file'"),
     )
 )
-_CHUNK: Final = 1 << 22  # [bytes]
 
 
 class Copies:
     """Prepares scenario files so that a run writes nothing beside them.
 
-    A file that names no output is used where it is. Another one is copied, with its outputs
-    placed in the results folder and all else that it refers to made absolute.
+    A file that names no output is used where it is. A file that names one is copied, with its
+    outputs placed in the results folder and the names of other files made absolute.
 
     Args:
         config_file: the .sumocfg, to which the names in vehicles' parameters are relative.
@@ -73,11 +73,11 @@ class Copies:
         self._outputs = outputs
         self._prepared: dict[Path, Path] = {}
         self.has_ssm = False
-        self.missing: dict[Path, Path] = {}  # what is included and not there, by whom
+        self.missing: dict[Path, Path] = {}  # included but absent files, to the including one
 
     @property
     def read(self) -> tuple[Path, ...]:
-        """Every file prepared, and all that they include."""
+        """Every file prepared, and all files that they include."""
         return tuple(self._prepared)
 
     @property
@@ -114,13 +114,13 @@ class Copies:
         copy.unlink()
         return file
 
-    def redirected(self, name: str, beside: Path) -> str:
-        """The output that ``name`` means in ``beside``, in the results folder."""
-        return str(self._outputs.place(located(name, beside)))
+    def redirected(self, name: str, named_in: Path) -> str:
+        """The file in the results folder for the output ``name`` of the file ``named_in``."""
+        return str(self._outputs.place(located(name, named_in)))
 
 
 class _Editor:
-    """What changes in the copy of one file."""
+    """Finds what changes in the copy of one file."""
 
     def __init__(self, file: Path, copies: Copies) -> None:
         self._file = file
@@ -157,19 +157,11 @@ class _Editor:
             return {"value": self._redirected(value, self._file)}
         return {}
 
-    def _redirected(self, name: str, beside: Path) -> str:
+    def _redirected(self, name: str, named_in: Path) -> str:
         self.needed = True
-        return self._copies.redirected(name, beside)
+        return self._copies.redirected(name, named_in)
 
 
 def _has_signs(file: Path) -> bool:
     """Whether the file can name an output at all; reads it once, in pieces."""
-    longest = max(map(len, _SIGNS))
-    with opened(file) as stream:
-        tail = b""
-        while chunk := stream.read(_CHUNK):
-            text = tail + chunk
-            if any(sign in text for sign in _SIGNS):
-                return True
-            tail = text[-longest:]
-    return False
+    return any(sign in text for text in pieces(file) for sign in _SIGNS)

@@ -24,15 +24,15 @@ _ENCODING = re.compile(rb"<\?xml[^>]*encoding\s*=\s*[\"']([\w.-]+)")
 def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor, names: frozenset[str]) -> None:
     """Copy XML from ``source`` to ``target``, with some attributes changed.
 
-    Nothing is checked and nothing else changes: what is not well-formed stays so, for SUMO to
-    say. The memory used does not grow with the file, the depth of its nesting aside.
+    Nothing is checked and nothing else changes: what is not well-formed stays so, and SUMO will
+    say it. The memory used grows with the depth of the nesting, and not with the file.
 
     Args:
         source: XML in an encoding that contains ASCII.
         target: receives the copy.
-        visit: asked for elements: (name, attributes, name of the parent) -> the attributes
-            that change, to their new values; others in it are ignored.
-        names: of the elements that it is asked for.
+        visit: called with an element's name, its attributes and its parent's name; returns the
+            new values of the attributes that change. Attributes that the element lacks are ignored.
+        names: of the elements that it is called for.
     """
     copy = _Copy(target, visit, names)
     pending = b""
@@ -52,7 +52,7 @@ class _Copy:
         self._encoding = "utf-8"
 
     def feed(self, text: bytes) -> bytes:
-        """Copy what is complete of ``text``; hand the rest back."""
+        """Copy the complete part of ``text``, and return the rest."""
         written = position = 0
         while (start := text.find(b"<", position)) >= 0:
             tag = _TAG.match(text, start)
@@ -73,7 +73,7 @@ class _Copy:
         return b""
 
     def _end_of_other(self, text: bytes, start: int) -> int | None:
-        """Where the comment, declaration or literal text at ``start`` ends; None if not in here."""
+        """Where the comment, declaration or literal text at ``start`` ends, if in ``text``."""
         for opening, closing in _ENDS:
             if text.startswith(opening, start):
                 end = text.find(closing, start + len(opening))

@@ -1,4 +1,4 @@
-"""SUMO's options that name files, and the ones that giveway has to know by all their names.
+"""SUMO's options: those that name files, those that giveway has to know by all their names.
 
 The tables hold for SUMO 1.28; a test compares them with what ``sumo --save-template`` says, so
 that no output option of a later version is missed. libsumo ships without the program, which is
@@ -7,7 +7,12 @@ why they stand here.
 
 from __future__ import annotations
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+from giveway.errors import ConfigError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 OUTPUTS: Final = (
     "amitran-output",
@@ -75,14 +80,8 @@ INPUTS: Final = (
 )
 """Every option whose value is one or several files that SUMO reads without a window."""
 
-WINDOW_FILES: Final = (
-    "gui-settings-file",
-    "edgedata-files",
-    "alternative-net-file",
-    "selection-file",
-    "gui-testing.setting-output",
-)
-"""Files of the window alone: never touched by a run."""
+_OURS: Final = ("configuration-file", "remote-port", "num-clients")
+"""Options that only giveway sets."""
 
 _NAMES: Final = {
     "net-file": "n net",
@@ -120,3 +119,34 @@ SYNONYMS: Final = {
 def canonical(name: str) -> str:
     """The name under which SUMO's help lists the option; ``name`` itself if it is one already."""
     return SYNONYMS.get(name, name)
+
+
+def parse_options(extra: Sequence[str]) -> dict[str, str]:
+    """The user's own SUMO options, by the name that SUMO's help lists.
+
+    Raises:
+        ConfigError: a word is no option, or an option is not the user's to set.
+    """
+    options: dict[str, str] = {}
+    words = list(extra)
+    while words:
+        word = words.pop(0)
+        if not word.startswith("-") or word.strip("-") == "":
+            msg = f"SUMO option '{word}': expected a name that begins with --, like --scale 0.5"
+            raise ConfigError(msg)
+        name, equals, value = word.lstrip("-").partition("=")
+        if not equals:
+            value = words.pop(0) if words and not _is_option(words[0]) else "true"
+        name = canonical(name)
+        if name in _OURS:
+            msg = f"SUMO option '{word}': giveway sets it itself; leave it out"
+            raise ConfigError(msg)
+        if name == "seed" and not value.lstrip("-").isdecimal():
+            msg = f"SUMO option --seed '{value}': expected a whole number"
+            raise ConfigError(msg)
+        options[name] = value
+    return options
+
+
+def _is_option(word: str) -> bool:
+    return word.startswith("-") and len(word) > 1 and not word[1].isdigit() and word[1] != "."

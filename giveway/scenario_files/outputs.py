@@ -14,13 +14,13 @@ _NOWHERE = frozenset({"stdout", "stderr", "-", "nul", "/dev/null", "/dev/stdout"
 
 
 def is_file(name: str) -> bool:
-    """Whether an output named so is a file, not a stream, nothing, or a network address."""
+    """Whether an output of this name is a file, and not a stream, nothing or a network address."""
     colon = name.find(":")  # SUMO takes host:port for an address; C: is a drive
     return bool(name.strip()) and name.strip().lower() not in _NOWHERE and colon <= 1
 
 
 class OutputFolder:
-    """Gives every file that SUMO would write a place and a name of its own in one folder.
+    """Gives every file that SUMO would write a name of its own in one folder.
 
     Args:
         folder: the folder; created with the first file.
@@ -37,7 +37,7 @@ class OutputFolder:
         return self._placed
 
     def place(self, original: Path) -> Path:
-        """The file to write instead of ``original``; always the same for the same original.
+        """The file to write instead of ``original``; the same one at each call.
 
         Raises:
             ResultsError: SUMO cannot write into this folder.

@@ -10,8 +10,7 @@ from urllib.parse import unquote
 
 from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, located
 from giveway.scenario_files.copies import Copies
-from giveway.scenario_files.extra_options import parse_options
-from giveway.scenario_files.options import OUTPUTS
+from giveway.scenario_files.options import OUTPUTS, parse_options
 from giveway.scenario_files.outputs import OutputFolder, is_file
 
 if TYPE_CHECKING:
@@ -33,8 +32,8 @@ class StartOptions:
         fallback_seed: the seed of a scenario that wants a random one, where neither ``seed`` nor
             the scenario names one.
         step_length: SUMO's step [s]; None keeps the scenario's.
-        interact: whether persons or vehicles are to be moved; if not, SUMO's simulation is the
-            scenario's own to the last bit.
+        interact: whether persons or vehicles are to be moved; if not, SUMO simulates the scenario
+            exactly as without giveway.
         outputs: the folder for SUMO's output files; None drops them.
         fcd, tripinfo, summary, ssm: write this output even if the scenario does not.
         extra: further options as on SUMO's command line; they win over ours.
@@ -106,7 +105,7 @@ def prepare_start(
 
 
 class _Preparation:
-    """Gathers SUMO's options and what is to be said about them."""
+    """Gathers SUMO's options, and the remarks on them for the user."""
 
     def __init__(self, scenario: ScenarioFiles, options: StartOptions, scratch: Path) -> None:
         self._scenario = scenario
@@ -147,7 +146,7 @@ class _Preparation:
         )
 
     def _config_file(self) -> Path:
-        """The scenario's .sumocfg, or a copy without what only some of SUMO's windows know."""
+        """The scenario's .sumocfg, or a copy without options that only some builds of SUMO know."""
         own = self._scenario.options
         unknown = [name for name in _WINDOW_ONLY if name in own]
         if not unknown:
@@ -165,7 +164,7 @@ class _Preparation:
         return copy
 
     def _inputs(self, types: str, more: str) -> None:
-        """Our types first; every file that writes is replaced by its copy."""
+        """Name our types first; every file that writes is replaced by its copy."""
         own = self._scratch / "giveway.add.xml"
         own.write_text(types, encoding="utf-8")
         # Naming additional files on the command line replaces the scenario's list.
@@ -210,7 +209,7 @@ class _Preparation:
             )
 
     def _interaction(self) -> None:
-        """What moving people and vehicles asks for."""
+        """The options that SUMO needs if persons and vehicles are moved."""
         model = self._scenario.pedestrian_model
         self._options["pedestrian.model"] = STRIPING
         if model != STRIPING:
@@ -229,7 +228,7 @@ class _Preparation:
             self._options["collision.check-junctions"] = "true"
 
     def _connections(self) -> None:
-        """Nobody outside is waited for or asked; who listens to an output is the user's affair."""
+        """No program or server outside is waited for; outputs to an address stay as they are."""
         own = self._scenario.options
         for name in _VALIDATION:
             if own.get(name) in ("auto", "always"):
@@ -248,7 +247,7 @@ class _Preparation:
             )
 
     def _own_outputs(self) -> None:
-        """Every output that the scenario's options name, and those that SUMO names itself."""
+        """Place every output that the scenario's options name, and those that SUMO names itself."""
         own = self._scenario.options
         for name, files in self._scenario.outputs.items():
             if any(map(is_file, files)):  # streams stay as the scenario has them
@@ -257,7 +256,7 @@ class _Preparation:
             self._options["save-state.prefix"] = self._placed("state")  # beside the .sumocfg
         has_ssm = self._copies.has_ssm or any(name.startswith("device.ssm.") for name in own)
         if has_ssm and "device.ssm.file" not in own:
-            # SUMO's own default is a file per vehicle in the working folder
+            # SUMO's own default is one file per vehicle in the working folder.
             self._options["device.ssm.file"] = self._placed("ssm.xml")
         for name in ("output-prefix", "output-suffix"):
             self._without_folder(name)
@@ -268,7 +267,7 @@ class _Preparation:
         return str(self._outputs.place(located(unquote(name), self._scenario.config_file)))
 
     def _without_folder(self, name: str) -> None:
-        """A prefix that names a folder would lead out of the results folder."""
+        """Cut the folder off a prefix, which would lead out of the results folder."""
         value = self._scenario.options.get(name, "")
         last = value.replace("\\", "/").rsplit("/", 1)[-1]
         if last != value:
@@ -279,7 +278,7 @@ class _Preparation:
             )
 
     def _wanted_outputs(self) -> None:
-        """Outputs that the user wants and the scenario does not have."""
+        """Add the outputs that the user wants and the scenario does not have."""
         wanted = self._wanted
         for option, file, is_wanted in (
             ("fcd-output", "fcd.xml", wanted.fcd),
@@ -295,7 +294,7 @@ class _Preparation:
             self._options["device.ssm.probability"] = "1"
 
     def _placed_extra(self, value: str) -> str:
-        """Outputs among the user's own options: a relative name goes into the output folder."""
+        """An output among the user's own options; a relative name goes into the output folder."""
         return self._placed(value) if is_file(value) and not Path(value).is_absolute() else value
 
     def _say_where(self) -> None:

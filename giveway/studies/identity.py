@@ -19,7 +19,7 @@ from giveway.config.presets import is_preset_file
 from giveway.ego.vehicle import fmu_path
 from giveway.errors import ConfigError, GivewayError
 from giveway.results.provenance import scenario_hashes, scenario_inputs, sha256, software_versions
-from giveway.scenario_files.extra_options import parse_options
+from giveway.scenario_files.options import parse_options
 from sumo_scenarios import ScenarioError, find
 
 if TYPE_CHECKING:

@@ -8,21 +8,23 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from giveway.sumo.lanes import admits
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _IN_JUNCTION = re.compile(r"^:(.*)_[wc]?\d+$")  # the edge of a crossing, walkingarea or turn
 _HALF_BODY = 0.25  # [m] a person keeps this far from its lane's edge
-_LANE_END = 0.05  # [m] and this far from its ends
+_LANE_END = 0.05  # [m] a person keeps this far from its lane's ends
 
 
 @dataclass(frozen=True, slots=True)
 class Foot:
-    """The point of a lane that is nearest to somewhere."""
+    """The point of a lane that is nearest to some place."""
 
     lane: str
     position: float  # [m] along the lane, in SUMO's metres
-    lateral: float  # [m] how far to the left of the centre line, as far as the lane is wide
+    lateral: float  # [m] to the left of the centre line, at most half the usable width
     distance: float  # [m] from the lane's centre line
 
 
@@ -34,7 +36,7 @@ class _Lane:
     shape: Sequence[tuple[float, float]]
     length: float  # [m] SUMO's: nominal
     metres: float  # [m] of the polyline
-    half_width: float  # [m] that a body's centre can use
+    half_width: float  # [m] from the centre line, that a body's centre can use
 
 
 class FootPaths:
@@ -86,7 +88,10 @@ class FootPaths:
         return Foot(lane.name, _inside(lane, position), lateral, abs(lateral))
 
     def index(self, person: str, edges: Sequence[str], lane: str, arrival: float) -> int:
-        """Which of its walk's ``edges`` a person on ``lane`` is on, or was on before a junction."""
+        """Which of the ``edges`` of its route a person on ``lane`` is on.
+
+        Of a person inside a junction it is the edge before the junction.
+        """
         edge = lane.rpartition("_")[0]
         inside = _IN_JUNCTION.match(edge)
         if inside is None:
@@ -102,7 +107,7 @@ class FootPaths:
     def _by_distance(
         self, person: str, edges: Sequence[str], arrival: float, candidates: Sequence[int]
     ) -> int:
-        """On a walk that comes by twice: the edge from which it is as far to the end as it is."""
+        """The edge where the rest of the route is as long as the person's; for a repeated edge."""
         left = self._sumo.person.getWalkingDistance(person, edges[-1], arrival)
         lengths = [self._sumo.lane.getLength(f"{edge}_0") for edge in edges]
         return min(candidates, key=lambda k: abs(sum(lengths[k + 1 : -1]) + arrival - left))
@@ -126,12 +131,11 @@ class FootPaths:
             names = [f"{edge}_{i}" for i in range(sumo.edge.getLaneNumber(edge))]
         except sumo.TraCIException:
             return None
-        admitting = [name for name in names if "pedestrian" not in sumo.lane.getDisallowed(name)]
-        allowed = {name: sumo.lane.getAllowed(name) for name in admitting}
-        admitting = [n for n in admitting if not allowed[n] or "pedestrian" in allowed[n]]
-        if not admitting:
+        names = [name for name in names if admits(sumo, name, "pedestrian")]
+        if not names:
             return None
-        name = next((n for n in admitting if tuple(allowed[n]) == ("pedestrian",)), admitting[0])
+        alone = (n for n in names if tuple(sumo.lane.getAllowed(n)) == ("pedestrian",))
+        name = next(alone, names[0])
         shape = tuple(sumo.lane.getShape(name))
         metres = math.fsum(math.dist(a, b) for a, b in itertools.pairwise(shape))
         half_width = max(sumo.lane.getWidth(name) / 2 - _HALF_BODY, 0.0)

@@ -5,8 +5,8 @@ with its id, type, parameters and remaining stages. It takes effect at once. Wha
 wrong, found by experiment and in its sources:
 
 * a person moved as a ghost stays in the books of the lane where it was: SUMO's pedestrians walk
-  round that spot and cars wait for ever at a crossing that it has long left. Far outside of the
-  lane it is in nobody's way;
+  round that spot and vehicles wait for ever at a crossing that it has long left. Far outside of
+  the lane it stands in nobody's way;
 * a person taken over inside a junction keeps that inner edge in its books, from which moveTo
   derives a wrong walking direction: it would leave the network, and the simulation end with
   "Disconnected walk". A fresh walk has clean books;
@@ -29,14 +29,14 @@ _RUN_UP = 0.5  # [m] before the place where a person is put on its last edge
 
 
 @dataclass(frozen=True, slots=True)
-class Walk:
-    """What is remembered of a held person's walk."""
+class Route:
+    """What is remembered of the route of a held person: the rest of its present walk in SUMO."""
 
     edges: tuple[str, ...]  # remaining, the current one first
     arrival_position: float  # [m] on the last edge
-    stages_left: int  # after this walk
+    stages_left: int  # after this route
     type: str
-    own_speed: float | None  # [m/s] that the scenario gives to this walk
+    own_speed: float | None  # [m/s] that the scenario gives to this walk alone
     was_inside: bool  # taken over inside a junction
 
 
@@ -61,68 +61,68 @@ class Handover:
         self.refusals = (sumo.TraCIException, sumo.FatalTraCIError)  # neither is the other's base
 
     def park(self, name: str, lane: str) -> None:
-        """Put a person out of everybody's way, in the books of a lane of its walk."""
+        """Put a person where it stands in nobody's way, in the books of a lane of its route."""
         self._person.moveTo(name, lane, NOWHERE)
 
-    def walk_on(self, name: str, walk: Walk, step: int, foot: Foot) -> None:
-        """Let a person walk on from ``foot``, which lies on edge ``step`` of its walk."""
-        edges = walk.edges[step:]
+    def walk_on(self, name: str, route: Route, step: int, foot: Foot) -> None:
+        """Let a person walk on from ``foot``, which lies on edge ``step`` of its route."""
+        edges = route.edges[step:]
         if len(edges) == 1:
-            self._approach(name, walk, foot)
+            self._approach(name, route, foot)
             return
         present = tuple(self._person.getStage(name).edges)
-        rerouted = present[-len(walk.edges) :] != walk.edges  # by one of SUMO's devices
-        if rerouted or walk.was_inside or edges[0] in edges[1:] + walk.edges[:step]:
-            self._restart(name, walk, edges)
+        rerouted = present[-len(route.edges) :] != route.edges  # by one of SUMO's devices
+        if rerouted or route.was_inside or edges[0] in edges[1:] + route.edges[:step]:
+            self._restart(name, route, edges)
         self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
 
-    def walk_anew(self, name: str, walk: Walk, edge: str, foot: Foot) -> bool:
-        """Let a person walk to its walk's end from ``foot`` on any ``edge``; False if no way leads.
+    def walk_anew(self, name: str, route: Route, edge: str, foot: Foot) -> bool:
+        """Let a person walk from ``foot`` on any ``edge`` to the end of its route.
 
-        The way is SUMO's fastest one.
+        It takes the route that SUMO finds fastest; False if SUMO finds none.
         """
         found = self._simulation.findIntermodalRoute(
             edge,
-            walk.edges[-1],
+            route.edges[-1],
             departPos=foot.position,
-            arrivalPos=walk.arrival_position,
-            pType=walk.type,
+            arrivalPos=route.arrival_position,
+            pType=route.type,
         )
         if len(found) != 1 or found[0].type != _WALKING or not found[0].edges:
             return False
         if len(found[0].edges) == 1:
-            self._approach(name, walk, foot)
+            self._approach(name, route, foot)
         else:
-            self._restart(name, walk, tuple(found[0].edges))
+            self._restart(name, route, tuple(found[0].edges))
             self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
         return True
 
-    def finish(self, name: str, lane: str, walk: Walk) -> None:
-        """Put a person on the end of its walk, where SUMO's next step ends it."""
-        self._person.moveTo(name, lane, walk.arrival_position)
+    def finish(self, name: str, lane: str, route: Route) -> None:
+        """Put a person on the end of its route, so that SUMO's next step ends its walk."""
+        self._person.moveTo(name, lane, route.arrival_position)
 
-    def _approach(self, name: str, walk: Walk, foot: Foot) -> None:
-        """Put a person on the last edge of its walk, facing the end."""
-        last = walk.edges[-1:]
-        ahead = walk.arrival_position >= foot.position
+    def _approach(self, name: str, route: Route, foot: Foot) -> None:
+        """Put a person on the last edge of its route, facing the end."""
+        last = route.edges[-1:]
+        ahead = route.arrival_position >= foot.position
         behind = foot.position - _RUN_UP if ahead else foot.position + _RUN_UP
-        if walk.was_inside or len(walk.edges) > 1:
-            self._restart(name, walk, last)
+        if route.was_inside or len(route.edges) > 1:
+            self._restart(name, route, last)
         self._person.moveTo(name, foot.lane, max(behind, 0.0))
-        self._restart(name, walk, last)  # departs there, since it is on this edge already
+        self._restart(name, route, last)  # departs there, since it is on this edge already
         self._person.moveTo(name, foot.lane, foot.position, foot.lateral)
 
-    def _restart(self, name: str, walk: Walk, edges: tuple[str, ...]) -> None:
-        """Replace the person's walk by a fresh one along ``edges`` to the same end."""
+    def _restart(self, name: str, route: Route, edges: tuple[str, ...]) -> None:
+        """Replace the person's walk in SUMO by a fresh one along ``edges`` to the same end."""
         person = self._person
         stage = person.getStage(name)
         stage.edges = edges
         person.replaceStage(name, 0, stage)
-        if walk.own_speed is not None:
-            self._set_pace(name, walk.own_speed, walk.stages_left)
+        if route.own_speed is not None:
+            self._set_pace(name, route.own_speed, route.stages_left)
 
     def _set_pace(self, name: str, speed: float, stages_left: int) -> None:
-        """Have a person like to walk at ``speed`` [m/s] until ``stages_left`` stages are left."""
+        """Set a person's desired speed [m/s] until ``stages_left`` stages are left."""
         person = self._person
         factor = person.getSpeedFactor(name)
         own_factor, _ = self._paced.get(name, (factor, 0))
@@ -130,7 +130,7 @@ class Handover:
         self._paced[name] = own_factor, stages_left
 
     def end_paces(self) -> None:
-        """Whoever has ended the walk that had a speed of its own likes its usual speed again."""
+        """Give their usual speed back to those who have ended the walk with a speed of its own."""
         for name, (factor, stages_left) in list(self._paced.items()):
             try:
                 if self._person.getRemainingStages(name) > stages_left:

@@ -1,4 +1,4 @@
-"""The lanes of the loaded network: the way along a route, and what there is to draw."""
+"""The lanes of the loaded network: the path along a route, and the outlines to draw."""
 
 from __future__ import annotations
 
@@ -15,9 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from giveway.geometry.kernel import Array
 
-    Array = NDArray[np.float64]
 
 CHANGE_LENGTH = 30.0  # [m] over which a vehicle changes to the next lane
 _WALKINGAREA = re.compile(r"^:.*_w\d+_0$")  # SUMO's names; their shape is the outline itself
@@ -32,15 +31,15 @@ class Link(NamedTuple):
 
 
 class Light(NamedTuple):
-    """The traffic light at the end of a lane, for those who go on to the way's next lane."""
+    """The traffic light at the end of a lane, for vehicles that go on to the path's next lane."""
 
-    station: float  # [m] of the stop line along the way
+    station: float  # [m] of the stop line along the lane path
     system: str  # SUMO's id of the traffic light
     link: int  # index of the movement in the system's state
 
 
 @dataclass(frozen=True)
-class Way:
+class LanePath:
     """What lies along a route: the lanes' centre line and the traffic lights on it."""
 
     points: Array  # (k, 2) [m]
@@ -66,8 +65,8 @@ class Lanes:
 
     def along(
         self, edges: Sequence[str], lane: int | None, *, kind: str = "passenger", start: float = 0.0
-    ) -> Way:
-        """The way along ``edges``, junctions included, with as few lane changes as possible.
+    ) -> LanePath:
+        """The lane path along ``edges``, junctions included, with as few lane changes as possible.
 
         Args:
             edges: the route.
@@ -102,7 +101,7 @@ class Lanes:
                 onwards = np.concatenate([shape[-1:], *inside, following[:1]])
                 points.extend(inside)
                 driven += _length(onwards)
-        return Way(np.concatenate(points), tuple(lights))
+        return LanePath(np.concatenate(points), tuple(lights))
 
     def shape(self, lane: str) -> Array:
         """(k, 2) [m] centre line of a lane."""
@@ -128,7 +127,7 @@ class Lanes:
         return found
 
     def out_of_junction(self, lane: str) -> tuple[str, ...]:
-        """The lanes after one inside a junction, up to the first outside; none after others."""
+        """The lanes after one inside a junction, up to the first outside; else none."""
         lanes: list[str] = []
         while lane.startswith(":"):
             links = self._sumo.lane.getLinks(lane)
@@ -159,12 +158,7 @@ class Lanes:
 
     def _drivable(self, edge: str, kind: str) -> list[int]:
         count = int(self._sumo.edge.getLaneNumber(edge))
-        return [i for i in range(count) if self.admits(f"{edge}_{i}", kind)]
-
-    def admits(self, lane: str, kind: str) -> bool:
-        """Whether vehicles (or persons) of SUMO's class ``kind`` may use ``lane``."""
-        allowed = self._sumo.lane.getAllowed(lane)
-        return (not allowed or kind in allowed) and kind not in self._sumo.lane.getDisallowed(lane)
+        return [i for i in range(count) if admits(self._sumo, f"{edge}_{i}", kind)]
 
     def _cheapest(
         self, edges: Sequence[str], first: list[int], kind: str
@@ -194,7 +188,7 @@ class Lanes:
         return [*pairs, (lane, lane)], links
 
     def _links(self, lane: str, edge: str) -> list[Link]:
-        """The ways from ``lane`` over the junction to ``edge``."""
+        """The links from ``lane`` over the junction to ``edge``."""
         found = []
         for link in self._sumo.lane.getLinks(lane):
             target, inside = link[0], link[4]
@@ -236,7 +230,7 @@ class Lanes:
         )
 
     def areas(self) -> tuple[Array, ...]:
-        """Closed outlines (k, 2) [m] of what there is to drive and walk on, junctions included."""
+        """Closed outlines (k, 2) [m] of all lanes to drive and walk on, junctions included."""
         outlines = []
         for name in self._sumo.lane.getIDList():
             shape = self.shape(name)
@@ -245,6 +239,12 @@ class Lanes:
             elif len(shape) > 1:
                 outlines.append(lane_area(shape, float(self._sumo.lane.getWidth(name))))
         return tuple(outlines)
+
+
+def admits(sumo: Any, lane: str, kind: str) -> bool:
+    """Whether vehicles (or persons) of SUMO's class ``kind`` may use ``lane``."""
+    allowed = sumo.lane.getAllowed(lane)
+    return (not allowed or kind in allowed) and kind not in sumo.lane.getDisallowed(lane)
 
 
 def _length(points: Array) -> float:

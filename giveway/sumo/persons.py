@@ -3,7 +3,7 @@
 A person keeps everything in SUMO while we hold it: its plan, type, colour and parameters. A held
 person is moved as a ghost (see giveway/sumo/session.py), and its place in SUMO's books lies far
 outside of its lane: otherwise SUMO's pedestrians would walk round the spot where it was taken over,
-and cars would wait for ever at a crossing that it has long left.
+and vehicles would wait for ever at a crossing that it has long left.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 
 from giveway.geometry.angles import angle_to_heading
 from giveway.sumo.footpaths import Foot, FootPaths
-from giveway.sumo.handover import Handover, Walk
+from giveway.sumo.handover import Handover, Route
 from giveway.sumo.library import direct
 from giveway.sumo.walk_speeds import WalkSpeeds
 
@@ -31,11 +31,11 @@ if TYPE_CHECKING:
 
 _WALKING = 2  # SUMO's stage type
 _SLOWEST = 0.1  # [m/s] nobody wants to walk more slowly
-_DETOUR = 5.0  # [m] a person goes on along its own route if that is at most this much farther off
+_DETOUR = 5.0  # [m] by which its own route may be farther off if a person is to go on along it
 
 
 class Arrival(enum.Enum):
-    """What becomes of a person that has reached the end of its walk."""
+    """What becomes of a person that has reached the end of its route."""
 
     ARRIVED = "arrived"  # nothing is left to do: it leaves SUMO with the next step
     CONTINUED = "continued"  # a stop, a ride or another walk follows in SUMO
@@ -81,7 +81,7 @@ class ScenarioPersons:
         self.counts = Counter(taken=0, handed_back=0, arrived=0, continued=0, lost=0)
         self._free: dict[str, None] = {}  # departed and SUMO's, in order of departure
         self._seen_until = -math.inf  # [s] SUMO's clock when `_free` was brought up to date
-        self._walks: dict[str, Walk] = {}
+        self._routes: dict[str, Route] = {}
         self._leaving: dict[str, tuple[int, float]] = {}  # at their walk's end: see `arrive`
         self._put_back: set[str] = set()  # since SUMO's last step
         self._paths = FootPaths(sumo)
@@ -94,7 +94,8 @@ class ScenarioPersons:
     def positions(self) -> tuple[list[str], NDArray[np.float64]]:
         """Ids and positions (n, 2) [m] of every departed person that we do not hold.
 
-        To be asked once after each SUMO step; steps that were left out cost a look at everybody.
+        It is to be asked once after each of SUMO's steps; if one was left out, everybody in SUMO is
+        looked at.
         """
         self._update()
         try:
@@ -127,7 +128,7 @@ class ScenarioPersons:
         self._seen_until = now
         self._put_back.clear()
         if self._leaving:
-            self._see_off()
+            self._end_overdue()
         self._handover.end_paces()
 
     def _look_at_everybody(self) -> None:
@@ -142,8 +143,8 @@ class ScenarioPersons:
         for name in [name for name in self._leaving if name not in present]:
             del self._leaving[name]
 
-    def _see_off(self) -> None:
-        """Whoever should have ended its walk in SUMO's step by itself and has not is made to."""
+    def _end_overdue(self) -> None:
+        """End the walks that SUMO's step should have ended and has not."""
         person = self._sumo.person
         for name, (stages_left, begun) in self._leaving.items():
             if person.getStage(name).depart == begun:  # still the same stage
@@ -157,7 +158,7 @@ class ScenarioPersons:
 
     def _lose(self, name: str) -> None:
         self.held.discard(name)
-        del self._walks[name]
+        del self._routes[name]
         self.counts["lost"] += 1
 
     # --- taking over --------------------------------------------------------------------------
@@ -165,15 +166,14 @@ class ScenarioPersons:
     def take(self, ids: Sequence[str]) -> list[Person]:
         """Take over those of ``ids`` who walk right now; the others are passed over.
 
-        So is who was handed back since SUMO's last step. From now on they are held: they must be
-        moved in every SUMO step.
+        Passed over, too, is a person who was handed back since SUMO's last step. From now on those
+        taken over are held: they must be moved in every step of SUMO.
         """
-        walkers = map(self._take, ids)
-        return [walker for walker in walkers if walker is not None]
+        return [taken for taken in map(self._take, ids) if taken is not None]
 
     def _take(self, name: str) -> Person | None:
         person = self._sumo.person
-        if name not in self._free or name in self._put_back:  # whose speed is the jump's
+        if name not in self._free or name in self._put_back:  # its speed would be the jump's
             return None
         lane = person.getLaneID(name)
         if not lane:  # waiting; this call is cheaper than to ask for the stage
@@ -186,7 +186,7 @@ class ScenarioPersons:
         own_speed = self._speeds.speed(name, stage, person.getRemainingStages(name))
         x, y = self._position(name)
         speed = float(person.getSpeed(name))
-        walker = Person(
+        taken = Person(
             id=name,
             type=person.getTypeID(name),
             x=x,
@@ -200,23 +200,23 @@ class ScenarioPersons:
             stages_left=person.getRemainingStages(name) - 1,
         )
         inside = lane.startswith(":")
-        hideout = self._paths.lane(walker.edges[0]) if inside else lane
+        hideout = self._paths.lane(taken.edges[0]) if inside else lane
         try:
             self._handover.park(name, hideout or lane)
         except self._handover.refusals:
-            return None  # it stands beside its own walk, where SUMO cannot put it back either
-        self._walks[name] = Walk(
-            edges=walker.edges,
+            return None  # it stands beside its own route, where SUMO cannot put it back either
+        self._routes[name] = Route(
+            edges=taken.edges,
             arrival_position=arrival,
-            stages_left=walker.stages_left,
-            type=walker.type,
+            stages_left=taken.stages_left,
+            type=taken.type,
             own_speed=own_speed,
             was_inside=inside,
         )
         self.held.add(name)
         del self._free[name]
         self.counts["taken"] += 1
-        return walker
+        return taken
 
     # --- giving back --------------------------------------------------------------------------
 
@@ -227,25 +227,25 @@ class ScenarioPersons:
             name: the person's id.
             x: where it is [m].
             y: where it is [m].
-            place: the nearest edge for pedestrians, and the position [m] on it. If the person's
-                walk has an edge hardly farther away, it goes on there, else it gets a new route.
+            place: the nearest edge for pedestrians, and the position [m] on it. If an edge of the
+                person's route is hardly farther away, it goes on there; else it gets a new route.
 
         Returns:
             False if SUMO finds no way; the person stays held then, unharmed.
         """
         if not all(map(math.isfinite, (x, y, place[1]))):
             return False
-        walk = self._walks[name]
+        route = self._routes[name]
         edge, position = place
         nearest = self._paths.foot(edge, x, y)
         foot = self._paths.at(edge, position, nearest.lateral if nearest else 0.0)
         if foot is None or nearest is None:
             return False
-        step, own = self._on_walk(walk, x, y)
+        step, own = self._on_route(route, x, y)
         try:
             if own is not None and own.distance <= nearest.distance + _DETOUR:
-                self._handover.walk_on(name, walk, step, own)
-            elif not self._handover.walk_anew(name, walk, edge, foot):
+                self._handover.walk_on(name, route, step, own)
+            elif not self._handover.walk_anew(name, route, edge, foot):
                 return False
         except self._handover.refusals:
             with contextlib.suppress(*self._handover.refusals):
@@ -256,27 +256,27 @@ class ScenarioPersons:
         self._put_back.add(name)
         return True
 
-    def _on_walk(self, walk: Walk, x: float, y: float) -> tuple[int, Foot | None]:
-        """The place on the rest of the walk that is nearest, and its edge's index."""
-        feet = [(k, self._paths.foot(edge, x, y)) for k, edge in enumerate(walk.edges)]
+    def _on_route(self, route: Route, x: float, y: float) -> tuple[int, Foot | None]:
+        """The nearest place on the rest of the route, and its edge's index."""
+        feet = [(k, self._paths.foot(edge, x, y)) for k, edge in enumerate(route.edges)]
         return min(feet, key=lambda candidate: candidate[1].distance if candidate[1] else math.inf)
 
     def arrive(self, name: str) -> Arrival:
         """Let a held person end its walk in SUMO's next step.
 
-        It is put on the very end of its walk, so that SUMO itself makes it arrive or go on with
+        It is put on the very end of its route, so that SUMO itself makes it arrive or go on with
         what follows: a stop, a ride or another walk, on which it can be taken over again.
         """
-        walk = self._walks[name]
-        end = self._paths.lane(walk.edges[-1])
-        with contextlib.suppress(*self._handover.refusals):  # else it is cut short after the step
-            self._handover.finish(name, end or "", walk)
-        self._leaving[name] = walk.stages_left, self._sumo.person.getStage(name).depart
-        arrival = Arrival.CONTINUED if walk.stages_left else Arrival.ARRIVED
+        route = self._routes[name]
+        end = self._paths.lane(route.edges[-1])
+        with contextlib.suppress(*self._handover.refusals):  # else it is ended after the step
+            self._handover.finish(name, end or "", route)
+        self._leaving[name] = route.stages_left, self._sumo.person.getStage(name).depart
+        arrival = Arrival.CONTINUED if route.stages_left else Arrival.ARRIVED
         self._release(name, arrival.value)
         return arrival
 
     def _release(self, name: str, as_what: str) -> None:
         self.held.discard(name)
-        del self._walks[name]
+        del self._routes[name]
         self.counts[as_what] += 1

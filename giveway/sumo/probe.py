@@ -1,6 +1,6 @@
-"""SUMO tries a scenario: ``python -m giveway.sumo.probe CONFIG``, prints one line of JSON.
+"""SUMO tries a scenario: ``python -m giveway.sumo.probe CONFIG`` prints one line of JSON.
 
-A process of its own, because SUMO may crash or hang, and holds one simulation per process.
+It is a process of its own, because SUMO may crash or hang, and holds one simulation per process.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from giveway.scenario_files import StartOptions, prepare_start, read_scenario
 from giveway.sumo.library import import_libsumo
 from giveway.sumo.types import ROAD_CLASSES
 
-_LOOK = 3.0  # [s] of wall clock: long enough to see somebody depart, short enough to wait for
+_LOOK = 3.0  # [s] of wall clock: long enough to see vehicles depart, short enough to wait for
 _ENOUGH = 3  # vehicles seen
 
 

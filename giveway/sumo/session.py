@@ -1,8 +1,8 @@
 """The one object that owns libsumo.
 
 SUMO is the mirror of our own state: the ego and the pedestrians are moved to where the vehicle
-FMU and the VCI model put them, and what is exported is our state. The ways of moving were found
-by experiment on SUMO 1.28:
+FMU and the VCI model put them, and what is exported is our state. How they have to be moved was
+found by experiment on SUMO 1.28:
 
 * a person follows ``moveToXY(..., keepRoute=2, matchThreshold=-1)`` exactly; other arguments kill
   the process when the person is mapped onto a walkingarea (SUMO issue 17257);
@@ -35,7 +35,6 @@ from giveway.sumo.vehicles import SumoVehicles
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Sequence
-    from types import TracebackType
 
     from giveway.geometry.path import Pose
     from giveway.scenario_files import ScenarioFiles, StartOptions
@@ -97,7 +96,7 @@ class SumoSession:
         self.lanes = Lanes(self._sumo, self._config_file)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())
-        self._on_the_kerb: dict[str, None] = {}  # added, and just departing
+        self._just_added: dict[str, None] = {}  # they depart with the next step
         self._host_lane: str | None = None
         self._added_at = 0.0
 
@@ -117,12 +116,7 @@ class SumoSession:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     # --- reading ------------------------------------------------------------------------------
@@ -186,24 +180,24 @@ class SumoSession:
         for name in ids:
             self.call(self._sumo.person.add, name, host_edge, 0.0, _DEPART_NOW, PEDESTRIAN_TYPE)
             self.call(self._sumo.person.appendWalkingStage, name, [host_edge], -1.0)
-        self._on_the_kerb = dict.fromkeys(ids)
+        self._just_added = dict.fromkeys(ids)
         self._added_at = self.time
         self._host_lane = FootPaths(self._sumo).lane(host_edge)
 
     def remove_persons(self, ids: Sequence[str]) -> None:
         """Let persons arrive; they are gone with the next step."""
         for name in ids:
-            self._on_the_kerb.pop(name, None)
+            self._just_added.pop(name, None)
             self.call(self._sumo.person.removeStages, name)  # unlike remove: counts as arrival
 
-    def _clear_the_kerb(self) -> None:
-        """Those who have departed leave the host edge's beginning, where SUMO's books have them.
+    def _clear_host_edge(self) -> None:
+        """Move added persons, once departed, away from the host edge's beginning in SUMO's books.
 
-        SUMO's own walkers would swerve round whoever seems to stand there.
+        SUMO's own pedestrians would swerve round those who seem to stand there.
         """
-        for name in self._on_the_kerb if self._host_lane else ():
+        for name in self._just_added if self._host_lane else ():
             self.call(self._sumo.person.moveTo, name, self._host_lane, NOWHERE)
-        self._on_the_kerb = {}
+        self._just_added = {}
 
     # --- stepping -----------------------------------------------------------------------------
 
@@ -227,8 +221,8 @@ class SumoSession:
         Raises:
             SumoError: SUMO failed, or disagrees by more than 1e-6 m.
         """
-        if self._on_the_kerb and self._sumo.simulation.getTime() > self._added_at:
-            self._clear_the_kerb()
+        if self._just_added and self._sumo.simulation.getTime() > self._added_at:
+            self._clear_host_edge()
         self._moves_pending = bool(egos or ids)
         try:
             with self._stderr:
@@ -291,7 +285,7 @@ class SumoSession:
             return
         SumoSession._running = False
         with self._stderr:
-            if self._moves_pending:  # else a step more would be in SUMO's own outputs
+            if self._moves_pending:  # only then: SUMO's own outputs would hold one step more
                 with contextlib.suppress(Exception):  # the simulation is being given up anyway
                     self._sumo.simulationStep()  # carries out the moves, which close() would leak
             self._sumo.close()

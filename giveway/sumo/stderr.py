@@ -1,4 +1,4 @@
-"""What native code prints on file descriptor 2: kept, because SUMO tells its reasons only there."""
+"""What native code prints on file descriptor 2, where alone SUMO tells its reasons."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import IO, TYPE_CHECKING
 
 if TYPE_CHECKING:
     from pathlib import Path
-    from types import TracebackType
 
 
 class NativeStderr:
@@ -39,12 +38,7 @@ class NativeStderr:
             sys.stderr.flush()
         os.dup2(self._file_descriptor, 2)
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         os.dup2(self._saved, 2)
 
     def text(self) -> str:
@@ -53,7 +47,7 @@ class NativeStderr:
         return self._log.read().decode("utf-8", "replace")
 
     def errors(self) -> str:
-        """The reasons among it, on one line."""
+        """The reasons in what was printed, on one line."""
         lines = [line.strip() for line in self.text().splitlines()]
         reasons = [
             line.removeprefix("Error:").strip()

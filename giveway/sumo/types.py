@@ -63,5 +63,5 @@ def all_types(egos: Mapping[str, VehicleShape]) -> str:
         f'    <vType id="{ego_type(name)}" vClass="{name}" {never_stuck}/>\n'
         for name in ROAD_CLASSES
     ]
-    walker = f'    <vType id="{PEDESTRIAN_TYPE}" vClass="ignoring" speedDev="0"/>\n'
-    return "".join(["<additional>\n", *inserted, *taken_over, walker, "</additional>\n"])
+    pedestrian = f'    <vType id="{PEDESTRIAN_TYPE}" vClass="ignoring" speedDev="0"/>\n'
+    return "".join(["<additional>\n", *inserted, *taken_over, pedestrian, "</additional>\n"])

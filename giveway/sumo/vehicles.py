@@ -16,12 +16,9 @@ from giveway.sumo.types import ego_type, inserted_type
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy.typing import NDArray
-
     from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.kernel import Array
     from giveway.sumo.lanes import Lanes
-
-    Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -43,7 +40,7 @@ class VehicleState:
 
 
 class SumoVehicles:
-    """What giveway asks and wants of SUMO's vehicles.
+    """What giveway reads of SUMO's vehicles, and what it does to them.
 
     Args:
         sumo: the libsumo module.
@@ -70,7 +67,7 @@ class SumoVehicles:
     # --- reading ------------------------------------------------------------------------------
 
     def departed(self) -> frozenset[str]:
-        """Who has departed in SUMO's latest step."""
+        """The vehicles that have departed in SUMO's latest step."""
         return frozenset(self._sumo.simulation.getDepartedIDList())
 
     def present(self) -> tuple[str, ...]:
@@ -134,7 +131,7 @@ class SumoVehicles:
         return self._by_its_route(name, lane, distance) or self._by_its_plan(name, lane, distance)
 
     def _by_its_route(self, name: str, lane: str, distance: float) -> tuple[str, ...]:
-        """The lanes ahead where its route leaves no choice, else nothing: far cheaper to find."""
+        """The lanes ahead if its route leaves no choice, which is cheaper to find; else none."""
         vehicle = self._vehicle
         if vehicle.getStops(name, 1):
             return ()  # SUMO's plans end at a stop
@@ -181,7 +178,7 @@ class SumoVehicles:
     ) -> None:
         """Insert an ego; it appears with the next mirrored step.
 
-        The speed is the FMU's business: SUMO only hears as much of it as the lane permits.
+        The speed is the FMU's business: SUMO is told at most what the lane permits.
         """
         route = f"giveway_route_{ego_id}"
         self._call(self._sumo.route.add, route, list(edges))
@@ -219,7 +216,7 @@ class SumoVehicles:
         self.egos.add(name)
 
     def _drop_stops(self, name: str) -> None:
-        """Its stops go: SUMO would park it beside the road while the FMU drives on."""
+        """Remove its stops: SUMO would park it beside the road while the FMU drives on."""
         if self._vehicle.isStopped(name):
             self._call(self._vehicle.resume, name)
         stops = len(self._vehicle.getStops(name))

@@ -6,13 +6,14 @@ speed. They are read from the scenario's files, for the persons that have them o
 
 from __future__ import annotations
 
-import gzip
 import io
 import math
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
+
+from giveway.scenario_files.reading import opened
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -24,11 +25,11 @@ _PLAN = frozenset({"walk", "personTrip", "ride", "stop", "tranship", "access"})
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """One element of a person's plan; neither speed nor duration: as fast as the person likes."""
+    """One element of a person's plan; without speed and duration the person's own speed counts."""
 
     speed: float | None = None  # [m/s]
     duration: float | None = None  # [s] for the whole walk
-    end: str = ""  # where it leads, an edge or a stopping place; empty if not known
+    end: str = ""  # the edge or stopping place to which it leads; empty if not known
 
 
 class WalkSpeeds:
@@ -44,12 +45,12 @@ class WalkSpeeds:
         for file in files:
             try:
                 self._plans.update(_plans(file))
-            except (OSError, ET.ParseError, ValueError):
+            except (OSError, EOFError, ET.ParseError, ValueError):
                 continue
 
     @classmethod
     def of_running(cls, sumo: Any) -> Self:
-        """Those of the simulation that runs in the libsumo module ``sumo``."""
+        """The speeds in the simulation that runs in the libsumo module ``sumo``."""
         names: list[str] = []
         for option in _OPTIONS:
             names += str(sumo.simulation.getOption(option)).split(",")
@@ -79,9 +80,8 @@ class WalkSpeeds:
 
 def _plans(file: Path) -> dict[str, list[_Step]]:
     """The plans in which at least one walk has a speed or a duration, by person or flow."""
-    data = file.read_bytes()
-    if data.startswith(b"\x1f\x8b"):
-        data = gzip.decompress(data)
+    with opened(file) as stream:
+        data = stream.read()
     if b"<walk" not in data:  # far faster than to parse a large file of vehicles
         return {}
     return dict(_with_speeds(data))

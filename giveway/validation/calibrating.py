@@ -31,7 +31,7 @@ DEFAULT = (
     "vehicle_strength",
     "vehicle_lookahead",
 )
-"""What is fitted if nothing is named: how hard each sub-force pulls, and the vehicle's reach."""
+"""Fitted if no parameter is named: the gain of each sub-force, and the vehicle's reach."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Fit:
 
     @property
     def improves(self) -> bool:
-        """Whether it is better beyond what the choice of clips explains."""
+        """Whether it is better by more than the choice of clips explains."""
         return self.high < 0.0
 
 
@@ -98,11 +98,11 @@ def calibrate(
 
     Args:
         clips: as :func:`giveway.validation.read_clips` reads them.
-        start: where the search starts; what is not named stays.
+        start: where the search starts; parameters that are not named stay.
         names: fields of :class:`VciParameters`.
         held_out: share of the clips that the fit does not see, in each kind of clip alike.
         seed: of the choice of these clips.
-        own_pace: everybody's desired speed is the present one; else it is the parameters'.
+        own_pace: each pedestrian's desired speed is its present speed; else the parameters'.
         evaluations: of the objective, at most.
         protocol: how the clips are cut and judged.
         progress: called with evaluations done, at most, and the least error so far.
@@ -135,7 +135,7 @@ def calibrate(
 def split(
     clips: Sequence[Clip], held_out: float, seed: int
 ) -> tuple[tuple[Clip, ...], tuple[Clip, ...]]:
-    """The clips to train with, and those held out: one of each kind before a second of any.
+    """The clips to train with, and the clips held out: one of each kind before a second of any.
 
     A clip's kind is its name without the number at its end.
 
@@ -184,7 +184,7 @@ def _judged(
     protocol: Protocol,
     own_pace: bool,
 ) -> Fit:
-    """Both errors, and the interval of their difference, clips drawn for both alike."""
+    """Both errors, and the interval of their difference over the same draws of clips."""
     if not clips:
         return Fit(math.nan, math.nan, math.nan, math.nan, math.nan)
     cut = cut_windows(clips, protocol)

@@ -1,8 +1,8 @@
 """Clips of real pedestrians and vehicles: the CITR dataset's CSV files, as arrays in our frame.
 
 The dataset: Yang, Li, Redmill & Özgüner, "Top-view Trajectories: A Pedestrian Dataset of
-Vehicle-Crowd Interaction from Controlled Experiments and Crowded Campus" (arXiv 1902.00487). It
-asks whoever uses it to cite that paper.
+Vehicle-Crowd Interaction from Controlled Experiments and Crowded Campus" (arXiv 1902.00487). Its
+users are asked to cite that paper.
 """
 
 from __future__ import annotations
@@ -57,18 +57,18 @@ class Clip:
 
     @property
     def seen(self) -> NDArray[np.bool_]:
-        """(T, n) who is seen."""
+        """(T, n) whether each pedestrian is seen."""
         return ~np.isnan(self.position[:, :, 0])
 
     @property
     def last_seen(self) -> NDArray[np.int64]:
-        """(n,) the last frame in which each is seen."""
+        """(n,) the last frame in which each pedestrian is seen."""
         last: NDArray[np.int64] = self.frames - 1 - self.seen[::-1].argmax(axis=0)
         return last
 
     @property
     def destination(self) -> Array:
-        """(n, 2) [m] the last observed point of each."""
+        """(n, 2) [m] the last observed place of each pedestrian."""
         return self.position[self.last_seen, np.arange(len(self.ids))]
 
 
@@ -86,9 +86,9 @@ def read_clips(folder: Path) -> tuple[Clip, ...]:
         raise DatasetError(msg)
     files = sorted(folder.rglob(f"*{PEDESTRIANS}"))
     for file in sorted(folder.rglob(f"*{VEHICLES}")):
-        people = file.with_name(file.name.removesuffix(VEHICLES) + PEDESTRIANS)
-        if not people.is_file():
-            msg = f"{file}: no pedestrians beside it; expected {people.name}, or remove the file"
+        partner = file.with_name(file.name.removesuffix(VEHICLES) + PEDESTRIANS)
+        if not partner.is_file():
+            msg = f"{file}: no pedestrians beside it; expected {partner.name}, or remove the file"
             raise DatasetError(msg)
     if not files:
         msg = f"{folder}: no clip found; expected files *{PEDESTRIANS} in it or its folders"
@@ -102,26 +102,26 @@ def read_clips(folder: Path) -> tuple[Clip, ...]:
     return tuple(clips)
 
 
-def read_clip(people: Path) -> Clip:
-    """The clip of a file of pedestrians, with the vehicles' file beside it if there is one.
+def read_clip(file: Path) -> Clip:
+    """The clip of a file of pedestrians, with the vehicles' file in its folder if there is one.
 
     Raises:
         DatasetError: a file cannot be read, or a column, row or number is not as it should be.
     """
-    name = people.name.removesuffix(PEDESTRIANS)
-    beside = people.with_name(name + VEHICLES)
-    pedestrians = _read(people, _PEDESTRIAN_COLUMNS)
-    vehicles = _read(beside, _VEHICLE_COLUMNS) if beside.is_file() else None
+    name = file.name.removesuffix(PEDESTRIANS)
+    of_vehicles = file.with_name(name + VEHICLES)
+    pedestrians = _read(file, _PEDESTRIAN_COLUMNS)
+    vehicles = _read(of_vehicles, _VEHICLE_COLUMNS) if of_vehicles.is_file() else None
     first = int(pedestrians["frame"].min())
     last = int(pedestrians["frame"].max())
     if last - first >= _LONGEST:
-        msg = f"{people}: frames {first} to {last}: expected at most {_LONGEST}"
+        msg = f"{file}: frames {first} to {last}: expected at most {_LONGEST}"
         raise DatasetError(msg)
     ids, rows = _spread(pedestrians, _PEDESTRIAN_COLUMNS, first, last)
     poses = np.empty((last - first + 1, 0, 4))
     if vehicles is not None:
         poses = _spread(vehicles, _VEHICLE_COLUMNS, first, last)[1]
-    # Image axes have y down: mirrored, headings and lateral velocities change sign.
+    # The image's y axis points down: in our frame y, headings and lateral velocities change sign.
     rows[:, :, [1, 3]] *= -1.0
     poses[:, :, [1, 2]] *= -1.0
     position = np.ascontiguousarray(rows[:, :, :2])

@@ -1,4 +1,4 @@
-"""Whole clips played again: who touches the vehicle?"""
+"""Whole clips played again, and how many pedestrians touch the vehicle in them."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ ORDER = (DATA, CV, GOAL_CV, NO_VEHICLE, VCI)
 
 
 @dataclass(frozen=True, eq=False)
-class _Stay:
-    """When each pedestrian of a clip is there: from ``first`` to ``last``, gaps included."""
+class _Presence:
+    """The frames, ``first`` to ``last``, from which to which each pedestrian is in a clip."""
 
     who: NDArray[np.int64]
     first: NDArray[np.int64]
     last: NDArray[np.int64]
 
     @classmethod
-    def of(cls, clip: Clip, skip: int) -> _Stay:
+    def of(cls, clip: Clip, skip: int) -> _Presence:
         seen = clip.seen[skip:]
         who = np.flatnonzero(seen.any(axis=0))
         return cls(who, skip + seen[:, who].argmax(axis=0), clip.last_seen[who])
@@ -51,26 +51,26 @@ class _Stay:
 def replay(clip: Clip, parameters: VciParameters, protocol: Protocol) -> dict[str, Array]:
     """(T, n, 2) [m] the tracks of the data and of each predictor, from the first frame used on.
 
-    Everybody enters where and as the data have it, and leaves when the data end.
+    All pedestrians enter where and with the velocity that the data say, and leave at their end.
     """
-    stay = _Stay.of(clip, protocol.skip)
+    presence = _Presence.of(clip, protocol.skip)
     bodies = vehicle_rows(clip, protocol)
     without = replace(parameters, vehicle_strength=0.0)
     data = np.full_like(clip.position, np.nan)
     data[protocol.skip :] = clip.position[protocol.skip :]
     return {
         DATA: data,
-        CV: _alone(clip, stay, protocol.time_step, towards=False),
-        GOAL_CV: _alone(clip, stay, protocol.time_step, towards=True),
-        NO_VEHICLE: _jointly(clip, stay, bodies, without, protocol.time_step),
-        VCI: _jointly(clip, stay, bodies, parameters, protocol.time_step),
+        CV: _alone(clip, presence, protocol.time_step, towards=False),
+        GOAL_CV: _alone(clip, presence, protocol.time_step, towards=True),
+        NO_VEHICLE: _jointly(clip, presence, bodies, without, protocol.time_step),
+        VCI: _jointly(clip, presence, bodies, parameters, protocol.time_step),
     }
 
 
-def _alone(clip: Clip, stay: _Stay, time_step: float, *, towards: bool) -> Array:
-    """Everybody at constant velocity, or at constant speed to the destination."""
+def _alone(clip: Clip, presence: _Presence, time_step: float, *, towards: bool) -> Array:
+    """Each pedestrian at constant velocity, or at constant speed to its destination."""
     out = np.full_like(clip.position, np.nan)
-    for i, first, last in zip(stay.who, stay.first, stay.last, strict=True):
+    for i, first, last in zip(presence.who, presence.first, presence.last, strict=True):
         x, v = clip.position[first, i][None], clip.velocity[first, i][None]
         frames = int(last - first)
         goal = clip.destination[i][None]
@@ -82,16 +82,16 @@ def _alone(clip: Clip, stay: _Stay, time_step: float, *, towards: bool) -> Array
 
 
 def _jointly(
-    clip: Clip, stay: _Stay, bodies: Array, parameters: VciParameters, time_step: float
+    clip: Clip, presence: _Presence, bodies: Array, parameters: VciParameters, time_step: float
 ) -> Array:
-    """Everybody by the model, people entering and leaving on the way."""
+    """All pedestrians by the model; they enter and leave as in the data."""
     model = CrowdModel(parameters, time_step)
     out, velocity = np.full_like(clip.position, np.nan), clip.velocity.copy()
-    out[stay.first, stay.who] = clip.position[stay.first, stay.who]
+    out[presence.first, presence.who] = clip.position[presence.first, presence.who]
     there = np.empty(0, dtype=np.int64)
     crowd = None
-    for k in range(int(stay.first.min(initial=clip.frames)), clip.frames - 1):
-        now = stay.who[(stay.first <= k) & (k < stay.last)]
+    for k in range(int(presence.first.min(initial=clip.frames)), clip.frames - 1):
+        now = presence.who[(presence.first <= k) & (k < presence.last)]
         if crowd is None or not np.array_equal(now, there):
             there = now
             destination = clip.destination[there]
@@ -109,7 +109,7 @@ def contact_table(
     protocol: Protocol,
     advance: Callable[[], None] = lambda: None,
 ) -> pd.DataFrame:
-    """Who touches a vehicle in each clip that has one: in the data, and as each predictor has it.
+    """How many touch a vehicle in each clip that has one, in the data and for each predictor.
 
     Columns: clip, predictor, pedestrians, touching, closest [m], the least distance from a
     pedestrian's skin to the body, negative in touch. A pedestrian is a disc of the model's radius.

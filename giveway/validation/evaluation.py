@@ -1,4 +1,4 @@
-"""How far predictions end from what came to pass: one row per window, pedestrian and horizon."""
+"""How far predictions are from what happened: one row per window, pedestrian and horizon."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from giveway.validation.predictors import CV
+from giveway.validation.protocol import to_vehicle_frame
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -33,12 +34,12 @@ class Evaluation:
         names: (P,) of the predictors.
         horizons: (K,) [frames].
         clip: (R,) the clip of each row.
-        valid: (R, K) who is seen for that long.
-        near: (R, K) who comes near the vehicle within that time.
+        valid: (R, K) whether the pedestrian is seen for that long.
+        near: (R, K) whether it comes near the vehicle within that time.
         ade, fde: (P, R, K) [m]; nan where not valid.
         error: (P, R, H) [m] the displacement at each frame; nan where not seen.
         place: (R, 2) [m] at the start, before and left of the vehicle; nan without one.
-        clips: C, how many there are.
+        clips: C, the number of clips.
     """
 
     names: tuple[str, ...]
@@ -58,7 +59,7 @@ class Evaluation:
         return everybody if subset == EVERYWHERE else everybody & self.near[:, horizon]
 
     def per_clip(self, values: Array, mask: NDArray[np.bool_]) -> tuple[Array, Array]:
-        """(C,) the sum of ``values`` (R,) in each clip where ``mask``, and how many they are."""
+        """(C,) each the sum and the number of the ``values`` (R,) in each clip where ``mask``."""
         clip = self.clip[mask]
         total = np.bincount(clip, values[mask], self.clips).astype(np.float64)
         return total, np.bincount(clip, minlength=self.clips).astype(np.float64)
@@ -76,7 +77,7 @@ def evaluate(
     Args:
         cut: the windows, at least one.
         by: the predictors by name.
-        protocol: the windows were cut by.
+        protocol: by which the windows were cut.
         clips: how many clips there are, those without a window included.
         advance: called after each window.
     """
@@ -115,8 +116,8 @@ def displacement(predicted: Array, window: Window) -> Array:
 def error_table(found: Evaluation, protocol: Protocol, draws: ClipBootstrap) -> pd.DataFrame:
     """Means, their intervals, and paired differences to constant velocity.
 
-    One row per subset, horizon [s], metric [m] and predictor; ``count`` is of pedestrians in
-    windows, ``clips`` of those that have any.
+    One row per subset, horizon [s], metric [m] and predictor; ``count`` is the number of
+    pedestrians in windows, ``clips`` the number of clips that have any.
     """
     rows: list[dict[str, Any]] = []
     for subset in (EVERYWHERE, NEAR):
@@ -154,10 +155,9 @@ def _ratio(total: float, count: float) -> float:
 
 
 def _place(window: Window) -> Array:
-    """(n, 2) [m] before and left of the first vehicle at the start."""
+    """(n, 2) [m] the places at the start, before and to the left of the first vehicle."""
     if not window.vehicles.shape[1]:
         return np.full((len(window.who), 2), np.nan)
-    x, y, heading = window.vehicles[0, 0, :3]
-    dx, dy = (window.position - (x, y)).T
-    cos, sin = np.cos(heading), np.sin(heading)
-    return np.stack([cos * dx + sin * dy, cos * dy - sin * dx], axis=1)
+    start = to_vehicle_frame(window.position[None], *window.vehicles[:1, 0, :3].T)
+    place: Array = np.stack(start, axis=2)[0]
+    return place

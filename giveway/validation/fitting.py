@@ -1,10 +1,10 @@
 """The least displacement error over some of the parameters.
 
-The objective is the ADE [m] at each horizon, averaged over everybody who is seen for that long and
-then over the horizons. It is minimised by Nelder & Mead's simplex (The Computer Journal 1965) as
-scipy has it, with the coefficients of Gao & Han (Comput. Optim. Appl. 2012), over the logarithm of
-each parameter's ratio to its start: a descent that needs no derivatives, since contacts and limits
-make the objective rough, and that stays near published numbers.
+The objective is the ADE [m] at each horizon, averaged over all pedestrians who are seen for that
+long, and then over the horizons. It is minimised by Nelder & Mead's simplex (The Computer Journal
+1965) as scipy has it, with the coefficients of Gao & Han (Comput. Optim. Appl. 2012), over the
+logarithm of each parameter's ratio to its start. It is a descent that needs no derivatives, since
+contacts and limits make the objective rough, and that stays near published numbers.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from pedestrian_model import VciParameters
 
 FACTOR = 10.0  # a parameter stays between start / 10 and 10 start
-_SPREAD = 0.2  # of the first simplex, in the logarithm
-_SMALL = 0.02  # in the logarithm: of a simplex that has arrived ...
-_FLAT = 5e-5  # [m] and over which the error is this even
-_AT_BOUND = 1e-3  # of the logarithm
+_SPREAD = 0.2  # in the logarithm: the size of the first simplex
+_SMALL = 0.02  # in the logarithm: the size of the simplex at which the search ends,
+_FLAT = 5e-5  # [m] if the errors at its corners differ by less than this
+_AT_BOUND = 1e-3  # in the logarithm: nearer to its bound a parameter is at it
 
 
 class Objective:
@@ -52,7 +52,7 @@ class Objective:
         self._steps = np.array(protocol.horizons) - 1
 
     def __call__(self, parameters: VciParameters) -> float:
-        """The error; infinite where the model does not survive the parameters."""
+        """The error; infinite if the model fails with these parameters."""
         try:
             total, count = self.per_clip(parameters)
         except PedestrianModelError:
@@ -60,7 +60,7 @@ class Objective:
         return average(total, count)
 
     def per_clip(self, parameters: VciParameters) -> tuple[Array, Array]:
-        """(C, K) sums of the ADE in each clip at each horizon, and of how many."""
+        """(C, K) each the sums of the ADE in each clip at each horizon, and their numbers."""
         shape = self._clips, len(self._steps)
         total, count = np.zeros(shape), np.zeros(shape)
         predict = VciPredictor(
@@ -85,8 +85,8 @@ class Search:
 
     Args:
         objective: to minimise.
-        start: of the search; what is not named stays.
-        names: of the parameters that are free; none starts at 0.
+        start: of the search; parameters that are not named stay.
+        names: of the free parameters; none may start at 0.
         evaluations: of the objective, at most.
         progress: called with evaluations done, at most, and the least error so far.
     """

@@ -31,14 +31,14 @@ class ClipBootstrap:
 
     @classmethod
     def of(cls, clips: int, seed: int = 0, resamples: int = RESAMPLES) -> ClipBootstrap:
-        """Draws of ``clips`` clips out of as many."""
+        """Draws, with replacement, of as many clips as there are."""
         rng = np.random.default_rng(seed)
         return cls(rng.multinomial(clips, np.full(clips, 1.0 / clips), resamples).astype(float))
 
     def interval(self, total: Array, count: Array) -> tuple[float, float]:
         """The percentile interval of ``sum(total) / sum(count)``, both (C,).
 
-        Nan, nan where fewer than two clips have anything to count.
+        It is nan, nan if fewer than two clips have a count.
         """
         if np.count_nonzero(count) < 2:
             return np.nan, np.nan

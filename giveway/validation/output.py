@@ -25,33 +25,9 @@ if TYPE_CHECKING:
 TABLES = ("errors.csv", "contacts.csv")
 PICTURES = ("growth", "tracks", "places")
 _SUFFIXES = (".png", ".svg")
-_FILES = {*TABLES, *(name + suffix for name in PICTURES for suffix in _SUFFIXES)}
+FILES = frozenset({*TABLES, *(name + suffix for name in PICTURES for suffix in _SUFFIXES)})
+"""Everything that ``giveway validate`` writes into its folder."""
 _DECIMALS = 6
-
-
-def check_folder(folder: Path, *, force: bool) -> None:
-    """Make sure that a validation may be written into ``folder``.
-
-    Raises:
-        ResultsError: it is a file, or holds what giveway did not write, or results without
-            ``force``.
-    """
-    if not folder.exists():
-        return
-    if not folder.is_dir():
-        msg = f"{folder}: is a file; name a folder with --out"
-        raise ResultsError(msg)
-    present = sorted(path.name for path in folder.iterdir())
-    foreign = [name for name in present if name not in _FILES]
-    if foreign:
-        msg = (
-            f"{folder}: holds '{foreign[0]}', which giveway validate did not write; "
-            "name another folder with --out"
-        )
-        raise ResultsError(msg)
-    if present and not force:
-        msg = f"{folder}: results exist; replace them with --force or name another with --out"
-        raise ResultsError(msg)
 
 
 def write_validation(found: Validation, parameters: VciParameters, folder: Path) -> None:
@@ -84,7 +60,7 @@ def _pictures(found: Validation, parameters: VciParameters) -> tuple[Figure, Fig
 
 
 def _curves(found: Validation) -> dict[str, dict[str, Curve]]:
-    """Of everybody, and of those who come near the vehicle within the longest horizon."""
+    """The curves of all, and of those who come near the vehicle within the longest horizon."""
     rows = found.found
     near = rows.near[:, int(np.argmax(rows.horizons))]
     groups = {EVERYWHERE: np.ones(len(near), dtype=bool), NEAR: near}
@@ -111,7 +87,7 @@ def _curve(found: Validation, predictor: int, mask: NDArray[np.bool_]) -> Curve:
 
 
 def _tracks(found: Validation, parameters: VciParameters) -> Figure:
-    """The window in which most people come near a vehicle; of these, where one comes nearest."""
+    """The picture of the window in which most pedestrians come near a vehicle."""
     window = max(found.cut, key=lambda w: _interest(w, found.protocol.near))
     steps, longest = found.protocol.time_step, found.protocol.longest
     by = predictors(parameters, steps, longest)
@@ -132,13 +108,14 @@ def _tracks(found: Validation, parameters: VciParameters) -> Figure:
 
 
 def _interest(window: Window, near: float) -> tuple[int, int, float]:
+    """How many come near, how many are seen to the end, and how near one comes: more is better."""
     distance = np.nan_to_num(window.distance, nan=np.inf)
     whole = int((~np.isnan(window.observed[-1, :, 0])).sum())
     return int((distance.min(axis=0) <= near).sum()), whole, -float(distance.min())
 
 
 def _places(found: Validation) -> Figure:
-    """At the horizon in the middle: 2 s of 0.75, 2 and 4."""
+    """The picture for the horizon in the middle, which is 2 s of 0.75, 2 and 4 s."""
     rows, protocol = found.found, found.protocol
     k = len(rows.horizons) // 2
     errors = {name: rows.fde[rows.names.index(name), :, k] for name in (VCI, OWN_PACE, CV)}

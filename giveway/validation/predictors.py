@@ -1,4 +1,4 @@
-"""Who predicts: the model, without the vehicle's force too, and the two baselines."""
+"""The predictors: the model, with and without the vehicle's force, and two baselines."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ NO_VEHICLE = "VCI without f_v"
 OWN_PACE = "VCI at own pace"
 NAMES = (VCI, OWN_PACE, NO_VEHICLE, CV, GOAL_CV)
 
-SLOWEST_PACE = 0.3  # [m/s] who stands at the start will walk on (ours)
+SLOWEST_PACE = 0.3  # [m/s] of a pedestrian that stands at the start and will walk on (ours)
 
 
 class TrackPredictor(Protocol):
-    """Whoever predicts a window."""
+    """Predicts the tracks in a window."""
 
     def __call__(self, window: Window) -> Array:
         """(H, n, 2) [m] at 1 ... H frames ahead."""
@@ -54,8 +54,8 @@ class VciPredictor:
         parameters: of the model.
         time_step: from frame to frame [s].
         frames: H, of a window.
-        own_pace: everybody's desired speed is the present speed, not the parameters': in a run
-            too, it is known of each pedestrian.
+        own_pace: each pedestrian's desired speed is its present speed and not the parameters'; in
+            a run it is known of each pedestrian, too.
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class VciPredictor:
 def crowd_of(
     position: Array, velocity: Array, destination: Array, desired_speed: Array | float
 ) -> Crowd:
-    """A crowd of which everybody walks straight to the destination."""
+    """A crowd in which every pedestrian walks straight to its destination."""
     return Crowd.create(position, velocity, desired_speed, list(destination[:, None, :]))
 
 
@@ -96,11 +96,11 @@ def straight_on(position: Array, velocity: Array, time_step: float, frames: int)
 def straight_to(
     position: Array, velocity: Array, destination: Array, time_step: float, frames: int
 ) -> Array:
-    """(H, n, 2) [m] at the present speed straight to the destination, and there to stay."""
-    way = destination - position
-    length = np.hypot(way[:, 0], way[:, 1])
+    """(H, n, 2) [m] at the present speed straight to the destination, where they stay."""
+    course = destination - position
+    length = np.hypot(course[:, 0], course[:, 1])
     speed = np.hypot(velocity[:, 0], velocity[:, 1])
     walked = np.minimum(time_step * np.arange(1, frames + 1)[:, None] * speed, length)
-    direction = way / np.where(length > 0.0, length, 1.0)[:, None]
+    direction = course / np.where(length > 0.0, length, 1.0)[:, None]
     out: Array = position + walked[:, :, None] * direction
     return out

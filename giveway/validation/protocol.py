@@ -1,4 +1,4 @@
-"""What is predicted from where: windows over the clips, in the manner of the field.
+"""The windows of clips in which tracks are predicted, cut as is usual in the field.
 
 Errors are ADE and FDE, the mean and the final displacement between predicted and observed positions
 (Pellegrini, Ess, Schindler & van Gool, "You'll Never Walk Alone", ICCV 2009; Alahi et al., "Social
@@ -32,7 +32,7 @@ class Protocol:
     horizons: tuple[int, ...] = (22, 60, 120)  # frames ahead: 0.75, 2 and 4 s
     near: float = 2.0  # [m] from a pedestrian's centre to the vehicle's body
     front: float = 1.0  # [m] from the cart's tracked point to its front
-    rear: float = 1.2  # [m] and to its rear
+    rear: float = 1.2  # [m] from the cart's tracked point to its rear
     width: float = 1.2  # [m]
 
     @property
@@ -48,7 +48,7 @@ class Protocol:
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """What a predictor is given, and what came to pass.
+    """What a predictor is given, and what was observed.
 
     Attributes:
         clip: its place among the clips.
@@ -56,7 +56,8 @@ class Window:
         who: (n,) the pedestrians seen there, by their place in the clip.
         position, velocity, destination: (n, 2) [m], [m/s], [m].
         vehicles: (H, m, 7) at 0 ... H - 1 frames ahead, as the pedestrian model takes them.
-        observed: (H, n, 2) [m] at 1 ... H frames ahead; nan from where somebody is first not seen.
+        observed: (H, n, 2) [m] at 1 ... H frames ahead; nan from the first frame on in which a
+            pedestrian is not seen.
         distance: (H + 1, n) [m] observed, from centre to the nearest body; inf without vehicles.
     """
 
@@ -125,14 +126,14 @@ def distance_to_bodies(position: Array, rows: Array) -> Array:
 
 
 def to_vehicle_frame(position: Array, x: Array, y: Array, heading: Array) -> tuple[Array, Array]:
-    """(T, n) [m] how far (T, n, 2) lie before and to the left of a vehicle (T,)."""
+    """(T, n) [m] how far positions (T, n, 2) are before, and to the left of, a vehicle (T,)."""
     dx, dy = position[:, :, 0] - x[:, None], position[:, :, 1] - y[:, None]
     cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]
     return cos * dx + sin * dy, cos * dy - sin * dx
 
 
 def _padded(values: Array, length: int, fill: float = np.nan) -> Array:
-    """``values`` along the first axis, ``fill`` after their end."""
+    """The ``values`` extended along the first axis to ``length`` by ``fill``."""
     out = np.full((length, *values.shape[1:]), fill)
     out[: len(values)] = values
     return out

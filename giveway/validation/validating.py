@@ -29,7 +29,7 @@ CITR = Protocol()
 
 @dataclass(frozen=True, eq=False)
 class Validation:
-    """What was found.
+    """The results of a validation.
 
     Attributes:
         errors: see :func:`giveway.validation.evaluation.error_table`.

@@ -1,4 +1,4 @@
-"""Where people can walk: ways along sidewalks, walkingareas and crossings, and their walls."""
+"""Where people can walk: routes along sidewalks, walkingareas and crossings, and their walls."""
 
 from giveway.walkways.network import NearestLane, WalkNetwork
 from giveway.walkways.reading import PedLane, Signal

@@ -11,11 +11,9 @@ import shapely
 from giveway.walkways.inside import polygon_of, rings
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.walkways.gates import Array
     from giveway.walkways.reading import PedLane, Survey
 
-    Array = NDArray[np.float64]
 
 _GAP = 0.15  # [m] half the width of a gap between neighbours that is closed
 _SLIVER = 0.1  # [m] half the width of a spit that is cut off
@@ -50,7 +48,7 @@ def walls(area: shapely.MultiPolygon) -> Array:
 
 
 def _lane(lane: PedLane, extension: float = 0.0) -> shapely.Geometry:
-    """A lane as wide as it is, cut off straight at its ends."""
+    """The area of a lane, cut off straight at its ends, ``extension`` [m] beyond them."""
     points = lane.shape
     if extension:
         first, last = points[0] - points[1], points[-1] - points[-2]
@@ -78,7 +76,7 @@ def _bare_junctions(survey: Survey) -> list[shapely.Geometry]:
     hulls = [
         np.vstack([*ends, outlines.get(name, ends[0])])
         for name, ends in bare.items()
-        if len(ends) > 1  # else nobody walks on there
+        if len(ends) > 1  # people walk on only where two lanes meet
     ]
     return [shapely.MultiPoint(points).convex_hull for points in hulls]
 

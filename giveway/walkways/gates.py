@@ -1,13 +1,13 @@
-"""Gates: the lines across a way, one after the other, that people walk through side by side.
+"""Gates: the lines across a route, one after the other, that people walk through side by side.
 
-A gate spans the usable width of the way at one place. Everybody crosses it where they come to it,
-so that a crowd uses the whole width and does not queue for one point. People who walk on the same
-side, a number from -1 (right end) to +1 (left end of the usable width, seen in walking direction),
-go round the same corners.
+A gate spans the usable width of the walkway at one place. All people cross it where they come to
+it, so that a crowd uses the whole width and does not queue for one point. People who walk on the
+same side, a number from -1 (right end) to +1 (left end of the usable width, seen in walking
+direction), go round the same corners.
 
-Gates are rows of one array, so that the way of one person is a single concatenation of pieces
+Gates are rows of one array, so that the route of one person is a single concatenation of pieces
 that many share. The columns are the middle x, y [m]; the spread x, y [m] from the middle to the
-left end; the unit direction of passage x, y; the signal that one waits for here, or -1.
+left end; the unit direction of passage x, y; the signal that people wait for here, or -1.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ BODY_RADIUS = 0.27  # [m] of a pedestrian: half of a shoulder breadth of 0.54 m
 TRACKS = 2  # to either side of the middle: people on one track go round the same corners
 NO_GATES: Array = np.empty((0, 7))
 _NO_SIGNAL = -1
-_ASKEW = 0.2  # cosine between the way and a gate's direction below which one comes from beside it
-_THERE = 0.01  # [m] from a gate one is there and comes from nowhere
+_ASKEW = 0.2  # cosine of route to gate's direction; below it people come from beside the gate
+_THERE = 0.01  # [m] nearer to a gate a person is at it, and comes from no direction
 
 
 def gate(
@@ -43,7 +43,7 @@ def gate(
 
 
 def turned(gates: Array) -> Array:
-    """The same gates walked the other way round; signals are left out, they have a direction."""
+    """The same gates walked in the other direction, without signals, which hold for one only."""
     back = gates[::-1].copy()
     back[:, 2:6] *= -1.0
     back[:, 6] = _NO_SIGNAL
@@ -63,13 +63,14 @@ def places(gates: Array, side: float) -> Array:
 def passages(gates: Array, start: tuple[float, float]) -> Array:
     """Unit direction and half width [m] (k, 3) of each gate around its middle.
 
-    The half width is the usable one and a body's radius beyond it: the whole way, and nothing
-    beside it. Where one comes to a gate from behind its line, as round a corner to a kerb, the
-    direction is that in which one comes: otherwise the gate would be passed before one is there.
+    The half width is the usable one plus a body's radius, which is the whole walkway and nothing
+    beside it. Some gates are reached from behind their line, as round a corner to a kerb. Their
+    direction of passage is the one in which people come; with the gate's own direction, they would
+    have passed it before they reach it.
 
     Args:
         gates: (k, 7).
-        start: where one comes from [m].
+        start: where the person comes from [m].
     """
     rows = np.empty((len(gates), 3))
     rows[:, :2] = gates[:, 4:6]

@@ -2,7 +2,7 @@
 
 A *portal* is where a lane or a crossing meets a walkingarea. People go from portal to portal
 inside a walkingarea, and along a crossing from its one portal to the other. Lanes outside of
-junctions are no edges of this graph, so that a way found in it never leaves its junction.
+junctions are no edges of this graph, so that a route found in it never leaves its junction.
 """
 
 from __future__ import annotations
@@ -21,13 +21,11 @@ from giveway.walkways.polyline import Polyline, usable_half_width
 from giveway.walkways.reading import Signal
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.walkways.gates import Array
     from giveway.walkways.reading import Link, PedLane, Survey
 
-    Array = NDArray[np.float64]
 
-_KERB = 0.4  # [m] from the roadway: there one waits for green
+_KERB = 0.4  # [m] from the roadway, where people wait for green
 
 
 class End(NamedTuple):
@@ -55,18 +53,18 @@ class Step(NamedTuple):
 
 @dataclass(frozen=True)
 class Tree:
-    """The shortest ways from the portals of a junction to the end of one lane.
+    """The shortest routes from the portals of a junction to the end of one lane.
 
-    Areas and crossings take turns, so each portal has two roles: one comes into its area there,
-    or leaves it.
+    Areas and crossings take turns, so each portal has two roles: people come into its area there,
+    or leave it.
     """
 
-    coming: dict[int, Step]  # next: where one leaves the area
-    leaving: dict[int, Step]  # next: the other end of the crossing
+    coming: dict[int, Step]  # by portal; next is the portal at which the area is left
+    leaving: dict[int, Step]  # by portal; next is the portal at the crossing's other end
 
 
 class WalkGraph:
-    """Portals, and the gates of ways between them; built when asked for, and kept.
+    """Portals, and the gates of the routes between them; built when asked for, and kept.
 
     Args:
         survey: what the network file says.
@@ -105,7 +103,7 @@ class WalkGraph:
         else:
             return
         if end.edge not in survey.edges and end.edge not in survey.crossings:
-            return  # of a lane that pedestrians may not use
+            return  # the end of a lane that pedestrians may not use
         self._links[end].append(area)
         self._ends_at[area].append(end)
         if link.signal is not None and end.edge in survey.crossings:
@@ -140,10 +138,6 @@ class WalkGraph:
         """The centre line of an edge or crossing."""
         found = self.lines.get(edge)
         return self._crossing_lines[edge] if found is None else found
-
-    def has_line(self, edge: str) -> bool:
-        """Whether this is an edge or crossing that people walk on."""
-        return edge in self.lines or edge in self._crossing_lines
 
     # --- portals ------------------------------------------------------------------------------
 
@@ -182,14 +176,14 @@ class WalkGraph:
     def _gate_into(self, end: End, area: str) -> Array:
         row = self.lane_end(end)
         if end.edge in self._crossing_lines:
-            # One waits on the kerb, and leaves the roadway before one turns.
+            # People wait on the kerb, and leave the roadway before they turn.
             row = self.interior(area).gate_within(row, _KERB)
         return row
 
-    # --- ways ---------------------------------------------------------------------------------
+    # --- routes -------------------------------------------------------------------------------
 
     def towards(self, target: End) -> Tree:
-        """The shortest ways to one end of a lane from all portals of its junction (Dijkstra)."""
+        """The shortest routes to one end of a lane from all portals of its junction (Dijkstra)."""
         found = self._trees.get(target)
         if found is not None:
             return found
@@ -243,7 +237,7 @@ class WalkGraph:
         return turned(gates) if start.last else gates
 
     def follow(self, start: int, tree: Tree, track: int) -> Array:
-        """The gates (k, 7) from a portal where one comes into an area, left out, to the target."""
+        """The gates (k, 7) after a portal at which an area is entered, up to the target."""
         pieces = []
         while True:
             out = tree.coming[start].portal
@@ -255,7 +249,7 @@ class WalkGraph:
             start = following
 
     def leave(self, start: int, tree: Tree, track: int) -> Array:
-        """The gates (k, 7) from a portal at which one leaves its area, included, to the target."""
+        """The gates (k, 7) from a portal at which an area is left, that included, to the target."""
         following = tree.leaving[start].portal
         if following < 0:
             return turned(self._portals[start].gate)
@@ -263,6 +257,6 @@ class WalkGraph:
 
 
 def _length(start: Array, between: Array, end: Array) -> float:
-    """Length [m] of the way through the middles of gates."""
+    """Length [m] of the line through the middles of gates."""
     middles = np.vstack([start[:, :2], between[:, :2], end[:, :2]])
     return float(np.hypot(*np.diff(middles, axis=0).T).sum())

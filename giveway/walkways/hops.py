@@ -1,4 +1,4 @@
-"""The way along a sequence of edges: their bends, and the hops over the junctions between them."""
+"""The route along a sequence of edges: their bends, and the hops over the junctions between."""
 
 from __future__ import annotations
 
@@ -13,43 +13,41 @@ from giveway.walkways.graph import End
 from giveway.walkways.polyline import usable_half_width
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.walkways.gates import Array
     from giveway.walkways.graph import WalkGraph
     from giveway.walkways.reading import Survey
 
-    Array = NDArray[np.float64]
 
 _AT_END = 1.0  # [m] lanes whose ends are this near to each other meet
 
 
 class Stretch(NamedTuple):
-    """An edge of the walk and the direction in which it is walked."""
+    """An edge of a route and the direction in which it is walked."""
 
     edge: str
     forward: bool
 
     @property
     def entry(self) -> End:
-        """The end at which one comes onto it."""
+        """The end at which the edge is entered."""
         return End(self.edge, not self.forward)
 
     @property
     def exit(self) -> End:
-        """The end at which one leaves it."""
+        """The end at which the edge is left."""
         return End(self.edge, self.forward)
 
 
 class Hop(NamedTuple):
-    """The way over a junction from one lane's end to another's."""
+    """The route over a junction from one lane's end to another's."""
 
-    portal: int | None  # where it begins; None: straight across
+    portal: int | None  # where it begins; None if it goes straight across
     length: float  # [m]
     connected: bool
 
 
-class Ways:
-    """Pieces of ways, each built when first asked for, and kept.
+class Pieces:
+    """Pieces of routes, each built when first asked for, and kept.
 
     Args:
         survey: what the network file says.
@@ -63,13 +61,13 @@ class Ways:
         self._hop_gates: dict[tuple[End, End, int], Array] = {}
         self._bends: dict[Stretch, Array] = {}
 
-    def directed(self, walk: list[str]) -> list[list[Stretch]]:
-        """The walk with directions: both ways on the first edge, then by shared junctions."""
-        walks = []
+    def directed(self, edges: list[str]) -> list[list[Stretch]]:
+        """The edges with directions: either one on the first edge, then by shared junctions."""
+        routes = []
         for forward in (True, False):
-            stretches = [Stretch(walk[0], forward)]
+            stretches = [Stretch(edges[0], forward)]
             meets = 0
-            for edge in walk[1:]:
+            for edge in edges[1:]:
                 exit_ = stretches[-1].exit
                 junction = self.junction(exit_)
                 begins, ends = self._edges[edge].junctions
@@ -78,9 +76,9 @@ class Ways:
                     stretches.append(Stretch(edge, junction == begins))
                 else:
                     stretches.append(Stretch(edge, self._nearer_end(exit_, edge)))
-            walks.append((meets, stretches))
-        most = max(meets for meets, _ in walks)
-        return [stretches for meets, stretches in walks if meets == most]
+            routes.append((meets, stretches))
+        most = max(meets for meets, _ in routes)
+        return [stretches for meets, stretches in routes if meets == most]
 
     def _nearer_end(self, exit_: End, edge: str) -> bool:
         """Whether the beginning of an edge is nearer than its end."""
@@ -89,7 +87,7 @@ class Ways:
         return math.dist(here, line[0]) <= math.dist(here, line[-1])
 
     def behind(self, stretches: list[Stretch], junction: str) -> list[Stretch]:
-        """The part of a walk behind a junction in which one is."""
+        """The part of a route behind the junction that the person is in."""
         for i, stretch in enumerate(stretches[:-1]):
             if self.junction(stretch.exit) == junction:
                 return stretches[i + 1 :]
@@ -137,7 +135,7 @@ class Ways:
         return Hop(None, distance, (meets and open_ground) or distance < _AT_END)
 
     def _over(self, start: End, end: End, track: int) -> Array:
-        """The gates of a hop, those across the lanes' ends included."""
+        """The gates of a hop, with those across the ends of both lanes."""
         found = self._hop_gates.get((start, end, track))
         if found is None:
             graph = self._graph
@@ -170,7 +168,7 @@ class Ways:
         return found
 
     def partly(self, stretch: Stretch, start: float | None, end: float) -> Array:
-        """The gates from one station [m] of an edge, or its entry, to another, that included."""
+        """The gates after the station ``start`` [m] of an edge (None: its entry) up to ``end``."""
         line = self._graph.lines[stretch.edge]
         if start is None:
             start = self.station(stretch.entry)

@@ -1,4 +1,4 @@
-"""The shortest way inside a walkingarea, which need not be convex."""
+"""The shortest route inside a walkingarea, which need not be convex."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-_TOLERANCE = 0.05  # [m] that a way may lie outside of the area
+_TOLERANCE = 0.05  # [m] that a route may lie outside of the area
 _SLIGHT = math.sin(math.radians(0.5))  # a corner that juts in by less is none
-_INSET = 0.02  # [m] from a corner to the place that ways round it are looked for
+_INSET = 0.02  # [m] from a corner to the place through which routes round it are sought
 
 
 def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:
     """A walkingarea's outline as a valid polygon.
 
-    One that crosses itself or is thinner than a body gets room for a body along its outline, or
-    it would fall into pieces; one without an area is widened to its width.
+    An outline that crosses itself or is thinner than a body gets room for a body along it, or it
+    would fall into pieces; an outline without an area is widened to the width of its lane.
     """
     if len(area.shape) >= 3:
         polygon = shapely.make_valid(shapely.Polygon(area.shape))
@@ -97,12 +97,12 @@ class Interior:
         return fitted, float(piece.length)
 
     def between(self, start: Array, end: Array, side: float) -> Array:
-        """The gates (k, 7) of the way from one gate (1, 7) to another, those two left out.
+        """The gates (k, 7) of the route from one gate (1, 7) to another, without those two.
 
         Args:
-            start: where one comes from.
-            end: where one goes.
-            side: for people on or near this side [-1, 1].
+            start: the gate where people come from.
+            end: the gate where they go.
+            side: the route is for people on or near this side [-1, 1].
         """
         if not len(self._corners):
             return NO_GATES
@@ -113,11 +113,11 @@ class Interior:
         return self._round(order, start[0, :2], end[0, :2], width)
 
     def _sees(self, a: Array, b: Array) -> bool:
-        """Whether the straight way between two points is inside."""
+        """Whether the straight line between two points is inside."""
         return bool(self._room.covers(shapely.LineString([a, b])))
 
     def _inside(self, place: Array) -> Array:
-        """The place itself, or the nearest one inside: SUMO's people cut corners a little."""
+        """The place, or the nearest one inside: SUMO's persons cut corners a little."""
         point = shapely.Point(place)
         if self._room.covers(point):
             return place
@@ -140,7 +140,7 @@ class Interior:
         return gates
 
     def _reach(self, vertex: Array, inwards: Array) -> float:
-        """How far [m] it is from a corner straight in to the other side."""
+        """The distance [m] from a corner straight inwards to the other side."""
         ray = shapely.LineString([vertex + 1e-3 * inwards, vertex + 100.0 * inwards])
         return float(self._piece_near(vertex, ray).length)
 
@@ -153,7 +153,7 @@ class Interior:
 
     @cached_property
     def _visible(self) -> NDArray[np.bool_]:
-        """(k, k) which corners see each other."""
+        """(k, k) whether two corners see each other."""
         near = self._near_corners
         k = len(near)
         ends = np.stack([np.repeat(near, k, axis=0), np.tile(near, (k, 1))], axis=1)
@@ -165,7 +165,7 @@ class Interior:
         return self._corners + _INSET * self._inwards
 
     def _shortest(self, a: Array, b: Array) -> list[int]:
-        """The corners that the shortest way from ``a`` to ``b`` bends round (visibility graph)."""
+        """The corners that the shortest route from a to b bends round, by the visibility graph."""
         a, b = self._inside(a), self._inside(b)
         if self._sees(a, b):
             return []
@@ -196,12 +196,12 @@ class Interior:
                     heapq.heappush(heap, (onwards, int(j), i))
             if seen_from[1][i]:
                 heapq.heappush(heap, (distance + float(np.hypot(*(b - near[i]))), k, i))
-        way: list[int] = []
+        route: list[int] = []
         i = came_from.get(k, -1)
         while i >= 0:
-            way.append(i)
+            route.append(i)
             i = came_from[i]
-        return way[::-1]
+        return route[::-1]
 
 
 def _corners(polygon: shapely.Polygon | shapely.MultiPolygon) -> tuple[Array, Array]:

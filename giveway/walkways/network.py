@@ -1,4 +1,4 @@
-"""The walkable part of a SUMO network: lanes, ways and walls."""
+"""The walkable part of a SUMO network: lanes, routes and walls."""
 
 from __future__ import annotations
 
@@ -10,16 +10,14 @@ import shapely
 
 from giveway.walkways.area import walkable_area, walls
 from giveway.walkways.graph import WalkGraph
-from giveway.walkways.reading import PedLane, Signal, Survey, survey
+from giveway.walkways.reading import Signal, Survey, survey
 from giveway.walkways.route import Router, WalkRoute
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+    from giveway.walkways.gates import Array
 
 
 class NearestLane(NamedTuple):
@@ -36,7 +34,7 @@ class WalkNetwork:
 
     Attributes:
         signals: the traffic-light links that govern crossings.
-        has_walkingareas, has_crossings: whether the network has any.
+        has_walkingareas: whether the network has any.
         has_sidewalks: whether there is a lane that pedestrians may use and cars may not.
         boundary: x_min, y_min, x_max, y_max [m] of the network.
     """
@@ -44,7 +42,6 @@ class WalkNetwork:
     signals: tuple[Signal, ...]
     has_walkingareas: bool
     has_sidewalks: bool
-    has_crossings: bool
     boundary: tuple[float, float, float, float]
 
     def __init__(self, found: Survey) -> None:
@@ -54,7 +51,6 @@ class WalkNetwork:
         self.signals = tuple(self._graph.signals)
         self.has_walkingareas = bool(found.walkingareas)
         self.has_sidewalks = found.has_sidewalks
-        self.has_crossings = bool(found.crossings)
         self.boundary = found.boundary or _extent(found)
 
     @classmethod
@@ -66,11 +62,6 @@ class WalkNetwork:
         """
         return cls(survey(net_file))
 
-    def lane_of(self, edge: str) -> PedLane | None:
-        """The lane on which pedestrians walk on an edge; None if they may not or it is unknown."""
-        known = self._survey.edges.get(edge)
-        return None if known is None else known.lane
-
     def route(
         self,
         edges: Sequence[str],
@@ -80,17 +71,18 @@ class WalkNetwork:
         arrival_position: float,
         offset_side: float | None = None,
     ) -> WalkRoute:
-        """Way-points from where a person is to the end of its walk; never fails.
+        """The route from where a person is to the end of its walk; never fails.
 
         Args:
-            edges: the walk's remaining edges, the present one first; somebody in a walkingarea or
-                on a crossing has the edge that was left as the first, as SUMO lists them.
+            edges: the remaining edges, the present one first; for somebody in a walkingarea or on
+                a crossing the first is the edge that was left, as SUMO lists them.
             position: where the person is [m].
             lane: SUMO's id of the present lane, maybe a walkingarea's or crossing's.
             arrival_position: the end of the walk on the last edge, in SUMO's metres; a negative
                 one counts from the edge's end.
-            offset_side: the side of the way, from -1 (right end of its usable width) to 1 (left),
-                that decides round which corners one goes; None for where the person is now.
+            offset_side: the side of the walkway, from -1 (right end of its usable width) to 1
+                (left), that decides round which corners the person goes; None takes the side on
+                which the person is now.
         """
         return self._router.route(edges, position, lane, arrival_position, offset_side)
 

@@ -1,4 +1,4 @@
-"""Centre lines: stations along them, and the gates of a way that follows them."""
+"""Centre lines: stations along them, and the gates of a route that follows them."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 _STRAIGHT = 0.05  # [m] a vertex nearer to its neighbours' line is no bend
-_SHARPEST = 0.5  # cosine of half the sharpest bend at which the way keeps its full width
+_SHARPEST = 0.5  # cosine of half the sharpest bend at which a walkway keeps its full width
 
 
 def usable_half_width(width: float) -> float:
-    """How far [m] a body's centre can be from the centre line of a way ``width`` [m] wide."""
+    """How far [m] a body's centre can be from the centre line of a walkway of ``width`` [m]."""
     return max(0.0, width / 2 - BODY_RADIUS)
 
 
@@ -32,7 +32,7 @@ class Polyline:
 
     Attributes:
         points: (k, 2) [m], k >= 2.
-        stations: arc length [m] at each point, from 0; plain numbers, as each person asks.
+        stations: arc length [m] at each point, from 0; plain numbers, since every person asks.
     """
 
     points: Array
@@ -81,14 +81,14 @@ class Polyline:
     def gates(self, half_width: float) -> Array:
         """A gate (k, 7) across every vertex, ends included, ``half_width`` [m] to either side.
 
-        In a bend the gate lies on the bisector and is mitred, so that everybody keeps their
+        In a bend the gate lies on the bisector and is longer there, so that people keep their
         distance to the centre line.
         """
         along = self.directions
         before, after = np.vstack([along[:1], along]), np.vstack([along, along[-1:]])
         middle = before + after
         size = np.hypot(*middle.T)
-        # A hairpin has no bisector: the gate lies across the way on.
+        # A hairpin has no bisector: the gate lies across the direction after it.
         middle = np.where(size[:, None] > 1e-6, middle / np.maximum(size, 1e-6)[:, None], after)
         half_angle = np.maximum((middle * after).sum(axis=1), _SHARPEST)
         spread = np.column_stack([-middle[:, 1], middle[:, 0]]) * (half_width / half_angle)[:, None]

@@ -19,9 +19,8 @@ from giveway.errors import ScenarioError
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from giveway.walkways.gates import Array
 
-    Array = NDArray[np.float64]
 
 _PEDESTRIAN = "pedestrian"
 _CAR = "passenger"

@@ -1,4 +1,4 @@
-"""The way-points of one person's walk, from where the person is to where the walk ends."""
+"""The route of one person: way-points from where the person is to where its walk ends."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from giveway.walkways import gates as g
-from giveway.walkways.hops import Stretch, Ways
+from giveway.walkways.hops import Pieces, Stretch
 from giveway.walkways.polyline import usable_half_width
 from giveway.walkways.starts import Starts
 
@@ -28,14 +28,14 @@ _TOGETHER = 0.05  # [m] way-points nearer to each other than this are one
 
 @dataclass(frozen=True)
 class WalkRoute:
-    """The way ahead of one person; at least one way-point, the last is the walk's end.
+    """The route ahead of one person; at least one way-point, the last is the walk's end.
 
     Attributes:
-        waypoints: (k, 2) [m], the present place left out.
+        waypoints: (k, 2) [m] in the middle of the walkway, without the present place.
         passages: (k, 3) unit direction in which a way-point's line is crossed, and how far [m]
-            beside the point, the way's middle, one may cross it and have passed.
-        signals: (k,) index into ``WalkNetwork.signals`` where one waits for green, else -1.
-        gaps: how many times the network knows no way on and the route goes straight.
+            beside the way-point a crossing of the line still counts as a passage.
+        signals: (k,) index into ``WalkNetwork.signals`` where people wait for green, else -1.
+        gaps: how often the network shows no connection and the route goes straight on.
     """
 
     waypoints: Array
@@ -44,17 +44,17 @@ class WalkRoute:
     gaps: int
 
 
-class _Way(NamedTuple):
-    """One of the ways somebody could go."""
+class _Candidate(NamedTuple):
+    """One of the routes that a person could take."""
 
     gaps: int
     length: float  # [m]
-    side: float  # [-1, 1] on which one is now, seen in walking direction
-    gates: Callable[[float], list[Array]]  # by the side that one keeps to
+    side: float  # [-1, 1] on which the person is now, seen in walking direction
+    gates: Callable[[float], list[Array]]  # by the side that the person keeps to
 
 
 class Router:
-    """Puts ways together from pieces that it builds once.
+    """Puts routes together from pieces that it builds once.
 
     Args:
         survey: what the network file says.
@@ -64,7 +64,7 @@ class Router:
     def __init__(self, survey: Survey, graph: WalkGraph) -> None:
         self._edges = survey.edges
         self._lines = graph.lines
-        self._ways = Ways(survey, graph)
+        self._pieces = Pieces(survey, graph)
         self._starts = Starts(survey, graph)
 
     def route(
@@ -76,28 +76,29 @@ class Router:
         side: float | None,
     ) -> WalkRoute:
         """See :meth:`giveway.walkways.WalkNetwork.route`."""
-        walk, gaps = self._known(edges)
-        if not walk:
+        known, gaps = self._known(edges)
+        if not known:
             return _stay(position, max(gaps, 1))
         place = lane[: lane.rfind("_")]
-        arrival = self._arrival(walk[-1], arrival_position)
+        arrival = self._arrival(known[-1], arrival_position)
         begin = self._from_junction if lane.startswith(":") else self._from_lane
-        best = min(begin(walk, place, position, arrival), key=lambda way: (way.gaps, way.length))
+        candidates = begin(known, place, position, arrival)
+        best = min(candidates, key=lambda candidate: (candidate.gaps, candidate.length))
         side = min(1.0, max(-1.0, best.side if side is None else side))
         return _finished(np.concatenate(best.gates(side)), position, gaps + best.gaps)
 
     def _known(self, edges: Iterable[str]) -> tuple[list[str], int]:
         """The edges that can be walked, without repetitions, and how many others there were."""
-        walk: list[str] = []
+        known: list[str] = []
         gaps = 0
         for edge in edges:
             if edge.startswith(":"):
-                continue  # a walkingarea or crossing: found again from its neighbours
+                continue  # a walkingarea or crossing, which is found again from its neighbours
             if edge not in self._edges:
                 gaps += 1
-            elif not walk or walk[-1] != edge:
-                walk.append(edge)
-        return walk, gaps
+            elif not known or known[-1] != edge:
+                known.append(edge)
+        return known, gaps
 
     def _arrival(self, edge: str, position: float) -> float:
         """The station [m] on the centre line of a position in SUMO's metres."""
@@ -108,47 +109,49 @@ class Router:
         return min(1.0, max(0.0, share)) * self._lines[edge].length
 
     def _from_lane(
-        self, walk: list[str], place: str, position: Place, arrival: float
-    ) -> Iterator[_Way]:
-        """The ways of somebody on the lane of the first edge, or beside all lanes."""
-        ways = self._ways
-        if place in walk:
-            walk = walk[walk.index(place) :]
-        station, left = self._lines[walk[0]].project(*position)
-        half_width = usable_half_width(self._edges[walk[0]].lane.width)
+        self, edges: list[str], place: str, position: Place, arrival: float
+    ) -> Iterator[_Candidate]:
+        """The routes of a person on the lane of the first edge, or beside all lanes."""
+        pieces = self._pieces
+        if place in edges:
+            edges = edges[edges.index(place) :]
+        station, left = self._lines[edges[0]].project(*position)
+        half_width = usable_half_width(self._edges[edges[0]].lane.width)
         left = left / half_width if half_width > 0.0 else 0.0
-        if len(walk) == 1:
-            only = Stretch(walk[0], arrival >= station)
-            goal = ways.partly(only, station, arrival)
-            yield _Way(0, abs(arrival - station), left if only.forward else -left, lambda _: [goal])
+        if len(edges) == 1:
+            only = Stretch(edges[0], arrival >= station)
+            goal = pieces.partly(only, station, arrival)
+            side = left if only.forward else -left
+            yield _Candidate(0, abs(arrival - station), side, lambda _: [goal])
             return
-        for stretches in ways.directed(walk):
+        for stretches in pieces.directed(edges):
             first = stretches[0]
-            gaps, length = ways.measure(stretches, arrival)
-            end = ways.station(first.exit)
-            bends = ways.partly(first, station, end)[:-1]
+            gaps, length = pieces.measure(stretches, arrival)
+            end = pieces.station(first.exit)
+            bends = pieces.partly(first, station, end)[:-1]
+            length += abs(end - station)
 
             def gates(
                 side: float, bends: Array = bends, stretches: list[Stretch] = stretches
             ) -> list[Array]:
-                return [bends, *ways.gates(stretches, arrival, side)]
+                return [bends, *pieces.gates(stretches, arrival, side)]
 
-            yield _Way(gaps, length + abs(end - station), left if first.forward else -left, gates)
+            yield _Candidate(gaps, length, left if first.forward else -left, gates)
 
     def _from_junction(
-        self, walk: list[str], place: str, position: Place, arrival: float
-    ) -> Iterator[_Way]:
-        """The ways of somebody in a walkingarea, on a crossing or elsewhere inside a junction."""
-        ways = self._ways
+        self, edges: list[str], place: str, position: Place, arrival: float
+    ) -> Iterator[_Candidate]:
+        """The routes of a person in a walkingarea, on a crossing or elsewhere in a junction."""
+        pieces = self._pieces
         junction = place[1 : place.rfind("_")]
-        for whole in ways.directed(walk):
-            stretches = ways.behind(whole, junction)
+        for whole in pieces.directed(edges):
+            stretches = pieces.behind(whole, junction)
             first = stretches[0]
             start = self._starts.into(place, position, first.entry)
-            gaps, length = ways.measure(stretches, arrival)
+            gaps, length = pieces.measure(stretches, arrival)
             goes_on = len(stretches) > 1
-            end = ways.station(first.exit) if goes_on else arrival
-            bends = ways.partly(first, None, end)[: -1 if goes_on else None]
+            end = pieces.station(first.exit) if goes_on else arrival
+            bends = pieces.partly(first, None, end)[: -1 if goes_on else None]
 
             def gates(
                 side: float,
@@ -156,23 +159,23 @@ class Router:
                 bends: Array = bends,
                 stretches: list[Stretch] = stretches,
             ) -> list[Array]:
-                return [begin(side), bends, *ways.gates(stretches, arrival, side)]
+                return [begin(side), bends, *pieces.gates(stretches, arrival, side)]
 
-            length += start.length + abs(end - ways.station(first.entry))
-            yield _Way(gaps + (not start.connected), length, start.side, gates)
+            length += start.length + abs(end - pieces.station(first.entry))
+            yield _Candidate(gaps + (not start.connected), length, start.side, gates)
 
 
 def _finished(rows: Array, position: Place, gaps: int) -> WalkRoute:
     points = rows[:, :2].copy()
     if len(points) > 1:
         apart = np.abs(np.diff(points, axis=0)).max(axis=1) > _TOGETHER
-        # Of several in one place the one with a signal stays, else the last.
+        # Of several way-points in one place the one with a signal is kept, else the last.
         keep = np.append(apart, True) | (rows[:, 6] >= 0)
         rows, points = rows[keep], points[keep]
     return WalkRoute(points, g.passages(rows, position), g.signals(rows), gaps)
 
 
 def _stay(position: Place, gaps: int) -> WalkRoute:
-    """One way-point where one is: the network knows none of the edges."""
+    """The route to where the person is already: the network knows none of the edges."""
     place = np.array([position], dtype=np.float64)
     return WalkRoute(place, np.zeros((1, 3)), np.array([-1], dtype=np.int64), gaps)

@@ -1,6 +1,6 @@
-"""The first steps of somebody who is inside a junction when the way begins.
+"""The beginning of the route of a person who is inside a junction.
 
-They go on from where they are: nobody is sent back to a kerb, and who is on a crossing already
+The person goes on from there: nobody is sent back to a kerb, and whoever is on a crossing already
 does not wait for its light.
 """
 
@@ -18,26 +18,24 @@ from giveway.walkways.polyline import usable_half_width
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
+    from giveway.walkways.gates import Array
     from giveway.walkways.graph import Tree, WalkGraph
     from giveway.walkways.reading import Survey
 
-    Array = NDArray[np.float64]
     Place = tuple[float, float]
 
 
 class Start(NamedTuple):
-    """The way from a place to the end of a lane, that included."""
+    """The route from a place to the end of a lane, with the gate across that end."""
 
     length: float  # [m]
     connected: bool
-    side: float  # [-1, 1] on which one is now, seen in walking direction
-    gates: Callable[[float], Array]  # by the side that one keeps to
+    side: float  # [-1, 1] on which the person is now, seen in walking direction
+    gates: Callable[[float], Array]  # by the side that the person keeps to
 
 
 class Starts:
-    """Finds the way out of junctions.
+    """Finds routes out of junctions.
 
     Args:
         survey: what the network file says.
@@ -67,7 +65,7 @@ class Starts:
         return Start(length, not paved, g.side_at(straight, position), lambda _: straight)
 
     def _out_of_area(self, area: str, position: Place, tree: Tree) -> Start | None:
-        """From the middle of a walkingarea: to the portal with the shortest way on."""
+        """From the middle of a walkingarea through the portal that makes the route shortest."""
         graph = self._graph
         exits = [
             (tree.leaving[i].distance + math.dist(position, graph.portal(i).gate[0, :2]), i)
@@ -87,7 +85,7 @@ class Starts:
         return Start(length, True, g.side_at(way_out, position), gates)
 
     def _off_crossing(self, crossing: str, position: Place, tree: Tree) -> Start | None:
-        """From the middle of a crossing: on in the direction of the walk, without waiting."""
+        """From the middle of a crossing on in the direction of the route, without waiting."""
         graph = self._graph
         line = graph.line(crossing)
         station, left = line.project(*position)
@@ -102,11 +100,11 @@ class Starts:
         length, i, last = min(exits)
         half_width = usable_half_width(graph.lane(crossing).width)
         bends, stations = line.gates(half_width)[1:-1], np.array(line.stations[1:-1])
-        ahead_of_one = bends[stations > station] if last else g.turned(bends[stations < station])
+        ahead = bends[stations > station] if last else g.turned(bends[stations < station])
 
         def gates(side: float) -> Array:
             onwards = graph.follow(i, tree, g.track_of(side))
-            return np.concatenate([ahead_of_one, graph.portal(i).gate, onwards])
+            return np.concatenate([ahead, graph.portal(i).gate, onwards])
 
         side = left / half_width if half_width > 0.0 else 0.0
         return Start(length, True, side if last else -side, gates)

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from fmus.text import printable
-from giveway.processes.causes import cause_of_end, stood_still, text_in
+from giveway.processes.causes import cause_of_end, let_speak, stood_still, text_in
 from giveway.processes.child import STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Stillness
 from giveway.studies.execution.executor import WorkerError
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from giveway.studies.record import Task
 
 _POLL: Final = 0.25  # [s] between two looks at a worker that sends nothing
-_REPORTING: Final = 2.0  # [s] for a hanging worker to write its traceback
 _ENDING: Final = 2.0  # [s] from a connection's end to that of its process
 _MOST_PRINTED: Final = 1 << 26  # [bytes] after which what it has printed is dropped
 _TAIL: Final = 4096  # [bytes] in which the last line is searched for
@@ -186,11 +185,7 @@ class WorkerProcess:
         Raises:
             RunDiedError: always.
         """
-        if sys.platform != "win32":
-            with suppress(OSError):
-                self._process.send_signal(signal.SIGABRT)
-            with suppress(subprocess.TimeoutExpired):
-                self._process.wait(_REPORTING)
+        let_speak(self._process)
         failure = self._failure(cause)
         self.end()
         raise RunDiedError(failure)

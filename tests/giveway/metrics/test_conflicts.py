@@ -20,10 +20,18 @@ from hypothesis import strategies as st
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.contact import contact_interval, signed_distance
-from giveway.metrics import clearance, deceleration_to_avoid_crash, time_to_collision
+from giveway.metrics import proximity
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27
+
+
+def clearance(*drive):
+    return proximity(*drive).clearance
+
+
+def time_to_collision(*drive):
+    return proximity(*drive).time_to_collision
 
 
 @pytest.fixture
@@ -170,7 +178,11 @@ def test_nothing_depends_on_the_frame(ego, crowd, state, speed, turn, shift):
     ],
 )
 def test_deceleration_to_avoid_crash(judge, case, state, speed, expected):
-    assert judge(deceleration_to_avoid_crash, state, speed) == pytest.approx(expected), case
+    assert judge(_deceleration, state, speed) == pytest.approx(expected), case
+
+
+def _deceleration(*drive):
+    return proximity(*drive).deceleration
 
 
 @pytest.mark.parametrize(("step", "pedestrian", "name"), [(1, 0, "step"), (0, 1, "pedestrian")])

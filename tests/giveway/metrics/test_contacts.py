@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.metrics import clearance, conflicts, contacts, pedestrian_metrics
+from giveway.metrics import conflicts, contacts, pedestrian_metrics, proximity
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27
@@ -21,7 +21,7 @@ TIME = DT * np.arange(81)
 
 
 def kinds(ego, crowd):
-    return contacts(ego, crowd, CAR, R, clearance(ego, crowd, CAR, R)).tolist()
+    return contacts(ego, crowd, CAR, R, proximity(ego, crowd, CAR, R).clearance).tolist()
 
 
 def test_nobody_near_is_no_contact(driving, crowd, walking):
@@ -85,7 +85,7 @@ def test_who_overtakes_along_the_side_is_not_moved_into(driving, crowd, walking)
     track = crowd(walking(TIME, (-2.0, 1.15), (1.5, 0.0)))
     ego = driving(TIME, 0.5)
     p = track.x - ego.front_x
-    assert (p[clearance(ego, track, CAR, R) < 0.0] > 0.0).any()
+    assert (p[proximity(ego, track, CAR, R).clearance < 0.0] > 0.0).any()
     assert kinds(ego, track) == ["side"]
 
 
@@ -149,15 +149,15 @@ def test_a_conflict_is_a_time_to_collision_below_a_second_and_a_half(driving, cr
     ahead = walking(TIME, (20.0, 0.0), (0.0, 0.0))
     beside = walking(TIME, (8.0, 4.0), (0.0, 0.0))
     found = conflicts(ego, crowd(ahead, beside), CAR, R, 0.2)
-    assert found.persons == 1
+    assert found.pedestrians == 1
     after = np.count_nonzero((20.0 - R - 4.0 * TIME) / 4.0 < 1.5)
     assert found.share == pytest.approx(after / TIME.size)
 
 
 def test_who_walks_up_to_a_standing_car_is_no_conflict(ego, crowd, walking):
     track = crowd(walking(TIME, (2.0, 0.0), (-1.4, 0.0)))
-    assert conflicts(ego(TIME, speed=0.2), track, CAR, R, 0.2).persons == 0
-    assert conflicts(ego(TIME, speed=0.21), track, CAR, R, 0.2).persons == 1
+    assert conflicts(ego(TIME, speed=0.2), track, CAR, R, 0.2).pedestrians == 0
+    assert conflicts(ego(TIME, speed=0.21), track, CAR, R, 0.2).pedestrians == 1
 
 
 def test_two_at_once_are_two_persons_but_one_share(driving, crowd, walking):
@@ -165,10 +165,10 @@ def test_two_at_once_are_two_persons_but_one_share(driving, crowd, walking):
     one = walking(TIME, (5.0, 0.0), (0.0, 0.0))
     alone = conflicts(ego, crowd(one), CAR, R, 0.2)
     both = conflicts(ego, crowd(one, one), CAR, R, 0.2)
-    assert (alone.persons, both.persons) == (1, 2)
+    assert (alone.pedestrians, both.pedestrians) == (1, 2)
     assert alone.share == both.share > 0.0
 
 
 def test_a_drive_without_anybody_has_no_conflicts(driving, crowd):
     found = conflicts(driving(TIME, 4.0), crowd(), CAR, R, 0.2)
-    assert (found.persons, found.share) == (0, 0.0)
+    assert (found.pedestrians, found.share) == (0, 0.0)

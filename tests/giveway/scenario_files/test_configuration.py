@@ -109,7 +109,6 @@ def test_the_inputs_are_all_that_a_run_is_made_of(config: Callable[[str], Path])
         ("weight-files", "w.xml"),
         ("load-state", "s.xml.gz"),
     ]
-    assert [path.name for path in scenario.gui_settings] == ["g.xml"]
     assert scenario.missing == scenario.inputs
 
 

@@ -15,7 +15,6 @@ from giveway.scenario_files.options import (
     INSTEAD_OF_SIMULATING,
     OUTPUTS,
     SYNONYMS,
-    WINDOW_FILES,
 )
 
 if TYPE_CHECKING:
@@ -203,7 +202,14 @@ def test_the_tables_of_options_are_those_of_sumo(
     files = {option.tag for option in options if option.get("type") == "FILE"}
     by_string = {"device.ssm.file", "device.toc.file"}
     folders = {"phemlight-path", "configuration-file"}
-    ours = {*OUTPUTS, *INPUTS, *WINDOW_FILES, *INSTEAD_OF_SIMULATING}
+    of_the_window = {
+        "gui-settings-file",
+        "edgedata-files",
+        "alternative-net-file",
+        "selection-file",
+        "gui-testing.setting-output",
+    }
+    ours = {*OUTPUTS, *INPUTS, *of_the_window, *INSTEAD_OF_SIMULATING}
     assert ours == (files | by_string) - folders
     synonyms = {
         synonym: option.tag for option in options for synonym in option.get("synonymes", "").split()

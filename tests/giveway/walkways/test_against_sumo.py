@@ -118,4 +118,5 @@ def test_walkers_on_a_lane_are_nearest_to_that_lane(
                 nearest = network.nearest_lane(x, y)
                 assert nearest is not None
                 assert nearest.lane == lane
-                assert 0.0 <= nearest.position <= network.lane_of(nearest.edge).length + 1e-9  # type: ignore[union-attr]
+                length = network._survey.edges[nearest.edge].lane.length
+                assert 0.0 <= nearest.position <= length + 1e-9

@@ -11,6 +11,7 @@ import pytest
 
 from giveway.errors import ScenarioError
 from giveway.walkways import WalkNetwork
+from giveway.walkways.reading import survey
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -44,8 +45,7 @@ def written(tmp_path: Path) -> Callable[[str | bytes], Path]:
 
 
 def test_people_walk_on_the_lane_that_is_theirs_alone(written: Callable[..., Path]) -> None:
-    lane = WalkNetwork.read(written(EDGES)).lane_of("road")
-    assert lane is not None
+    lane = survey(written(EDGES)).edges["road"].lane
     assert (lane.id, lane.width, lane.length) == ("road_2", 2.0, 60.0)
     np.testing.assert_array_equal(lane.shape, [[0.0, 6.0], [50.0, 6.0]])
 
@@ -53,23 +53,20 @@ def test_people_walk_on_the_lane_that_is_theirs_alone(written: Callable[..., Pat
 def test_else_on_the_first_they_may_use_which_is_as_wide_as_sumo_says(
     written: Callable[..., Path],
 ) -> None:
-    lane = WalkNetwork.read(written(EDGES)).lane_of("lane")
-    assert lane is not None
+    lane = survey(written(EDGES)).edges["lane"].lane
     assert (lane.id, lane.width) == ("lane_0", 3.2)
 
 
 @pytest.mark.parametrize("edge", ["motorway", ":J", "nowhere"])
 def test_where_nobody_may_walk_there_is_no_lane(written: Callable[..., Path], edge: str) -> None:
-    assert WalkNetwork.read(written(EDGES)).lane_of(edge) is None
+    assert edge not in survey(written(EDGES)).edges
 
 
 def test_what_a_network_has(built: Callable[[str], Any], written: Callable[..., Path]) -> None:
     grid, bare = built("grid").network, built("bare").network
     assert grid.has_walkingareas
-    assert grid.has_crossings
     assert grid.has_sidewalks
     assert not bare.has_walkingareas
-    assert not bare.has_crossings
     assert not bare.has_sidewalks
     assert bare.signals == ()
     assert bare.boundary == (0.0, 0.0, 240.0, 240.0)

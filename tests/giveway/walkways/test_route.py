@@ -50,8 +50,7 @@ def walk(
 
 def on(network: WalkNetwork, edge: str, metres: float, left: float = 0.0) -> tuple[float, float]:
     """A place on the (straight) lane of an edge."""
-    lane = network.lane_of(edge)
-    assert lane is not None
+    lane = network._survey.edges[edge].lane
     (x_0, y_0), (x_1, y_1) = lane.shape[[0, -1]]
     length = math.dist((x_0, y_0), (x_1, y_1))
     d_x, d_y = (x_1 - x_0) / length, (y_1 - y_0) / length
@@ -69,8 +68,7 @@ def length(route: WalkRoute, position: tuple[float, float]) -> float:
 def test_a_walk_ends_where_sumo_says(
     grid: WalkNetwork, arrival: float, metres: float | None
 ) -> None:
-    lane = grid.lane_of("B1C1")
-    assert lane is not None
+    lane = grid._survey.edges["B1C1"].lane
     goal = on(grid, "B1C1", lane.length - 10.0 if metres is None else metres)
     route = walk(grid, AVENUE, arrival=arrival)
     np.testing.assert_allclose(route.waypoints[-1], goal, atol=1e-9)
@@ -78,8 +76,7 @@ def test_a_walk_ends_where_sumo_says(
 
 
 def test_positions_are_stretched_as_sumo_stretches_them(grid: WalkNetwork) -> None:
-    lane = grid.lane_of("B1C1")
-    assert lane is not None
+    lane = grid._survey.edges["B1C1"].lane
     assert math.dist(*lane.shape[[0, -1]]) != pytest.approx(lane.length / 2)
     route = walk(grid, ["B1C1"], arrival=lane.length / 2)
     np.testing.assert_allclose(route.waypoints[-1], lane.shape.mean(axis=0), atol=1e-9)
@@ -189,7 +186,7 @@ def _lane_beside(network: WalkNetwork, area: str) -> str:
     """An edge whose sidewalk ends or begins at a walkingarea."""
     pairs = [{link.source, link.target} for link in network._survey.links]
     ends = [edge for pair in pairs if area in pair for edge in sorted(pair)]
-    return next(edge for edge in ends if network.lane_of(edge) is not None)
+    return next(edge for edge in ends if edge in network._survey.edges)
 
 
 # --- already inside a junction ---------------------------------------------------------------
@@ -264,7 +261,7 @@ def test_without_walkingareas_one_goes_straight_over_the_junction(bare: WalkNetw
     route = walk(bare, AVENUE)
     assert route.gaps == 0
     assert (route.signals == -1).all()
-    y = bare.lane_of("A1B1").shape[0, 1]  # type: ignore[union-attr]
+    y = bare._survey.edges["A1B1"].lane.shape[0, 1]
     np.testing.assert_allclose(route.waypoints[:, 1], y)
 
 

@@ -1,4 +1,7 @@
-"""Which vehicles a scenario's files declare: a vehicle that nobody declared will never depart."""
+"""The ids of the vehicles and persons that a scenario's files declare, however late they depart.
+
+A vehicle that no file declares will never depart; a person that is added needs a name of its own.
+"""
 
 from __future__ import annotations
 
@@ -13,13 +16,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-_DECLARATION = re.compile(rb"<(vehicle|trip|flow)\s[^>]*?\bid\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_VEHICLE = re.compile(rb"<(vehicle|trip|flow)\s[^>]*?\bid\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_PERSON = re.compile(rb"<(?:person|personFlow)\s[^>]*?\bid\s*=\s*[\"']([^\"']*)")
 _CALIBRATOR = b"<calibrator"  # inserts vehicles of names of its own
-_COMPARED = 5_000  # declared names, for a guess at what was meant
+_COMPARED = 5_000  # declared names among which a similar one is looked for
 
 
 def undeclared(name: str, files: Iterable[Path]) -> str | None:
-    """What to say if no vehicle ``name`` is declared in ``files``; None if one is, or may be.
+    """What to say if no vehicle ``name`` is declared in ``files``; None if one is or may be.
 
     Args:
         name: SUMO's id of a vehicle; one of a flow is the flow's id, a point and a number.
@@ -45,7 +49,7 @@ def undeclared(name: str, files: Iterable[Path]) -> str | None:
 
 
 def declares(name: str, files: Iterable[Path]) -> bool:
-    """Whether a vehicle ``name`` is declared in ``files`` for sure."""
+    """Whether a vehicle ``name`` is certainly declared in ``files``."""
     flow, _, number = name.rpartition(".")
     wanted = {(b"vehicle", name), (b"trip", name)}
     if number.isdecimal():
@@ -57,7 +61,7 @@ def declares(name: str, files: Iterable[Path]) -> bool:
 
 
 def _declarations(files: Iterable[Path]) -> Iterator[tuple[bytes, str]]:
-    """Kind and id of every vehicle, trip and flow; a calibrator is told by its kind alone."""
+    """Kind and id of every vehicle, trip and flow; of a calibrator the kind alone."""
     for file in files:
         for text in pieces(file):
             yield from _in(text)
@@ -66,6 +70,28 @@ def _declarations(files: Iterable[Path]) -> Iterator[tuple[bytes, str]]:
 def _in(text: bytes) -> Iterator[tuple[bytes, str]]:
     if _CALIBRATOR in text:
         yield _CALIBRATOR, ""
-    for match in _DECLARATION.finditer(text):
+    for match in _VEHICLE.finditer(text):
         name = match[2] if match[2] is not None else match[3]
         yield match[1], unescape(name.decode("utf-8", "replace"))
+
+
+def free_prefix(wanted: str, files: Iterable[Path]) -> str:
+    """``wanted``, or a longer prefix with which no person's id begins in any of ``files``.
+
+    Args:
+        wanted: names are to be this with a number.
+        files: everything that SUMO reads, compressed or not.
+    """
+    names: set[bytes] = set()
+    start = wanted.encode()
+    try:
+        for file in files:
+            for text in pieces(file):
+                found = (match[1] for match in _PERSON.finditer(text))
+                names.update(name for name in found if start in name)
+    except (OSError, EOFError):
+        return wanted  # SUMO will say what is wrong with the file
+    prefix = wanted
+    while any(name.startswith(prefix.encode()) for name in names):
+        prefix = f"added_{prefix}"
+    return prefix
