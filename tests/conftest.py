@@ -53,9 +53,9 @@ def zoo(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -
     """FMUs of every kind, built on demand (tests/support/fmus/README.md is the menu)."""
     if importlib.util.find_spec("ziglang") is None:
         pytest.skip("ziglang is not installed: pip install giveway[build]")
-    assert pytestconfig.cache is not None
     from support.fmus import Zoo
 
+    assert pytestconfig.cache is not None
     return Zoo(tmp_path_factory.mktemp("zoo"), pytestconfig.cache.mkdir("fmu_zoo"))
 
 

@@ -9,10 +9,9 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
-
 from support.fmus import FAULTS
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parent / "fmus"
 ROLES = ("force", "drive_brake", "acceleration", "throttle_brake", "speed_setpoint")
 VERSIONS_AND_KINDS = [
     ("1.0", "co-simulation"),
