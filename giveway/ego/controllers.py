@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import dataclasses
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from controller import (
     ControllerError,
@@ -24,8 +25,15 @@ from giveway.ego.vehicle import model_margin
 from giveway.errors import ControlError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from _typeshed import DataclassInstance
+
     from controller import Controller
     from giveway.config import EgoRunConfig
+    from giveway.config.option import Section
+
+Parameters = TypeVar("Parameters", bound="DataclassInstance")
 
 
 def make_controller(config: EgoRunConfig, time_step: float) -> Controller:
@@ -38,107 +46,88 @@ def make_controller(config: EgoRunConfig, time_step: float) -> Controller:
     Raises:
         ControlError: its parameters contradict each other, or its solver is missing.
     """
-    regulation = config.regulation
     try:
-        if config.controller == "pid-tuned":
-            return SpeedController(None, _tuned_pid(config, time_step))
-        if config.controller == "mpc":
-            return _planning(config, time_step)
-        pid = Pid(
-            PidParameters(
-                K_p=config.pid.proportional_gain,
-                K_i=config.pid.integral_gain,
-                K_d=config.pid.derivative_gain,
-                reference_speed=regulation.reference_speed,
-                safe_distance=regulation.safe_distance,
-                buffer_distance=config.pid.buffer_distance,
-                force_limit=config.mpc.force_limit,
-            ),
-            time_step,
-        )
-        if not config.optimises:
-            return SpeedController(None, pid)
-        model = LongitudinalModel(
-            mass=config.vehicle.mass,
-            friction=config.vehicle.friction,
-            time_step=time_step,
-        )
-        mpc = Mpc(
-            model,
-            MpcParameters(
-                horizon=config.mpc.horizon,
-                reference_speed=regulation.reference_speed,
-                safe_distance=regulation.safe_distance + model_margin(config, time_step),
-                speed_min=config.mpc.speed_min,
-                speed_max=config.mpc.speed_max,
-                force_limit=config.mpc.force_limit,
-                force_rate_limit=config.mpc.force_rate_limit,
-                solver=config.mpc.solver,
-            ),
-        )
+        return _CONTROLLERS[config.controller](config, time_step)
     except ControllerError as error:
         raise ControlError(str(error)) from error
-    return SpeedController(mpc, pid)
 
 
-def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
-    """The well-tuned PID, with the actuator's limits of the MPC."""
-    regulation, tuned, vehicle = config.regulation, config.tuned_pid, config.vehicle
-    return TunedPid(
-        TunedPidParameters(
-            bandwidth=tuned.bandwidth,
-            damping=tuned.damping,
-            acceleration_feed_forward=tuned.acceleration_feed_forward,
-            force_limit=config.mpc.force_limit,
-            force_rate_limit=config.mpc.force_rate_limit,
-            reference=ReferenceParameters(
-                reference_speed=regulation.reference_speed,
-                safe_distance=regulation.safe_distance,
-                profile=tuned.profile,
-                buffer_distance=tuned.buffer_distance,
-                deceleration=tuned.deceleration,
-                approach_lag=tuned.approach_lag,
-                acceleration=tuned.acceleration,
-                jerk=tuned.jerk,
-                firm_deceleration=tuned.firm_deceleration,
-                last_distance=tuned.last_distance,
-            ),
-        ),
-        LongitudinalModel(vehicle.mass, vehicle.friction, time_step),
-    )
+def filled(kind: type[Parameters], *tables: Section, **own: Any) -> Parameters:
+    """Parameters of a controller, taken from the tables' options of the same names.
 
-
-def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
-    """The planning MPC, with the tuned PID where a hard corridor leaves it no plan."""
-    regulation, planner, limits = config.regulation, config.planner, config.mpc
-    margin = model_margin(config, time_step)
-    parameters = PlannerParameters(
-        horizon=plan_steps(config, time_step),
-        reference_speed=regulation.reference_speed,
-        safe_distance=regulation.safe_distance + margin,
-        speed_max=limits.speed_max,
-        force_limit=limits.force_limit,
-        force_rate_limit=limits.force_rate_limit,
-        effort_weight=planner.effort_weight,
-        jerk_weight=planner.jerk_weight,
-        block_growth=planner.block_growth,
-        gap_choice=planner.gap_choice,
-        soft=planner.soft,
-        terminal=planner.terminal,
-        solver=limits.solver,
-        manoeuvres=ManoeuvreParameters(
-            deceleration=planner.deceleration,
-            minimum_distance=planner.minimum_distance + margin,
-            nearness_weight=planner.nearness_weight,
-            conflict_weight=planner.conflict_weight,
-            threat_weight=planner.threat_weight,
-            calm_time=planner.calm_time,
-        ),
-    )
-    model = LongitudinalModel(config.vehicle.mass, config.vehicle.friction, time_step)
-    return PlanningController(Planner(model, parameters), _tuned_pid(config, time_step))
+    Args:
+        kind: a dataclass; what no table has keeps its default.
+        tables: of the configuration; the first that has an option counts.
+        own: the parameters that are no option as they stand.
+    """
+    for field in dataclasses.fields(kind):
+        for table in tables:
+            if field.name not in own and field.name in type(table).model_fields:
+                own[field.name] = getattr(table, field.name)
+    return kind(**own)
 
 
 def plan_steps(config: EgoRunConfig, time_step: float) -> int:
     """The planner's horizon in steps."""
     return max(4, round(config.planner.horizon / time_step))
+
+
+def _paper_mpc(config: EgoRunConfig, time_step: float) -> SpeedController:
+    """The paper's MPC, with the paper's PID where the QP has no solution."""
+    safe_distance = config.regulation.safe_distance + model_margin(config, time_step)
+    parameters = filled(MpcParameters, config.mpc, config.regulation, safe_distance=safe_distance)
+    return SpeedController(Mpc(_model(config, time_step), parameters), _pid(config, time_step))
+
+
+def _pid(config: EgoRunConfig, time_step: float) -> Pid:
+    """The paper's PID, with the force limit of the MPC."""
+    pid = config.pid
+    parameters = filled(
+        PidParameters,
+        config.regulation,
+        pid,
+        config.mpc,
+        K_p=pid.proportional_gain,
+        K_i=pid.integral_gain,
+        K_d=pid.derivative_gain,
+    )
+    return Pid(parameters, time_step)
+
+
+def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
+    """The well-tuned PID, with the actuator's limits of the MPC."""
+    reference = filled(ReferenceParameters, config.regulation, config.tuned_pid)
+    parameters = filled(TunedPidParameters, config.tuned_pid, config.mpc, reference=reference)
+    return TunedPid(parameters, _model(config, time_step))
+
+
+def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
+    """The planning MPC, with the tuned PID where a hard corridor leaves it no plan."""
+    regulation, planner = config.regulation, config.planner
+    margin = model_margin(config, time_step)
+    parameters = filled(
+        PlannerParameters,
+        regulation,
+        planner,
+        config.mpc,
+        horizon=plan_steps(config, time_step),
+        safe_distance=regulation.safe_distance + margin,
+        manoeuvres=filled(
+            ManoeuvreParameters, planner, minimum_distance=planner.minimum_distance + margin
+        ),
+    )
+    return PlanningController(
+        Planner(_model(config, time_step), parameters), _tuned_pid(config, time_step)
+    )
+
+
+def _model(config: EgoRunConfig, time_step: float) -> LongitudinalModel:
+    return filled(LongitudinalModel, config.vehicle, time_step=time_step)
+
+
+_CONTROLLERS: dict[str, Callable[[EgoRunConfig, float], Controller]] = {
+    "mpc": _planning,
+    "pid-tuned": lambda config, h: SpeedController(None, _tuned_pid(config, h)),
+    "mpc-paper": _paper_mpc,
+    "pid-paper": lambda config, h: SpeedController(None, _pid(config, h)),
+}

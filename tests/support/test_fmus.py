@@ -9,6 +9,7 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
+
 from support.fmus import FAULTS
 
 HERE = Path(__file__).parent / "fmus"

@@ -1,0 +1,81 @@
+"""The configuration's defaults are those of the rooms that use them, which cannot import it."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from controller import (
+    LongitudinalModel,
+    ManoeuvreParameters,
+    MpcParameters,
+    PidParameters,
+    PlannerParameters,
+    ReferenceParameters,
+    SafetyParameters,
+    TunedPidParameters,
+)
+from fmus.sources.parameters import ControllerParameters
+from giveway.config import EgoRunConfig
+from giveway.config.sections import DEFAULT_SPEED
+from giveway.ego.controllers import filled
+from giveway.ego.waiting import safety_parameters
+from giveway.geometry.bodies import BODY
+from pedestrian_model import SIM
+
+STEP = 0.05  # [s]
+CONFIG = EgoRunConfig()
+
+
+@pytest.mark.parametrize(
+    ("kind", "tables", "own"),
+    [
+        (LongitudinalModel, ["vehicle"], {"time_step": STEP}),
+        (MpcParameters, ["mpc", "regulation"], {}),
+        (PidParameters, ["regulation", "pid", "mpc"], {}),
+        (ReferenceParameters, ["regulation", "tuned_pid"], {}),
+        (TunedPidParameters, ["tuned_pid", "mpc"], {}),
+        (ManoeuvreParameters, ["planner"], {}),
+        (PlannerParameters, ["regulation", "planner", "mpc"], {"horizon": 60}),
+    ],
+    ids=lambda value: getattr(value, "__name__", None),
+)
+def test_the_controllers_defaults_are_the_configurations(kind, tables, own):
+    assert filled(kind, *(getattr(CONFIG, table) for table in tables), **own) == kind()
+
+
+def test_the_paper_s_gains_are_the_configurations():
+    pid, gains = PidParameters(), CONFIG.pid
+    assert (pid.K_p, pid.K_i, pid.K_d) == (
+        gains.proportional_gain,
+        gains.integral_gain,
+        gains.derivative_gain,
+    )
+    assert PlannerParameters().horizon == round(CONFIG.planner.horizon / STEP)
+    assert CONFIG.regulation.reference_speed == DEFAULT_SPEED
+
+
+def test_the_safety_layers_defaults_are_the_configurations_and_the_people_s():
+    assert safety_parameters(CONFIG, STEP) == SafetyParameters()
+    assert SafetyParameters().width == BODY.width
+    assert SafetyParameters().walking_speed == SIM.max_speed
+
+
+def test_the_exported_controllers_defaults_are_the_configurations():
+    exported = dataclasses.asdict(ControllerParameters())
+    ours = {
+        **CONFIG.regulation.model_dump(),
+        **CONFIG.vehicle.model_dump(),
+        **CONFIG.pid.model_dump(),
+        **CONFIG.mpc.model_dump(),
+    }
+    shared = exported.keys() & ours.keys()
+    assert len(shared) >= 10
+    assert {name: exported[name] for name in shared} == {name: ours[name] for name in shared}
+
+
+def test_an_option_reaches_the_parameter_of_its_name():
+    config = EgoRunConfig.model_validate({"mpc": {"force_limit": 5000.0}})
+    assert filled(PidParameters, config.regulation, config.pid, config.mpc).force_limit == 5000.0
+    assert filled(PidParameters, config.mpc, force_limit=6000.0).force_limit == 6000.0
