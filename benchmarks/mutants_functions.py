@@ -29,7 +29,7 @@ class Function:
         package: the import package.
         file: its path in the tree.
         name: with the names of the classes and functions round it, joined by dots.
-        line: in which ``def`` stands.
+        line: in which ``def`` stands; 0 for a name that is no function's.
         compiled: by numba: Python never executes it, so that no recorder sees it.
         uses: names that its body mentions, as they are called where they are defined.
         sites: where it can be given a fault.
@@ -153,9 +153,7 @@ class _File:
                 uses = self._uses([node.value])
                 for target in targets:
                     if isinstance(target, ast.Name) and uses:
-                        yield Function(
-                            self._package, self._file, target.id, node.lineno, True, uses, ()
-                        )
+                        yield Function(self._package, self._file, target.id, 0, True, uses, ())
 
     def _uses(self, nodes: Sequence[ast.AST]) -> frozenset[str]:
         return frozenset(self._aliases.get(n, n) for node in nodes for n in names_in(node))

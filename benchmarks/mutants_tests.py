@@ -17,6 +17,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Final
 
 import psutil
+from filelock import FileLock, Timeout
 from mutants_functions import PACKAGES, Function, functions_of
 
 if TYPE_CHECKING:
@@ -74,6 +75,7 @@ class Place:
         self.tree = self.folder / "tree"
         self.kernels = self.folder / "kernels"
         self._token = uuid.uuid4().hex
+        self._lock = self._own()
         if not self.tree.exists():
             unfinished = self.folder / "unfinished"
             shutil.rmtree(unfinished, ignore_errors=True)
@@ -81,6 +83,15 @@ class Place:
             unfinished.rename(self.tree)
         for name in ("home", "kernels", "functions"):
             (self.folder / name).mkdir(exist_ok=True)
+
+    def _own(self) -> FileLock:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        lock = FileLock(self.folder / "lock", timeout=0)
+        try:
+            lock.acquire()
+        except Timeout:
+            sys.exit(f"{self.folder}: another process works there; give another --place")
+        return lock
 
     def pytest(
         self,

@@ -41,6 +41,7 @@ class Verdict:
         seconds: spent on it, in all calls.
         passed: test files that do not find it.
         line: the changed line, should it not be the drawn one.
+        ignored: tests that failed with the mutant, and then without it.
     """
 
     mutant: str
@@ -49,6 +50,7 @@ class Verdict:
     seconds: float = 0.0
     passed: list[str] = field(default_factory=list)
     line: str = ""
+    ignored: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,12 @@ class Trial:
     functions: Sequence[Function]
     mapped: Mapping[str, Mapped]
     limit: float
+
+    @property
+    def recompiles(self) -> bool:
+        """Whether numba compiles kernels anew: there are some in the file that is changed."""
+        file = self.placed.function.file
+        return any(f.compiled and f.line and f.file == file for f in self.functions)
 
     def files(self, tree: Path) -> list[str]:
         """Test files that execute the function: those that name it first, then the shortest."""
@@ -98,32 +106,32 @@ def try_mutant(here: Place, trial: Trial, before: Verdict | None) -> Verdict:
     """
     passed = [] if before is None else list(before.passed)
     spent = 0.0 if before is None else before.seconds
+    ignored = [] if before is None else list(before.ignored)
     start = monotonic()
     word, by = "", ""
     files = [f for f in trial.files(here.tree) if f not in passed]
     for batch in _batches(files, trial.mapped):
         left = trial.limit - spent - (monotonic() - start)
-        word, by = _try_tests(here, trial, batch, left)
+        word, by = _try_tests(here, trial, batch, left, ignored)
         if word:
             break
         passed += batch
     seconds = round(spent + monotonic() - start, 1)
     line = "" if trial.placed.exact else trial.placed.site.line
     word = word or ("survived" if passed else "unexecuted")
-    return Verdict(trial.mutant.name, word, by, seconds, passed, line)
+    return Verdict(trial.mutant.name, word, by, seconds, passed, line, ignored)
 
 
-def _try_tests(here: Place, trial: Trial, files: Sequence[str], left: float) -> tuple[str, str]:
+def _try_tests(
+    here: Place, trial: Trial, files: Sequence[str], left: float, ignored: list[str]
+) -> tuple[str, str]:
     """The verdict and the test that spoke it; nothing, if these files pass."""
-    function, ignored = trial.placed.function, list[str]()
-    start = monotonic()
-    while True:
-        granted = _SLOWER * sum(trial.mapped[f].seconds for f in files) + _PATIENCE
-        granted += _COMPILING if function.compiled else 0.0
-        remaining = left - (monotonic() - start)
-        if remaining <= 0.0:
-            return "unfinished", ""
-        outcome = _with_mutant(here, trial, [*files, *ignored], min(granted, remaining))
+    granted = _SLOWER * sum(trial.mapped[f].seconds for f in files) + _PATIENCE
+    granted += _COMPILING if trial.recompiles else 0.0
+    end = monotonic() + left
+    while (remaining := end - monotonic()) > 0.0:
+        tests = [*files, *(f"--deselect={test}" for test in ignored)]
+        outcome = _with_mutant(here, trial, tests, min(granted, remaining))
         if outcome.passed:
             return "", ""
         if outcome.code == TIMEOUT:
@@ -133,16 +141,16 @@ def _try_tests(here: Place, trial: Trial, files: Sequence[str], left: float) -> 
             return "broken", test
         if "::" not in test or here.pytest([test], granted).code != FAILED:
             return "killed", test
-        ignored.append(f"--deselect={test}")  # it fails without the mutant, too
+        ignored.append(test)
+    return "unfinished", ""
 
 
 def _with_mutant(here: Place, trial: Trial, tests: Sequence[str], limit: float) -> Outcome:
     function = trial.placed.function
     source = (here.tree / function.file).read_bytes()
-    in_its_file = [f for f in trial.functions if f.compiled and f.file == function.file]
     kernels = None
     with ExitStack() as stack:
-        if in_its_file:  # numba compiles them anew, the mutant's changed file being another
+        if trial.recompiles:
             stale = compiled_with(function, trial.functions) if function.compiled else []
             kernels = stack.enter_context(here.kernels_without(stale))
         stack.enter_context(here.changed(function.file, trial.placed.site.applied(source)))
