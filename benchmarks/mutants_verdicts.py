@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 FOUND: Final = ("killed", "broken", "timeout")
 
 _OPEN: Final = ("survived", "unexecuted", "unfinished")
-_BATCH: Final = 60.0  # [s] of tests that share one start of the interpreter
+_BATCH: Final = 30.0  # [s] of tests that share one start of the interpreter
 _SLOWER: Final = 3.0  # so many times the seconds of the map, and
 _PATIENCE: Final = 60.0  # [s] more are granted
 _COMPILING: Final = 240.0  # [s] more where kernels are compiled anew
@@ -126,10 +126,10 @@ def _try_tests(
     here: Place, trial: Trial, files: Sequence[str], left: float, ignored: list[str]
 ) -> tuple[str, str]:
     """The verdict and the test that spoke it; nothing, if these files pass."""
-    granted = _SLOWER * sum(trial.mapped[f].seconds for f in files) + _PATIENCE
-    granted += _COMPILING if trial.recompiles else 0.0
+    expected = sum(trial.mapped[f].seconds for f in files)
+    granted = _SLOWER * expected + _PATIENCE + (_COMPILING if trial.recompiles else 0.0)
     end = monotonic() + left
-    while (remaining := end - monotonic()) > 0.0:
+    while (remaining := end - monotonic()) > expected:
         tests = [*files, *(f"--deselect={test}" for test in ignored)]
         outcome = _with_mutant(here, trial, tests, min(granted, remaining))
         if outcome.passed:
@@ -158,7 +158,7 @@ def _with_mutant(here: Place, trial: Trial, tests: Sequence[str], limit: float) 
 
 
 def _batches(files: Sequence[str], mapped: Mapping[str, Mapped]) -> Iterator[list[str]]:
-    """Test files that run in one pytest: as many as take a minute together, or one."""
+    """Test files that run in one pytest: as many as take half a minute together, or one."""
     batch: list[str] = []
     seconds = 0.0
     for file in files:
