@@ -56,7 +56,7 @@ class Outcome:
         for line in self.output.splitlines():
             if line.startswith(("FAILED ", "ERROR ")):
                 return line.partition(" ")[2].partition(" - ")[0]
-        return self.last_line()
+        return f"pytest died of signal {-self.code}" if self.code < 0 else self.last_line()
 
     def last_line(self) -> str:
         """What pytest said last."""
