@@ -64,11 +64,6 @@ class Observation(NamedTuple):
     vehicles: Array | None = None  # (N, m, 7) all, now and predicted: x, y, heading, speed, front,
     row: int = 0  # rear, width; the ego's own stand in this row (None: there is no other vehicle)
 
-    @property
-    def allowed(self) -> Array:
-        """(N,) [m] how far the ego may have driven at steps 1 ... N; inf: as far as it likes."""
-        return self.obstacle_positions - (self.position + self.safe_distance)
-
 
 class Decision(NamedTuple):
     """The force for [t_k, t_k+1], and how it came about."""

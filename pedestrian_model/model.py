@@ -93,7 +93,8 @@ class CrowdModel:
         """
         if crowd.signals > surroundings.closed.shape[0]:
             raise unknown_signal(crowd, surroundings)
-        self._workspace.reserve(crowd.position.shape[0])
+        if crowd.position.shape[0] > self._workspace.capacity:
+            self._workspace.reserve(crowd.position.shape[0])
         bad = _step.advance(
             (*crowd.state, *crowd.wishes, *surroundings.arrays, *self._workspace.arrays),
             vehicles.array,

@@ -53,6 +53,7 @@ class Planner:
         self, model: LongitudinalModel, parameters: PlannerParameters | None = None
     ) -> None:
         self.model = model
+        self._decay, self._speed_per_force = model.decay, model.speed_per_force
         self.parameters = parameters = parameters or PlannerParameters()
         N = parameters.horizon
         self._search = Search(model, parameters)
@@ -156,7 +157,7 @@ class Planner:
     def _force(self, speed: float, previous_force: float) -> float:
         """What drives the plan's next speed, within the actuator's limits [N]."""
         p = self.parameters
-        force = (self._plan.speed[1] - self.model.decay * speed) / self.model.speed_per_force
+        force = (self._plan.speed[1] - self._decay * speed) / self._speed_per_force
         if speed > STANDSTILL:
             low, high = previous_force - p.force_rate_limit, previous_force + p.force_rate_limit
             force = min(max(force, low), high)

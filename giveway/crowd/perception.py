@@ -43,7 +43,7 @@ class Perception:
         return not self._noise and self._speed is None
 
     def observe(self, crowd: Crowd) -> Crowd:
-        """The crowd as it is seen; ``crowd`` itself where there is nothing to change.
+        """The crowd as it is seen.
 
         Args:
             crowd: as it is; not changed. Its arrays are shared where they are seen as they are.

@@ -8,31 +8,18 @@ distance, and so is whoever is out of sight: more than 100 m ahead along the pat
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.ego.in_front import closest_ahead, closest_in_sight, vehicles_in_front
+from giveway.ego.leader import Leader, vehicles_in_front
 from giveway.geometry.kernel import kernel
+from giveway.geometry.passage import BEHIND, SIGHT, look, window
 from giveway.geometry.path import body_pose
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.geometry.kernel import Array
     from giveway.geometry.path import EgoPath
-
-    Array = NDArray[np.float64]
-
-
-class Leader(NamedTuple):
-    """The closest vehicle in front."""
-
-    station: float  # [m] of its closest point; inf: none
-    speed: float  # [m/s] along the ego's path, at least 0
-
-
-NO_LEADER = Leader(math.inf, 0.0)
 
 
 class Corridor:
@@ -197,3 +184,66 @@ def fill_poses(
         poses[i, row, 1] = y - 0.5 * length * np.sin(heading)
         poses[i, row, 2] = heading
         poses[i, row, 3] = speeds[i]
+
+
+@kernel
+def closest_in_front(
+    vertices: Array,
+    stations: Array,
+    first: int,
+    last: int,
+    positions: Array,
+    front: float,
+    half_width: float,
+    reach: float,
+) -> tuple[float, bool]:
+    """Station of the closest person in front; can anybody get there by walking ``reach``?"""
+    closest = np.inf
+    reachable = False
+    low_x, high_x = np.min(vertices[first : last + 2, 0]), np.max(vertices[first : last + 2, 0])
+    low_y, high_y = np.min(vertices[first : last + 2, 1]), np.max(vertices[first : last + 2, 1])
+    margin = half_width + reach
+    if first == 0 or last == len(vertices) - 2:
+        margin += SIGHT  # the path goes on straight beyond its ends
+    for j in range(positions.shape[0]):
+        x, y = positions[j, 0], positions[j, 1]
+        if x < low_x - margin or x > high_x + margin or y < low_y - margin or y > high_y + margin:
+            continue
+        station, near = look(vertices, stations, first, last, x, y, front, half_width, reach)
+        reachable |= near
+        closest = min(closest, station)
+    return closest, reachable
+
+
+@kernel
+def closest_in_sight(
+    vertices: Array,
+    stations: Array,
+    positions: Array,
+    front: float,
+    half_width: float,
+    reach: float,
+) -> tuple[float, bool]:
+    """As :func:`closest_in_front`, on the path within sight."""
+    first, last = window(stations, front, max(BEHIND, reach))
+    return closest_in_front(vertices, stations, first, last, positions, front, half_width, reach)
+
+
+@kernel
+def closest_ahead(
+    vertices: Array,
+    stations: Array,
+    positions: Array,
+    front: float,
+    advance: float,
+    half_width: float,
+    reach: float,
+    closest: Array,
+) -> None:
+    """Fill ``closest[i]`` for the predicted ``positions[i]`` at step i + 1."""
+    first, last = window(stations, front, max(BEHIND, reach))
+    for i in range(positions.shape[0]):
+        at = front + (i + 1) * advance
+        closest[i], _ = closest_in_front(
+            vertices, stations, first, last, positions[i], at, half_width, 0.0
+        )

@@ -10,8 +10,9 @@ import numpy as np
 from controller import Observation
 from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
-from giveway.ego.corridor import NO_LEADER, Corridor, Leader
+from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight
+from giveway.ego.leader import NO_LEADER, Leader
 from giveway.ego.path_view import PathView
 from giveway.ego.safety import Guard
 from giveway.errors import ControlError, VehicleError
@@ -101,14 +102,15 @@ class Ego:
         self._interaction = 0.0 if predictor is None else predictor.parameters.interaction_radius
         self._view = PathView(path)
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
-        self._perception = Perception(config)
+        perception = Perception(config)
+        self._perception = None if perception.exact else perception
         safety = waiting.safety
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
         self._foresight = self._foresee(waiting)
         self._force = 0.0
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
-        self._heed_lights = config.regulation.traffic_lights
+        self._heed_lights = config.regulation.traffic_lights and bool(lights.systems)
 
     def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
         """Answers the planning controller how pedestrians would react to a manoeuvre."""
@@ -166,10 +168,12 @@ class Ego:
             surroundings: the walls and lights that they heed.
         """
         front, speed, corridor = self.front, self.vehicle.speed, self.corridor
-        truth, crowd = crowd, self._perception.observe(crowd)
+        truth, perception = crowd, self._perception
+        if perception is not None:
+            crowd = perception.observe(truth)
         person, reachable = corridor.closest_now(crowd.position, front)
         closest = person
-        if not self._perception.exact:
+        if perception is not None:
             closest, _ = corridor.closest_now(truth.position, front)
         ahead = corridor.nobody
         predictor, predicted, whom, foresight = self._predictor, None, None, None

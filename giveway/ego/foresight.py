@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from controller import Prospect
-from giveway.ego.corridor import fill_poses
-from giveway.ego.in_front import closest_in_front, window
+from giveway.ego.corridor import closest_in_front, fill_poses
 from giveway.ego.threats import Alarm, conflicts_and_calm
 from giveway.geometry.kernel import kernel
+from giveway.geometry.passage import window
 from giveway.geometry.path import body_pose
 from giveway.metrics.conflicts import CRITICAL_TTC
 

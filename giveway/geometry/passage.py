@@ -5,9 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.path import segment_at
 
 SIGHT = 100.0
 """[m] along the path; persons and things farther ahead count as out of sight."""
+
+BEHIND = 10.0
+"""[m] behind the front bumper from which on pedestrians and vehicles are looked for."""
 
 
 @kernel
@@ -65,3 +69,9 @@ def look(
         if front < station < closest and distance <= half_width:
             closest = station
     return closest, reachable
+
+
+@kernel
+def window(stations: Array, front: float, behind: float) -> tuple[int, int]:
+    """The first and last segment of the path that lie within sight, from ``behind`` [m] on."""
+    return segment_at(stations, front - behind), segment_at(stations, front + SIGHT)

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from giveway.ego.corridor import NO_LEADER, Corridor, Leader
-from giveway.ego.in_front import closest_in_front
+from giveway.ego.corridor import Corridor, closest_in_front
+from giveway.ego.leader import NO_LEADER, Leader
 from giveway.geometry.passage import SIGHT
 from giveway.geometry.path import EgoPath
 

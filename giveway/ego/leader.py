@@ -1,93 +1,32 @@
-"""The kernels that find who is in front, as :mod:`giveway.ego.corridor` defines it."""
+"""The closest vehicle in front, as :mod:`giveway.ego.corridor` defines what is in front."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from math import inf
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from giveway.geometry.kernel import kernel
-from giveway.geometry.passage import SIGHT, look
+from giveway.geometry.passage import BEHIND, SIGHT, look, window
 from giveway.geometry.path import body_pose, project, segment_at
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from giveway.geometry.kernel import Array
 
-    Array = NDArray[np.float64]
-
-_BEHIND = 10.0  # [m] so far back, or as far as people walk in the horizon, they are looked for
 _ONCOMING = -0.8  # cosine of the angle to the ego's path there
 _OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
 _FINEST_OUTLINE = 0.1  # [m] and at least
 
 
-@kernel
-def closest_in_front(
-    vertices: Array,
-    stations: Array,
-    first: int,
-    last: int,
-    positions: Array,
-    front: float,
-    half_width: float,
-    reach: float,
-) -> tuple[float, bool]:
-    """Station of the closest person in front; can anybody get there by walking ``reach``?"""
-    closest = np.inf
-    reachable = False
-    low_x, high_x = np.min(vertices[first : last + 2, 0]), np.max(vertices[first : last + 2, 0])
-    low_y, high_y = np.min(vertices[first : last + 2, 1]), np.max(vertices[first : last + 2, 1])
-    margin = half_width + reach
-    if first == 0 or last == len(vertices) - 2:
-        margin += SIGHT  # the path goes on straight beyond its ends
-    for j in range(positions.shape[0]):
-        x, y = positions[j, 0], positions[j, 1]
-        if x < low_x - margin or x > high_x + margin or y < low_y - margin or y > high_y + margin:
-            continue
-        station, near = look(vertices, stations, first, last, x, y, front, half_width, reach)
-        reachable |= near
-        closest = min(closest, station)
-    return closest, reachable
+class Leader(NamedTuple):
+    """The closest vehicle in front."""
+
+    station: float  # [m] of its closest point; inf: none
+    speed: float  # [m/s] along the ego's path, at least 0
 
 
-@kernel
-def window(stations: Array, front: float, behind: float) -> tuple[int, int]:
-    """The first and last segment of the path that lie within sight, from ``behind`` [m] on."""
-    return segment_at(stations, front - behind), segment_at(stations, front + SIGHT)
-
-
-@kernel
-def closest_in_sight(
-    vertices: Array,
-    stations: Array,
-    positions: Array,
-    front: float,
-    half_width: float,
-    reach: float,
-) -> tuple[float, bool]:
-    """As :func:`closest_in_front`, on the path within sight."""
-    first, last = window(stations, front, max(_BEHIND, reach))
-    return closest_in_front(vertices, stations, first, last, positions, front, half_width, reach)
-
-
-@kernel
-def closest_ahead(
-    vertices: Array,
-    stations: Array,
-    positions: Array,
-    front: float,
-    advance: float,
-    half_width: float,
-    reach: float,
-    closest: Array,
-) -> None:
-    """Fill ``closest[i]`` for the predicted ``positions[i]`` at step i + 1."""
-    first, last = window(stations, front, max(_BEHIND, reach))
-    for i in range(positions.shape[0]):
-        at = front + (i + 1) * advance
-        closest[i], _ = closest_in_front(
-            vertices, stations, first, last, positions[i], at, half_width, 0.0
-        )
+NO_LEADER = Leader(inf, 0.0)
 
 
 @kernel
@@ -141,7 +80,7 @@ def vehicles_in_front(
     drive through us.
     """
     N = ahead.shape[0]
-    first, last = window(stations, front, _BEHIND)
+    first, last = window(stations, front, BEHIND)
     ahead[:] = np.inf
     nearest, its_speed = np.inf, 0.0
     x_0, y_0, _ = body_pose(vertices, stations, headings, front, 0.0)
