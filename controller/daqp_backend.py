@@ -31,8 +31,9 @@ class DaqpBackend:
         try:
             import daqp
         except ImportError as error:
-            msg = "solver 'daqp' is not installed; install it with: pip install 'giveway[daqp]'"
-            raise SolverMissingError(msg) from error
+            raise SolverMissingError(
+                "solver 'daqp' is not installed; install it with: pip install 'giveway[daqp]'"
+            ) from error
         self._problem = problem
         self._daqp = daqp
         self._iteration_limit = iteration_limit

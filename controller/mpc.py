@@ -101,24 +101,21 @@ class Mpc:
             ParameterError: a value is not a number, or the horizon does not fit.
         """
         if len(obstacle_positions) != self.parameters.horizon:
-            msg = (
+            raise ParameterError(
                 f"obstacle_positions has {len(obstacle_positions)} entries: expected "
                 f"{self.parameters.horizon}, one per step of the horizon"
             )
-            raise ParameterError(msg)
         problem = self._problem
         target = self.parameters.reference_speed if reference_speed is None else reference_speed
         if isnan(target):
-            msg = "reference_speed = nan: expected a number [m/s]"
-            raise ParameterError(msg)
+            raise ParameterError("reference_speed = nan: expected a number [m/s]")
         problem.target[:] = target
         code = problem.update(position, speed, previous_force, obstacle_positions)
         if code == NOT_A_NUMBER:
-            msg = (
+            raise ParameterError(
                 f"position = {position} m, speed = {speed} m/s, previous_force = {previous_force} "
                 "N and obstacle_positions: expected numbers"
             )
-            raise ParameterError(msg)
         if code != UNDECIDED:
             return _no_plan(_PROOFS[code], 0)
         outcome, iterations = self._solver.solve()

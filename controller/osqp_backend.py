@@ -65,8 +65,9 @@ class OsqpBackend:
                 max_iter=iteration_limit,
             )
         except (osqp.OSQPException, ValueError) as error:
-            msg = f"OSQP refuses the MPC's problem at set-up ({error}); check [mpc] and [vehicle]"
-            raise SolverSetupError(msg) from error
+            raise SolverSetupError(
+                f"OSQP refuses the MPC's problem at set-up ({error}); check [mpc] and [vehicle]"
+            ) from error
         self._solver = solver._solver  # the wrapper's solve() copies and checks for 20 us
         self._lower = np.empty(count)
         self._upper = np.empty(count)

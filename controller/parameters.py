@@ -26,8 +26,7 @@ def require(condition: bool, name: str, value: object, expected: str) -> None:
         ParameterError: ``condition`` does not hold.
     """
     if not condition:
-        msg = f"{name} = {value}: expected {expected}"
-        raise ParameterError(msg)
+        raise ParameterError(f"{name} = {value}: expected {expected}")
 
 
 def require_positive(name: str, value: float, unit: str) -> None:

@@ -60,8 +60,7 @@ class Pid:
         p, dt = self.parameters, self.time_step
         e = speed - self.reference_speed(gap, limit)
         if not isfinite(e):
-            msg = f"speed = {speed} m/s, gap = {gap} m: expected numbers"
-            raise ParameterError(msg)
+            raise ParameterError(f"speed = {speed} m/s, gap = {gap} m: expected numbers")
         before = e if self._error is None else self._error
         u_p = p.K_p * e
         u_i = p.K_i * e * dt + self._integral

@@ -98,8 +98,7 @@ class TunedPid:
             ParameterError: speed or gap is not a number.
         """
         if not isfinite(speed) or gap != gap or limit != limit:
-            msg = f"speed = {speed} m/s, gap = {gap} m: expected numbers"
-            raise ParameterError(msg)
+            raise ParameterError(f"speed = {speed} m/s, gap = {gap} m: expected numbers")
         p = self.parameters
         if not self._started:
             self._begin(speed, self.model.friction * speed)

@@ -36,5 +36,4 @@ def __getattr__(name: str) -> Any:
         from giveway.config import RunConfig
 
         return RunConfig
-    msg = f"module 'giveway' has no attribute '{name}'"
-    raise AttributeError(msg)
+    raise AttributeError(f"module 'giveway' has no attribute '{name}'")

@@ -26,11 +26,10 @@ def check_rooms() -> None:
         spec = importlib.util.find_spec(room)
         origin = None if spec is None or spec.origin is None else Path(spec.origin).resolve()
         if origin is None or origin.parent.parent != house:
-            msg = (
+            raise InstallationError(
                 f"package '{room}': found {origin or 'nothing'}; expected giveway's own in "
                 f"{house}; take the other off the path, or use a virtual environment of its own"
             )
-            raise InstallationError(msg)
 
 
 def kernel_cache() -> Path:

@@ -55,8 +55,9 @@ def build(name: str, out: Path | None = None) -> Path:
 
 def _run_netconvert(config: Path, output: Path) -> None:
     if not config.is_file():
-        msg = f"{config} is missing: it names the node and edge files that netconvert is to read"
-        raise BuildError(msg)
+        raise BuildError(
+            f"{config} is missing: it names the node and edge files that netconvert is to read"
+        )
     home = _sumo_home()
     command: list[str | Path] = [home / "bin" / "netconvert", "-c", config, "--output-file", output]
     environment = os.environ | {"SUMO_HOME": str(home)}
@@ -65,12 +66,14 @@ def _run_netconvert(config: Path, output: Path) -> None:
             command, capture_output=True, text=True, check=False, env=environment
         )
     except OSError as error:
-        msg = f"netconvert cannot be run: {error}; reinstall 'giveway[build]'"
-        raise BuildError(msg) from error
+        raise BuildError(
+            f"netconvert cannot be run: {error}; reinstall 'giveway[build]'"
+        ) from error
     if result.returncode != 0 or not output.is_file():
         reason = " ".join(result.stderr.split())
-        msg = f"netconvert refused {config}: {reason or f'exit code {result.returncode}'}"
-        raise BuildError(msg)
+        raise BuildError(
+            f"netconvert refused {config}: {reason or f'exit code {result.returncode}'}"
+        )
     sys.stderr.write(result.stderr)  # its warnings are the author's to judge
 
 
@@ -78,8 +81,7 @@ def _sumo_home() -> Path:
     """Find the folder of the eclipse-sumo wheel, whose version the build extra pins."""
     package = importlib.util.find_spec("sumo")
     if package is None or package.origin is None:
-        msg = "netconvert is missing: pip install 'giveway[build]'"
-        raise BuildError(msg)
+        raise BuildError("netconvert is missing: pip install 'giveway[build]'")
     return Path(package.origin).parent
 
 
@@ -88,8 +90,9 @@ def _without_date(network: str, name: str) -> str:
     origin = f"<!-- built from {name}.netccfg by python -m sumo_scenarios.build {name} -->"
     text, replaced = _HEADER.subn(lambda _: origin, network, count=1)
     if replaced != 1:
-        msg = f"{name}.net.xml: netconvert's header was not recognised; is this SUMO 1.28?"
-        raise BuildError(msg)
+        raise BuildError(
+            f"{name}.net.xml: netconvert's header was not recognised; is this SUMO 1.28?"
+        )
     return text if text.endswith("\n") else text + "\n"
 
 

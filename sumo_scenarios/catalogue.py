@@ -54,8 +54,7 @@ def find(name_or_path: str | Path) -> Scenario:
         if path.is_file():
             return _from_config(path)
     except (OSError, RuntimeError) as error:  # RuntimeError: the ~user of a stranger
-        msg = f"scenario {text!r} cannot be read: {error}"
-        raise ScenarioError(msg) from error
+        raise ScenarioError(f"scenario {text!r} cannot be read: {error}") from error
     raise ScenarioError(_unknown(text, bundled))
 
 
@@ -65,16 +64,17 @@ def _from_folder(folder: Path) -> Scenario:
         return _from_config(configs[0])
     if configs:
         names = ", ".join(config.name for config in configs)
-        msg = f"folder {folder} holds {len(configs)} {_CONFIG_SUFFIX} files ({names}): name one"
-        raise ScenarioError(msg)
-    msg = f"folder {folder} holds no {_CONFIG_SUFFIX} file: expected exactly one"
-    raise ScenarioError(msg)
+        raise ScenarioError(
+            f"folder {folder} holds {len(configs)} {_CONFIG_SUFFIX} files ({names}): name one"
+        )
+    raise ScenarioError(f"folder {folder} holds no {_CONFIG_SUFFIX} file: expected exactly one")
 
 
 def _from_config(config_file: Path) -> Scenario:
     if config_file.suffix not in {_CONFIG_SUFFIX, _OLD_CONFIG_SUFFIX}:
-        msg = f"{config_file} is not a scenario: expected a {_CONFIG_SUFFIX} file or its folder"
-        raise ScenarioError(msg)
+        raise ScenarioError(
+            f"{config_file} is not a scenario: expected a {_CONFIG_SUFFIX} file or its folder"
+        )
     name = config_file.stem.removesuffix(".sumo")
     settings_file = config_file.with_name(name + _SETTINGS_SUFFIX)
     has_settings = settings_file.is_file()
@@ -91,11 +91,11 @@ def _description(settings_file: Path) -> str:
     try:
         description = tomllib.loads(settings_file.read_text(encoding="utf-8")).get("description")
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        msg = f"{settings_file} is not valid TOML: {error}"
-        raise ScenarioError(msg) from error
+        raise ScenarioError(f"{settings_file} is not valid TOML: {error}") from error
     if not isinstance(description, str | None):
-        msg = f"{settings_file}: description = {description!r}: expected a line of text"
-        raise ScenarioError(msg)
+        raise ScenarioError(
+            f"{settings_file}: description = {description!r}: expected a line of text"
+        )
     return description or ""
 
 

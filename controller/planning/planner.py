@@ -90,11 +90,10 @@ class Planner:
             ParameterError: a value is not a number.
         """
         if not isfinite(speed + previous_force + fastest):
-            msg = (
+            raise ParameterError(
                 f"speed = {speed} m/s, previous_force = {previous_force} N, fastest = {fastest} "
                 "m/s: expected numbers"
             )
-            raise ParameterError(msg)
         before = self._acceleration(speed, previous_force)
         search = self._search
         seek = search.choose if self.parameters.gap_choice else search.follow

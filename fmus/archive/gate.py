@@ -152,17 +152,19 @@ def _reading(path: Path) -> Iterator[zipfile.ZipFile]:
     except (zipfile.BadZipFile, EOFError, zlib.error) as error:
         what = printable(error)
         if what == "File is not a zip file":
-            msg = f"{path}: not a zip archive, or cut off; expected an FMU; copy or export it again"
-            raise FmuFileError(msg) from None
-        msg = f"{path}: the zip archive is damaged: {what}; copy or export it again"
-        raise FmuArchiveError(msg) from None
+            raise FmuFileError(
+                f"{path}: not a zip archive, or cut off; expected an FMU; copy or export it again"
+            ) from None
+        raise FmuArchiveError(
+            f"{path}: the zip archive is damaged: {what}; copy or export it again"
+        ) from None
     except (NotImplementedError, RuntimeError, ValueError, OverflowError, struct.error) as error:
-        msg = f"{path}: the zip archive cannot be read: {printable(error)}; export the FMU again"
-        raise FmuArchiveError(msg) from None
+        raise FmuArchiveError(
+            f"{path}: the zip archive cannot be read: {printable(error)}; export the FMU again"
+        ) from None
     except OSError as error:
         reason = error.strerror or printable(error)
-        msg = f"{path}: cannot be read: {reason}; expected an FMU (.fmu)"
-        raise FmuFileError(msg) from None
+        raise FmuFileError(f"{path}: cannot be read: {reason}; expected an FMU (.fmu)") from None
 
 
 def _require_file(path: Path) -> os.stat_result:
@@ -269,8 +271,7 @@ def _chunks(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> Iterator[bytes]:
             left -= len(chunk)
             yield chunk
     if left:
-        msg = f"{printable(info.filename)} is cut off"
-        raise zipfile.BadZipFile(msg)
+        raise zipfile.BadZipFile(f"{printable(info.filename)} is cut off")
 
 
 # ---- words ----

@@ -136,11 +136,13 @@ class _LimitedParser:
                     self._refuse(f"a tag of more than {MAX_TOKEN >> 20} MB")
             parser.Parse(b"", True)
         except expat.ExpatError as error:
-            msg = f"{self._where}: not well-formed XML: {printable(error)}; export the model again"
-            raise FmuFileError(msg) from None
+            raise FmuFileError(
+                f"{self._where}: not well-formed XML: {printable(error)}; export the model again"
+            ) from None
         except (LookupError, ValueError) as error:  # an unknown encoding
-            msg = f"{self._where}: {printable(error)}; expected UTF-8; export the model again"
-            raise FmuFileError(msg) from None
+            raise FmuFileError(
+                f"{self._where}: {printable(error)}; expected UTF-8; export the model again"
+            ) from None
 
     def _on_start(self, tag: str, attributes: dict[str, str]) -> None:
         line = self._parser.CurrentLineNumber
@@ -167,5 +169,4 @@ class _LimitedParser:
 
     def _refuse(self, what: str) -> NoReturn:
         line = self._parser.CurrentLineNumber
-        msg = f"{self._where}, line {line}: {what}; no tool exports such a file"
-        raise FmuArchiveError(msg)
+        raise FmuArchiveError(f"{self._where}, line {line}: {what}; no tool exports such a file")

@@ -120,11 +120,10 @@ def identify(
         raise FmuOutputError(f"{path}: {_NOT_A_VEHICLE}; expected more speed with more force")
     model = _rated(found, validation, limits, step_size, horizon)
     if model.r_squared < NO_FIT:
-        msg = (
+        raise FmuOutputError(
             f"{path}: no M and alpha describe it (R² = {model.r_squared:.2f}): its speed does not "
             "follow M v' + alpha v = u; 'giveway fmu check' shows what it does instead"
         )
-        raise FmuOutputError(msg)
     return Identification(
         model=model,
         intervals=found.intervals,
@@ -171,19 +170,17 @@ def _largest_force(opener: Opener, path: Path, force_limit: float, step_size: fl
         if abs(speed[-1] - speed[0]) > 0.02 and abs(gained) > 1e-3:
             break
         if share >= 1.0:
-            msg = (
+            raise FmuOutputError(
                 f"{path}: 2 s of {force:g} N move it by {speed[-1] - speed[0]:.2g} m/s; expected a "
                 "vehicle that drives off; see the variable under [inputs] of the profile, or raise "
                 "--force-limit"
             )
-            raise FmuOutputError(msg)
         share = min(2.0 * share, 1.0)
     if gained < 0.0:
-        msg = (
+        raise FmuOutputError(
             f"{path}: {force:g} N forwards drive it backwards ({speed[-1]:.2g} m/s after 2 s); "
             "turn the sign with `gain = -1.0` under [inputs] (or [outputs.speed]) of the profile"
         )
-        raise FmuOutputError(msg)
     apparent_mass = force * (speed.size - 1 - half) * step_size / gained
     return min(force_limit, HARDEST * apparent_mass)
 

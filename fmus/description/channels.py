@@ -36,20 +36,19 @@ def find_channel(model: Model, place: str, name: str) -> Channel:
         if variable.size == 1:
             return Channel(variable)
         if variable.size == 0:
-            msg = f"{here} variable '{name}' is an array without elements; name another variable"
-            raise FmuVariableError(msg)
-        msg = (
+            raise FmuVariableError(
+                f"{here} variable '{name}' is an array without elements; name another variable"
+            )
+        raise FmuVariableError(
             f"{here} variable '{name}' is an array of {variable.size}; name one element, "
             f"'{name}[1]' to '{name}[{variable.size}]'"
         )
-        raise FmuVariableError(msg)
     element = _ELEMENT.fullmatch(name)
     if element is not None and element["name"] in variables:
         return _element(here, name, variables[element["name"]], int(element["number"]))
     close = get_close_matches(name, variables, n=1)
     hint = f"did you mean '{close[0]}'?" if close else f"it has {known_names(variables)}"
-    msg = f"{here} no variable '{name}' in the FMU; {hint}"
-    raise FmuVariableError(msg)
+    raise FmuVariableError(f"{here} no variable '{name}' in the FMU; {hint}")
 
 
 def _element(here: str, name: str, variable: Variable, number: int) -> Channel:
@@ -60,8 +59,7 @@ def _element(here: str, name: str, variable: Variable, number: int) -> Channel:
         if variable.shape
         else f"'{variable.name}' is no array; leave out the brackets"
     )
-    msg = f"{here} variable '{name}': {what}"
-    raise FmuVariableError(msg)
+    raise FmuVariableError(f"{here} variable '{name}': {what}")
 
 
 def known_names(names: Iterable[str]) -> str:
@@ -92,8 +90,7 @@ def _start_channel(model: Model, name: str, value: Value) -> Channel:
     else:
         problem = _misfit(variable, value)
     if problem:
-        msg = f"{model.path}: start value {name} = {str(value)[:60]}: {problem}"
-        raise FmuVariableError(msg)
+        raise FmuVariableError(f"{model.path}: start value {name} = {str(value)[:60]}: {problem}")
     return channel
 
 

@@ -123,8 +123,9 @@ def _version(root: Element, path: Path) -> str:
     match = VERSIONS.fullmatch(text)
     if match is None:
         given = printable(text, 40) or "nothing"
-        msg = f"{path}: FMI version {given}; expected 1.0, 2.0 or 3.0; export the model for one"
-        raise FmuInterfaceError(msg)
+        raise FmuInterfaceError(
+            f"{path}: FMI version {given}; expected 1.0, 2.0 or 3.0; export the model for one"
+        )
     return match[1]
 
 

@@ -43,25 +43,22 @@ def run_up(vehicle: Drivable, speed: float) -> float:
             return vehicle.time
     if vehicle.speed < first - _BACKWARDS:
         role = vehicle.prepared.wiring.inputs[0].role
-        msg = (
+        raise FmuStartError(
             f"{vehicle.path}: forces forwards drive it backwards (it is at {vehicle.speed:.4g} m/s "
             f"after {_LIMIT:g} s, and not at its initial speed of {speed:g} m/s); turn the sign "
             f"with gain = -1.0 in [inputs.{role}], or in [outputs.speed]"
         )
-        raise FmuStartError(msg)
     if abs(vehicle.speed - first) < _STILL:
-        msg = (
+        raise FmuStartError(
             f"{vehicle.path}: does not reach its initial speed of {speed:g} m/s: no force moves it "
             f"(it is at {vehicle.speed:.4g} m/s after {_LIMIT:g} s); a gear, ignition or brake may "
             f"have to be set under [parameters]{_idle(vehicle)}"
         )
-        raise FmuStartError(msg)
-    msg = (
+    raise FmuStartError(
         f"{vehicle.path}: does not reach its initial speed of {speed:g} m/s within {_LIMIT:g} s "
         f"(it is at {vehicle.speed:.4g} m/s); name its parameter for it, [initial.speed] variable "
         "= ..., or start slower (--ego-initial-speed)"
     )
-    raise FmuStartError(msg)
 
 
 def _idle(vehicle: Drivable) -> str:

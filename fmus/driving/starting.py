@@ -50,24 +50,23 @@ def reach(vehicle: Drivable, speed: float) -> float | None:
     wiring = vehicle.prepared.wiring
     name = names_of(wiring)["speed"]
     if wiring.initial_speed is not None:
-        msg = (
+        raise FmuStartError(
             f"{vehicle.path}: {wiring.initial_speed.channel.name} was set to start at {speed:g} "
             f"m/s, but {name} = {vehicle.speed:.6g} m/s; check the units of both, or leave out "
             "[initial.speed]"
         )
-        raise FmuStartError(msg)
     if not vehicle.prepared.profile.initial.run_up or speed < 0.0:
-        msg = (
+        raise FmuStartError(
             f"{vehicle.path}: {name} starts at {vehicle.speed:.6g} m/s and not at {speed:g} m/s; "
             "name the FMU's parameter for it, [initial.speed] variable = ..., or start at this "
             "speed (--ego-initial-speed)"
         )
-        raise FmuStartError(msg)
     try:
         return run_up(vehicle, speed)
     except (FmuStepError, FmuOutputError) as error:
-        msg = f"{error} (before the start, driving up to the initial speed of {speed:g} m/s)"
-        raise type(error)(msg) from None
+        raise type(error)(
+            f"{error} (before the start, driving up to the initial speed of {speed:g} m/s)"
+        ) from None
 
 
 def require_position(vehicle: Drivable, position: float) -> None:
@@ -79,12 +78,11 @@ def require_position(vehicle: Drivable, position: float) -> None:
     wiring = vehicle.prepared.wiring
     initial = wiring.initial_position
     if initial is not None and not _fits(vehicle.position, position):
-        msg = (
+        raise FmuStartError(
             f"{vehicle.path}: {initial.channel.name} was set to start at {position:g} m, but "
             f"{names_of(wiring)['position']} = {vehicle.position:.6g} m; check the units of both, "
             "or leave out [initial.position]"
         )
-        raise FmuStartError(msg)
 
 
 def _fits(found: float, wanted: float) -> bool:

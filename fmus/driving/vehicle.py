@@ -110,8 +110,9 @@ class VehicleFmu(Drivable):
             raise FmuStateError(self._refusal)
         for quantity, value in (("position", position), ("speed", speed)):
             if not isfinite(value):
-                msg = f"{self.path}: start at a {quantity} of {value}; expected a finite number"
-                raise FmuStartError(msg)
+                raise FmuStartError(
+                    f"{self.path}: start at a {quantity} of {value}; expected a finite number"
+                )
         self._instance.stop()
         self._refuse("has not started; call start() again")
         self._steps = self._earlier = 0
@@ -232,8 +233,7 @@ class VehicleFmu(Drivable):
         self._fail()
         said = self._instance.messages.take() or "without a message"
         end = (self._steps + self._pace.stretch) * self.step_size
-        msg = (
+        raise FmuStepError(
             f"{self.path}: no step from {self.time:.10g} s to {end:.10g} s under {force:g} N: the "
             f"FMU returned '{STATUS_NAMES[status]}', {said}{self._own_step()}"
         )
-        raise FmuStepError(msg)

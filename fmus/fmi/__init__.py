@@ -57,8 +57,9 @@ def load(
         FmuPlatformError: the binary cannot be loaded, or lacks a function that it must have.
     """
     if model.fmi_version not in _CALLS:
-        msg = f"{model.path}: FMI {model.fmi_version}; expected 1.0, 2.0 or 3.0; export it again"
-        raise FmuInterfaceError(msg)
+        raise FmuInterfaceError(
+            f"{model.path}: FMI {model.fmi_version}; expected 1.0, 2.0 or 3.0; export it again"
+        )
     (folder / "resources").mkdir(exist_ok=True)  # named to the FMU even where it has none
     library = Library(folder / binary, model.path)
     try:

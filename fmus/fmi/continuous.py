@@ -60,8 +60,9 @@ class ContinuousSystem:
             status = self._get_states(self._component, x.ctypes.data_as(c_void_p), self._size)
             self._require(status, "get_states")
         if not np.isfinite(x).all():
-            msg = f"state {_first_not_finite(x)} of {self.nx} is {x[_first_not_finite(x) - 1]}"
-            raise IntegrationError(msg)
+            raise IntegrationError(
+                f"state {_first_not_finite(x)} of {self.nx} is {x[_first_not_finite(x) - 1]}"
+            )
         return x
 
     def nominals(self) -> NDArray[np.float64]:
@@ -112,8 +113,9 @@ class ContinuousSystem:
         self._require(status, "get_indicators")
         if not np.isfinite(self._z).all():
             odd = _first_not_finite(self._z)
-            msg = f"event indicator {odd} of {self.nz} is {self._z[odd - 1]} at {time:.9g} s"
-            raise IntegrationError(msg)
+            raise IntegrationError(
+                f"event indicator {odd} of {self.nz} is {self._z[odd - 1]} at {time:.9g} s"
+            )
         return self._z > 0.0
 
     def undefined(self, slope: NDArray[np.float64], time: float) -> str:
@@ -129,8 +131,7 @@ class ContinuousSystem:
 
     def _require(self, status: int, what: str) -> None:
         if status == DISCARD:
-            msg = f"{self._names[what]} discards this point"
-            raise UndefinedError(msg)
+            raise UndefinedError(f"{self._names[what]} discards this point")
         if status not in (0, WARNING):
             raise CallFailedError(self._names[what], status)
 

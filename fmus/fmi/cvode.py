@@ -118,8 +118,7 @@ class Cvode:
             raise problem
         if status < 0:
             why = self._undefined or _REASONS.get(status, f"CVode returned {status}")
-            msg = f"{why}; no step from {self._time:.9g} s is small enough"
-            raise IntegrationError(msg)
+            raise IntegrationError(f"{why}; no step from {self._time:.9g} s is small enough")
         self._time = self._reached.value
         return self._time
 
@@ -155,15 +154,13 @@ class Cvode:
         function.restype = c_void_p
         pointer = function(*arguments, self._context)
         if not pointer:
-            msg = "CVode is out of memory"
-            raise IntegrationError(msg)
+            raise IntegrationError("CVode is out of memory")
         return c_void_p(pointer)
 
     def _require(self, name: str, *arguments: Any) -> None:
         status = self._cvode[name](self._memory, *arguments)
         if status < 0:
-            msg = f"{name} returned {status} at {self._time:.9g} s"
-            raise IntegrationError(msg)
+            raise IntegrationError(f"{name} returned {status} at {self._time:.9g} s")
 
     def _view(self, vector: c_void_p) -> NDArray[np.float64]:
         return self._at_address(self._address(vector))

@@ -38,11 +38,10 @@ class Library:
             self._library = _load_with(path, neighbours, ctypes.DEFAULT_MODE)
         except OSError as error:
             reason = printable(str(error).replace(str(path.parent), "").lstrip("/\\"))
-            msg = (
+            raise FmuPlatformError(
                 f"{fmu}: its binary {printable(path.name)} cannot be loaded: {reason}; "
                 "install what it needs, or export the FMU again for this platform"
-            )
-            raise FmuPlatformError(msg) from error
+            ) from error
 
     def function(self, name: str) -> Function:
         """A function that the FMU must have.
@@ -52,11 +51,10 @@ class Library:
         """
         found = self.optional(name)
         if found is None:
-            msg = (
+            raise FmuPlatformError(
                 f"{self._fmu}: its binary has no function {printable(name)}, which the FMI "
                 "standard demands; export the FMU again"
             )
-            raise FmuPlatformError(msg)
         return found
 
     def optional(self, name: str) -> Function | None:

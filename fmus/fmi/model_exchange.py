@@ -53,11 +53,10 @@ class ModelExchange(Instance):
     ) -> None:
         super().__init__(calls, TOLERANCE if tolerance is None else tolerance)
         if solver == "cvode" and not cvode.available():
-            msg = (
+            raise FmuInterfaceError(
                 f"{self.path}: solver cvode does not run on this platform; "
                 'write `solver = "rk4"` under [fmu] of the profile'
             )
-            raise FmuInterfaceError(msg)
         self._wanted = solver
         self._solver: Solver | None = None
         self._next_event: float | None = None
@@ -135,11 +134,10 @@ class ModelExchange(Instance):
             if happened or (timed and time >= stop - negligible):
                 events += 1
                 if events > EVENTS:
-                    msg = (
+                    raise IntegrationError(
                         f"more than {EVENTS} events between {start:.9g} s and {time:.9g} s: "
                         "it chatters"
                     )
-                    raise IntegrationError(msg)
                 self.calls.enter_event_mode()
                 self._settle(time)
                 self.solver.expect_events()
@@ -164,8 +162,9 @@ class ModelExchange(Instance):
             if not info.again:
                 break
         else:
-            msg = f"its event iteration at {time:.9g} s has not ended after {ROUNDS} rounds"
-            raise IntegrationError(msg)
+            raise IntegrationError(
+                f"its event iteration at {time:.9g} s has not ended after {ROUNDS} rounds"
+            )
         upcoming = info.next_time
         # A time event that is over has just been handled; some FMUs keep naming it.
         later = upcoming is not None and upcoming > time + _resolution(time)
@@ -194,11 +193,10 @@ class ModelExchange(Instance):
                 return time, True
             if time >= stop:
                 return stop, False
-        msg = (
+        raise IntegrationError(
             f"more than {INTERNAL_STEPS} internal steps between {start:.9g} s and {time:.9g} s; "
             f"use {self.solver.remedy} under [fmu]"
         )
-        raise IntegrationError(msg)
 
     def _advance(self, time: float, stop: float, count: int) -> float:
         """One internal step from ``time``; ``count`` have been done since the last event."""

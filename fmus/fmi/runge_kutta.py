@@ -69,8 +69,7 @@ class RungeKutta:
             factor = max(LEAST, SAFETY * error**-0.2) if isfinite(error) else LEAST
             self._next = h * factor
             if self._next < SMALLEST * max(1.0, abs(start)):
-                msg = f"{why}; no step from {start:.9g} s is small enough"
-                raise IntegrationError(msg)
+                raise IntegrationError(f"{why}; no step from {start:.9g} s is small enough")
         grown = h * (min(MOST, SAFETY * error**-0.2) if error > 0.0 else MOST)
         self._next = max(self._next, grown) if last else grown
         self._arrive(start, x, stop if last else start + h, end)
@@ -108,8 +107,7 @@ class RungeKutta:
         self._slope(time + h, x + h * k[2], k[3])
         after: NDArray[np.float64] = x + h / 6.0 * (k[0] + 2.0 * (k[1] + k[2]) + k[3])
         if not np.isfinite(after).all():
-            msg = f"the states leave the range of numbers at {time:.9g} s"
-            raise UndefinedError(msg)
+            raise UndefinedError(f"the states leave the range of numbers at {time:.9g} s")
         return after
 
     def _slope(self, time: float, x: NDArray[np.float64], slope: NDArray[np.float64]) -> None:

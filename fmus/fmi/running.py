@@ -78,8 +78,9 @@ class Instance(ABC):
             self._worst = max(self._worst, error.status)
             reason = f"{error}: {self.messages.take() or 'without a message'}"
             self.stop()
-            msg = f"{self.path}: the FMU does not start: {reason}; {error.remedy}"
-            raise FmuStartError(msg) from error
+            raise FmuStartError(
+                f"{self.path}: the FMU does not start: {reason}; {error.remedy}"
+            ) from error
         except Exception:
             self.stop()
             raise

@@ -78,24 +78,20 @@ def _ready(variable: Variable, ctype: CType, value: Any) -> Any:
     """A value for a ctypes array; ValueError with what was expected."""
     if ctype.type is c_char_p:
         if not isinstance(value, str) or "\0" in value:
-            msg = "a text"
-            raise ValueError(msg)
+            raise ValueError("a text")
         return value.encode()
     number = value if isinstance(value, int | float) else None
     if number is None or (variable.is_real and isinstance(value, bool)) or not isfinite(number):
-        msg = "true or false" if variable.is_boolean else "a finite number"
-        raise ValueError(msg)
+        raise ValueError("true or false" if variable.is_boolean else "a finite number")
     if variable.is_boolean:
         if number not in (0, 1):
-            msg = "true or false"
-            raise ValueError(msg)
+            raise ValueError("true or false")
         return int(number)
     if variable.is_real:
         return float(number)
     low, high = bounds(ctype)
     if number != int(number) or not low <= number <= high:
-        msg = f"a whole number from {low} to {high}"
-        raise ValueError(msg)
+        raise ValueError(f"a whole number from {low} to {high}")
     return int(number)
 
 
@@ -227,11 +223,10 @@ def _converter(ctype: CType) -> Callable[[float], Any]:
 def _type(calls: Calls, channel: Channel) -> CType:
     ctype = calls.types.get(channel.variable.kind)
     if ctype is None or ctype.type is c_char_p:
-        msg = (
+        raise FmuVariableError(
             f"{calls.model.path}: {printable(channel.name)} is a {printable(channel.variable.kind)}"
             "; expected a number or a boolean; name another variable in the profile"
         )
-        raise FmuVariableError(msg)
     return ctype
 
 

@@ -73,8 +73,9 @@ class Vehicle(ABC):
         if self._refusal:
             raise FmuStateError(self._refusal)
         if not isfinite(force):
-            msg = f"{self.path}: force {force} N at {self.time:.10g} s; expected a finite number"
-            raise FmuStepError(msg)
+            raise FmuStepError(
+                f"{self.path}: force {force} N at {self.time:.10g} s; expected a finite number"
+            )
 
     def _refuse(self, reason: str) -> None:
         """Have all steps refused for this reason until the next start."""

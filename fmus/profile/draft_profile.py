@@ -54,11 +54,10 @@ def require_confident(draft: Draft, path: Path) -> VehicleProfile:
     doubts = draft.doubts
     if doubts:
         more = f"; and {len(doubts) - NAMED} more" if len(doubts) > NAMED else ""
-        msg = (
+        raise FmuProfileError(
             f"{path}: needs a vehicle profile: {'; '.join(doubts[:NAMED])}{more}; 'giveway fmu "
             f"inspect {path} --draft car.toml' writes the rest"
         )
-        raise FmuProfileError(msg)
     return make_profile(draft.values, f"{path}: drafted profile")
 
 

@@ -34,11 +34,10 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
     if fmu_step is None:
         return Pace(control_step)
     if fmu_step * _MOST < control_step:
-        msg = (
+        raise FmuProfileError(
             f"an FMU step of {fmu_step:g} s is more than {_MOST} times smaller than the control "
             f"step of {control_step:g} s; change step in [fmu]"
         )
-        raise FmuProfileError(msg)
     substeps = max(1, round(control_step / fmu_step))
     if abs(substeps * fmu_step - control_step) <= _FIT * control_step:
         return Pace(control_step / substeps, substeps=substeps)
@@ -46,12 +45,11 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
     if abs(stretch * control_step - fmu_step) <= _FIT * fmu_step:
         return Pace(stretch * control_step, stretch=stretch)
     near = control_step / max(1, round(control_step / fmu_step))
-    msg = (
+    raise FmuProfileError(
         f"an FMU step of {fmu_step:g} s does not fit the control step of {control_step:g} s; "
         f"expected a whole part or multiple of it: add step = {near:.6g} to [fmu], or change "
         "--time-step"
     )
-    raise FmuProfileError(msg)
 
 
 def divides(part: float, whole: float) -> bool:

@@ -95,8 +95,7 @@ def prepare(
     """
     path = Path(path)
     if not (isfinite(step_size) and step_size > 0.0):
-        msg = f"{path}: step size {step_size:g} s; expected a number above 0"
-        raise FmuVariableError(msg)
+        raise FmuVariableError(f"{path}: step size {step_size:g} s; expected a number above 0")
     model = read_model(path)
     profile = _chosen(model, profile)
     wiring = wire(model, profile, start_values)
@@ -148,12 +147,11 @@ def _pace(path: Path, wanted: float | None, interface: Interface, step_size: flo
     if wanted is None and fixed is not None and not divides(fixed, step_size):
         wanted = fixed
         if not divides(step_size, fixed):
-            msg = (
+            raise FmuProfileError(
                 f"{path}: the FMU has a fixed step of {fixed:g} s, which does not fit the control "
                 f"step of {step_size:g} s; expected a whole part or multiple of it: change "
                 "--time-step, or export the model with another step"
             )
-            raise FmuProfileError(msg)
     try:
         return make_pace(step_size, wanted)
     except FmuProfileError as error:

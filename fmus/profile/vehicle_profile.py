@@ -42,8 +42,7 @@ class Axis(Table):
     @model_validator(mode="after")
     def _invertible(self) -> Axis:
         if self.gain == 0.0:
-            msg = "gain = 0: expected a number that is not 0"
-            raise ValueError(msg)
+            raise ValueError("gain = 0: expected a number that is not 0")
         return self
 
 
@@ -91,13 +90,11 @@ class Inputs(Table):
                 "one of force; drive_force and brake_force; acceleration; throttle and brake; "
                 "speed_setpoint"
             )
-            msg = f"{'; '.join(ways) or 'no input'}: expected {expected}"
-            raise ValueError(msg)
+            raise ValueError(f"{'; '.join(ways) or 'no input'}: expected {expected}")
         for one, other in (("drive_force", "brake_force"), ("throttle", "brake")):
             for present, missing in ((one, other), (other, one)):
                 if getattr(self, present) is not None and getattr(self, missing) is None:
-                    msg = f"{present} without {missing}: add [inputs.{missing}]"
-                    raise ValueError(msg)
+                    raise ValueError(f"{present} without {missing}: add [inputs.{missing}]")
         return self
 
 
@@ -186,8 +183,7 @@ class VehicleProfile(Table):
                     tables.append((f"{name}.", value))
                 elif not _is_value(value):
                     expected = "a finite number, true, false, text, or a list of finite numbers"
-                    msg = f"{name} = {str(value)[:60]}: expected {expected}"
-                    raise ValueError(msg)
+                    raise ValueError(f"{name} = {str(value)[:60]}: expected {expected}")
                 else:
                     flat[name] = value
         return flat
@@ -214,15 +210,16 @@ def read_profile(path: Path) -> VehicleProfile:
     try:
         values = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
-        msg = f"{path}: no such file; 'giveway fmu inspect FMU' prints a draft of a profile"
-        raise FmuProfileError(msg) from None
+        raise FmuProfileError(
+            f"{path}: no such file; 'giveway fmu inspect FMU' prints a draft of a profile"
+        ) from None
     except tomllib.TOMLDecodeError as error:
-        msg = f"{path}: not valid TOML: {error}; mend the line named"
-        raise FmuProfileError(msg) from None
+        raise FmuProfileError(f"{path}: not valid TOML: {error}; mend the line named") from None
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
-        msg = f"{path}: cannot be read ({reason}); expected a vehicle profile (TOML)"
-        raise FmuProfileError(msg) from None
+        raise FmuProfileError(
+            f"{path}: cannot be read ({reason}); expected a vehicle profile (TOML)"
+        ) from None
     return make_profile(values, str(path))
 
 

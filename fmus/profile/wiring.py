@@ -113,11 +113,10 @@ def _input_wires(model: Model, inputs: Inputs) -> tuple[Wire, ...]:
             continue
         found = _wire(model, "inputs", role, axis)
         if found.channel in wires:
-            msg = (
+            raise FmuVariableError(
                 f"{model.path}: [inputs.{role}] variable '{found.channel.name}' is that of "
                 f"[inputs.{wires[found.channel].role}] already; expected another one"
             )
-            raise FmuVariableError(msg)
         wires[found.channel] = found
     return tuple(wires.values())
 
@@ -132,11 +131,10 @@ def _interface(model: Model, wanted: str | None) -> Interface:
         return model.interfaces[first or next(iter(model.interfaces))]
     kind = Kind(wanted)
     if kind not in model.interfaces:
-        msg = (
+        raise FmuInterfaceError(
             f"{model.path}: [fmu] kind = '{wanted}': the FMU has {', '.join(model.interfaces)} "
             "only; change the line, or export the model again"
         )
-        raise FmuInterfaceError(msg)
     return model.interfaces[kind]
 
 
@@ -155,8 +153,9 @@ def _wire(model: Model, table: str, role: str, axis: Axis) -> Wire:
     elif table == "initial" and not variable.settable:
         problem = f"is {variable.causality} and cannot be set before the start; leave it out"
     if problem:
-        msg = f"{model.path}: [{table}.{role}] variable '{channel.name}' {problem}"
-        raise FmuVariableError(msg)
+        raise FmuVariableError(
+            f"{model.path}: [{table}.{role}] variable '{channel.name}' {problem}"
+        )
     return _converted(model, table, role, axis, channel)
 
 
@@ -183,11 +182,10 @@ def _converted(model: Model, table: str, role: str, axis: Axis, channel: Channel
     factor, offset = (unit.factor, unit.offset) if unit is not None else (1.0, 0.0)
     scale, shift = gain * factor, gain * offset + axis.offset
     if not (1.0 / _LARGEST <= abs(scale) <= _LARGEST and abs(shift) <= _LARGEST):
-        msg = (
+        raise FmuProfileError(
             f"{model.path}: [{table}.{role}] variable '{channel.name}' = 1 would be {scale:g} "
             f"{usual} with an offset of {shift:g}; check unit, gain and offset of [{table}.{role}]"
         )
-        raise FmuProfileError(msg)
     return Wire(role, channel, scale, shift, name)
 
 

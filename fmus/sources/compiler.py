@@ -84,17 +84,17 @@ def require_compiler() -> None:
         FmuBuildError: it is missing, or another version is installed.
     """
     if importlib.util.find_spec("ziglang") is None:
-        msg = f"ziglang: not installed; 'pip install ziglang=={ZIG_VERSION}' to build the FMUs"
-        raise FmuBuildError(msg)
+        raise FmuBuildError(
+            f"ziglang: not installed; 'pip install ziglang=={ZIG_VERSION}' to build the FMUs"
+        )
     version = subprocess.run(
         [sys.executable, "-m", "ziglang", "version"], capture_output=True, text=True, check=False
     ).stdout.strip()
     if version != ZIG_VERSION:
-        msg = (
+        raise FmuBuildError(
             f"ziglang {version}: the FMUs' bytes depend on the compiler; "
             f"'pip install ziglang=={ZIG_VERSION}'"
         )
-        raise FmuBuildError(msg)
 
 
 def _fmi_headers() -> Path:
@@ -102,8 +102,7 @@ def _fmi_headers() -> Path:
     spec = importlib.util.find_spec("fmpy")
     folder = Path(spec.origin).parent / "c-code" if spec and spec.origin else None
     if folder is None or not (folder / "fmi3Functions.h").is_file():
-        msg = "FMI headers: not found in FMPy's folder 'c-code'; 'pip install fmpy'"
-        raise FmuBuildError(msg)
+        raise FmuBuildError("FMI headers: not found in FMPy's folder 'c-code'; 'pip install fmpy'")
     return folder
 
 
@@ -112,5 +111,4 @@ def _zig(folder: Path, *arguments: str) -> None:
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         reason = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr)
-        msg = f"zig {' '.join(arguments)}: {reason.strip()}"
-        raise FmuBuildError(msg)
+        raise FmuBuildError(f"zig {' '.join(arguments)}: {reason.strip()}")

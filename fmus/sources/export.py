@@ -45,21 +45,20 @@ def export_controller(
         FmuFileError: the file cannot be written.
     """
     if fmi_version not in CONTROLLER_FILES:
-        msg = f"controller FMU: FMI {fmi_version}: expected one of {', '.join(CONTROLLER_FILES)}"
-        raise FmuBuildError(msg)
+        raise FmuBuildError(
+            f"controller FMU: FMI {fmi_version}: expected one of {', '.join(CONTROLLER_FILES)}"
+        )
     template = bundled_controller(fmi_version)
     try:
         with zipfile.ZipFile(template) as archive:
             members = {name: archive.read(name) for name in archive.namelist()}
     except (OSError, zipfile.BadZipFile) as error:
-        msg = f"{template}: cannot be read ({error}); reinstall giveway"
-        raise FmuBuildError(msg) from error
+        raise FmuBuildError(f"{template}: cannot be read ({error}); reinstall giveway") from error
     members[_DESCRIPTION] = _with_parameters(members[_DESCRIPTION], parameters, fmi_version)
     try:
         write_archive(path, members)
     except OSError as error:
-        msg = f"{path}: cannot be written ({error.strerror or error})"
-        raise FmuFileError(msg) from error
+        raise FmuFileError(f"{path}: cannot be written ({error.strerror or error})") from error
     return path
 
 

@@ -86,8 +86,7 @@ MAY_BE_ZERO: Final = frozenset({"alpha", "d_safe", "d_margin", "v_min", "K_p", "
 
 def _require(good: bool, name: str, value: object, expected: str) -> None:
     if not good:
-        msg = f"controller FMU: {name} = {value}: expected {expected}"
-        raise FmuVariableError(msg)
+        raise FmuVariableError(f"controller FMU: {name} = {value}: expected {expected}")
 
 
 def token_of(build: str, parameters: ControllerParameters) -> str:

@@ -43,11 +43,11 @@ def calibrate_command(
     """
     console = Console(quiet=quiet)
     if out.suffix != SUFFIX:
-        msg = f"--out {out}: expected the name of a preset file, like my_crowd{SUFFIX}"
-        raise ConfigError(msg)
+        raise ConfigError(f"--out {out}: expected the name of a preset file, like my_crowd{SUFFIX}")
     if out.exists() and not force:
-        msg = f"{out}: exists; replace it with --force or name another file with --out"
-        raise ResultsError(msg)
+        raise ResultsError(
+            f"{out}: exists; replace it with --force or name another file with --out"
+        )
     names = [name.strip() for name in parameters.split(",")]
     clips = read_clips(dataset)
     first = parameters_of(start)

@@ -49,8 +49,7 @@ def export_command(
     """
     version = next((known for known in CONTROLLER_FILES if known == fmi), None)
     if version is None:
-        msg = f"--fmi {fmi}: expected {' or '.join(CONTROLLER_FILES)}"
-        raise ConfigError(msg)
+        raise ConfigError(f"--fmi {fmi}: expected {' or '.join(CONTROLLER_FILES)}")
     effective, found = load(layers_of(scenario, config, settings))
     time_step = control_step(effective, read_scenario(found.config_file))
     parameters = _of_all(effective, time_step)
@@ -74,8 +73,7 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
     if len(exports) == 1:
         return next(iter(exports))
     found = "no ego" if not exports else f"egos with {len(exports)} different controllers"
-    msg = f"egos: the configuration has {found}; expected one controller to export"
-    raise ConfigError(msg)
+    raise ConfigError(f"egos: the configuration has {found}; expected one controller to export")
 
 
 def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:

@@ -112,8 +112,7 @@ def _identify(
     try:
         starts = [float(part) for part in speeds.split(",")]
     except ValueError:
-        msg = f"--speeds {speeds}: expected numbers like 0,4,8 [m/s]"
-        raise ConfigError(msg) from None
+        raise ConfigError(f"--speeds {speeds}: expected numbers like 0,4,8 [m/s]") from None
     name = f"{fmu.stem}_identify"
     code = identify_command(
         fmu,

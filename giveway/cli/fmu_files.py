@@ -27,8 +27,7 @@ def require_fmu(path: Path) -> None:
     """
     if not path.is_file():
         what = "a folder" if path.is_dir() else "no such file"
-        msg = f"{path}: {what}; expected an FMU, a file like car.fmu"
-        raise ConfigError(msg)
+        raise ConfigError(f"{path}: {what}; expected an FMU, a file like car.fmu")
 
 
 def require_number(flag: str, value: float, low: float, high: float, unit: str) -> None:
@@ -38,8 +37,9 @@ def require_number(flag: str, value: float, low: float, high: float, unit: str) 
         ConfigError: it is not.
     """
     if not (math.isfinite(value) and low < value <= high):
-        msg = f"{flag} {value:g}: expected a number above {low:g} and up to {high:g} [{unit}]"
-        raise ConfigError(msg)
+        raise ConfigError(
+            f"{flag} {value:g}: expected a number above {low:g} and up to {high:g} [{unit}]"
+        )
 
 
 def profile_in(path: Path | None) -> VehicleProfile | None:

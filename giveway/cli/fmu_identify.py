@@ -68,8 +68,7 @@ def identify_command(
     if profile is None and out is not None and out.exists():
         profile = out
     if out is not None and out.exists() and not force and not _same(out, profile):
-        msg = f"{out}: exists; name another file with -o, or replace it with --force"
-        raise ConfigError(msg)
+        raise ConfigError(f"{out}: exists; name another file with -o, or replace it with --force")
     given = profile_in(profile)
     console = Console()
     try:

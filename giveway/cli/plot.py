@@ -30,11 +30,9 @@ def influence_command(out: Path, speeds: str, *, preset: str, length: float, wid
     parameters = parameters_of(preset)
     for flag, value in (("--length", length), ("--width", width)):
         if not (math.isfinite(value) and 0.0 < value <= 50.0):
-            msg = f"{flag} {value}: expected a number between 0 and 50 [m]"
-            raise ConfigError(msg)
+            raise ConfigError(f"{flag} {value}: expected a number between 0 and 50 [m]")
     if out.suffix.lower() not in _SUFFIXES:
-        msg = f"--out {out}: expected a name that ends with {', '.join(_SUFFIXES)}"
-        raise ConfigError(msg)
+        raise ConfigError(f"--out {out}: expected a name that ends with {', '.join(_SUFFIXES)}")
     shape = VehicleShape(length, width)
     figure = influence_picture(_speeds(speeds), shape, parameters)
     with writing(out, "name another file with --out"):
@@ -48,6 +46,7 @@ def _speeds(text: str) -> list[float]:
     except ValueError:
         speeds = []
     if not speeds or len(speeds) > 12 or not all(abs(speed) <= 60.0 for speed in speeds):
-        msg = f"--speeds '{text}': expected up to 12 numbers between -60 and 60 [m/s], like 0,1,2,4"
-        raise ConfigError(msg)
+        raise ConfigError(
+            f"--speeds '{text}': expected up to 12 numbers between -60 and 60 [m/s], like 0,1,2,4"
+        )
     return speeds

@@ -63,5 +63,6 @@ def writing(file: Path, remedy: str) -> Iterator[None]:
         file.parent.mkdir(parents=True, exist_ok=True)
         yield
     except OSError as error:
-        msg = f"{file}: cannot be written ({error.strerror or error}); {remedy}"
-        raise ResultsError(msg) from error
+        raise ResultsError(
+            f"{file}: cannot be written ({error.strerror or error}); {remedy}"
+        ) from error

@@ -122,11 +122,10 @@ def _require_one_ego(layer: Layer) -> None:
     ego = _ego_of(layer)
     named = [layer.name(("ego", key)) for key in _KINDS_OF_EGO if ego.get(key)]
     if len(named) > 1:
-        msg = (
+        raise ConfigError(
             f"{' and '.join(named)}: contradict each other; expected one of them: a vehicle of the "
             "scenario, an inserted one, or none"
         )
-        raise ConfigError(msg)
 
 
 def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
@@ -168,8 +167,7 @@ def _presets_read(config: RunConfig) -> RunConfig:
             try:
                 parameters_of(preset)
             except ConfigError as error:
-                msg = f"{key}: {error}"
-                raise ConfigError(msg) from error
+                raise ConfigError(f"{key}: {error}") from error
     return config
 
 

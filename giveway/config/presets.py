@@ -40,8 +40,9 @@ def parameters_of(preset: str) -> VciParameters:
     try:
         status = path.stat()
     except OSError as error:
-        msg = f"{path}: no preset file can be read there ({error.strerror}); see giveway calibrate"
-        raise ConfigError(msg) from error
+        raise ConfigError(
+            f"{path}: no preset file can be read there ({error.strerror}); see giveway calibrate"
+        ) from error
     return _read(path, (status.st_mtime_ns, status.st_size))
 
 
@@ -56,8 +57,9 @@ def require_preset_name(preset: str) -> None:
     close = difflib.get_close_matches(preset.upper(), PRESETS, n=1)
     hint = f"; did you mean '{close[0]}'?" if close else ""
     expected = ", ".join(PRESETS)
-    msg = f"preset '{preset}': expected one of {expected}, or a preset file ({SUFFIX}){hint}"
-    raise ConfigError(msg)
+    raise ConfigError(
+        f"preset '{preset}': expected one of {expected}, or a preset file ({SUFFIX}){hint}"
+    )
 
 
 def require_parameter(name: str, where: str) -> None:
@@ -69,8 +71,7 @@ def require_parameter(name: str, where: str) -> None:
     if name not in NAMES:
         close = difflib.get_close_matches(name, NAMES, n=1)
         hint = f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(NAMES)}"
-        msg = f"{where} {name}: unknown parameter; {hint}"
-        raise ConfigError(msg)
+        raise ConfigError(f"{where} {name}: unknown parameter; {hint}")
 
 
 def is_preset_file(preset: str) -> bool:
@@ -100,19 +101,18 @@ def _read(path: Path, _stamp: object) -> VciParameters:
     values = _toml(path)
     unknown = sorted(set(values) - _TABLES)
     if unknown:
-        msg = f"{path}: unknown key '{unknown[0]}'; expected {', '.join(sorted(_TABLES))}"
-        raise ConfigError(msg)
+        raise ConfigError(
+            f"{path}: unknown key '{unknown[0]}'; expected {', '.join(sorted(_TABLES))}"
+        )
     given = values.get("parameters", {})
     if not isinstance(given, dict):
-        msg = f"{path}: parameters = {given!r}: expected a table [parameters]"
-        raise ConfigError(msg)
+        raise ConfigError(f"{path}: parameters = {given!r}: expected a table [parameters]")
     known = {**_base(path, values.get("base")), **given}
     _require_names(path, known)
     try:
         return VciParameters(**known)
     except ParameterError as error:
-        msg = f"{path}: [parameters] {error}"
-        raise ConfigError(msg) from error
+        raise ConfigError(f"{path}: [parameters] {error}") from error
 
 
 def _toml(path: Path) -> dict[str, Any]:
@@ -131,8 +131,9 @@ def _base(path: Path, base: object) -> dict[str, float]:
     if base is None:
         return {}
     if not isinstance(base, str) or base not in PRESETS:
-        msg = f"{path}: base = {base!r}: expected one of {', '.join(PRESETS)}, or no such key"
-        raise ConfigError(msg)
+        raise ConfigError(
+            f"{path}: base = {base!r}: expected one of {', '.join(PRESETS)}, or no such key"
+        )
     return asdict(PRESETS[base])
 
 
@@ -141,8 +142,7 @@ def _require_names(path: Path, given: Mapping[str, object]) -> None:
         require_parameter(name, f"{path}: [parameters]")
     missing = [name for name in NAMES if name not in given]
     if missing:
-        msg = (
+        raise ConfigError(
             f"{path}: [parameters] {missing[0]} is missing; give all {len(NAMES)} parameters, or "
             'take the others from a preset: base = "SIM"'
         )
-        raise ConfigError(msg)

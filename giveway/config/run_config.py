@@ -117,8 +117,9 @@ class RunConfig(Section):
         unknown = sorted(set(entry) - set(EGO_TABLES))
         if unknown:
             expected = ", ".join(EGO_TABLES)
-            msg = f"egos[{number}]: unknown key '{unknown[0]}'; expected one of {expected}"
-            raise ValueError(msg)
+            raise ValueError(
+                f"egos[{number}]: unknown key '{unknown[0]}'; expected one of {expected}"
+            )
         values = self.model_dump(exclude={"egos"})
         for key, value in entry.items():
             values[key] = {**values[key], **value} if isinstance(value, dict) else value
@@ -127,8 +128,9 @@ class RunConfig(Section):
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             key = ".".join(map(str, first["loc"]))
-            msg = f"egos[{number}]: {key} = {first['input']!r}: {first['msg']}"
-            raise ValueError(msg) from None
+            raise ValueError(
+                f"egos[{number}]: {key} = {first['input']!r}: {first['msg']}"
+            ) from None
 
     def _one_per_vehicle(self) -> list[EgoRunConfig]:
         """One for each vehicle that is taken over, or the one of an inserted ego."""

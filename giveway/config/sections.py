@@ -158,15 +158,14 @@ class CrowdConfig(Section):
     @model_validator(mode="after")
     def _ordered(self) -> CrowdConfig:
         if max(map(abs, (*self.spawn_area, *self.walk))) > _FARTHEST:
-            msg = f"spawn_area and walk: expected numbers within +-{_FARTHEST:g} [m]"
-            raise ValueError(msg)
+            raise ValueError(f"spawn_area and walk: expected numbers within +-{_FARTHEST:g} [m]")
         x_min, y_min, x_max, y_max = self.spawn_area
         if not (x_min < x_max and y_min < y_max):
-            msg = "spawn_area: expected x_min < x_max and y_min < y_max [m]"
-            raise ValueError(msg)
+            raise ValueError("spawn_area: expected x_min < x_max and y_min < y_max [m]")
         if not self.desired_speed_min <= self.desired_speed_mean <= self.desired_speed_max:
-            msg = "desired_speed_mean: expected between desired_speed_min and _max [m/s]"
-            raise ValueError(msg)
+            raise ValueError(
+                "desired_speed_mean: expected between desired_speed_min and _max [m/s]"
+            )
         return self
 
 

@@ -207,8 +207,7 @@ def _roster(
     spawned = spawn(config.crowd, departures.first_path, config.seed, prefix)
     for name in departures.names:
         if name in spawned.ids:
-            msg = f"--ego-id '{name}': a pedestrian has this id; choose another"
-            raise ConfigError(msg)
+            raise ConfigError(f"--ego-id '{name}': a pedestrian has this id; choose another")
     host = config.crowd.host_edge or _host(config, network or WalkNetwork.read(net_file), net_file)
     sumo.add_persons(spawned.ids, host)
     return Roster(spawned.ids, _crowd(spawned))
@@ -219,11 +218,10 @@ def _host(config: RunConfig, network: WalkNetwork, net_file: Path) -> str:
     x_min, y_min, x_max, y_max = config.crowd.spawn_area
     lane = network.nearest_lane((x_min + x_max) / 2, (y_min + y_max) / 2)
     if lane is None:
-        msg = (
+        raise ScenarioError(
             f"{net_file}: no lane for pedestrians, where SUMO could register the added ones; "
             "build the network with netconvert --sidewalks.guess, or add none (--pedestrians 0)"
         )
-        raise ScenarioError(msg)
     return lane.edge
 
 

@@ -62,17 +62,17 @@ class Departures:
         """Refuse to wait for a vehicle that no file declares."""
         hint = undeclared(name, self._session.start.read)
         if hint is not None:
-            msg = f"--ego {name}: no such vehicle in the routes of {self._config_file}; {hint}"
-            raise ScenarioError(msg)
+            raise ScenarioError(
+                f"--ego {name}: no such vehicle in the routes of {self._config_file}; {hint}"
+            )
 
     def _require_undeclared(self, name: str) -> None:
         """Refuse an id that a vehicle of the scenario has, even if that departs later."""
         if declares(name, self._session.start.read):
-            msg = (
+            raise ScenarioError(
                 f"--ego-id {name}: {self._config_file} has a vehicle of this id; choose another, "
                 f"or take that one over with --ego {name}"
             )
-            raise ScenarioError(msg)
 
     @property
     def names(self) -> list[str]:
@@ -165,19 +165,17 @@ class Departures:
     def _path_of_inserted(self, ego: WaitingEgo) -> tuple[EgoPath, LanePath]:
         settings = ego.config.ego
         if settings.depart_time >= self._session.end:
-            msg = (
+            raise ConfigError(
                 f"--ego-depart-time {settings.depart_time:.12g}: {self._config_file} ends at "
                 f"{self._session.end:.12g} s; let the ego depart before [s]"
             )
-            raise ConfigError(msg)
         if not settings.route:
             name = self._config_file.stem
-            msg = (
+            raise ConfigError(
                 f"{self._config_file}: no ego; take a vehicle of the scenario with --ego ID, "
                 f"insert one with --ego-route EDGE,EDGE or in {name}.giveway.toml, [ego] route, "
                 "or drive none with --no-ego"
             )
-            raise ConfigError(msg)
         lane_path = self._session.lanes.along(
             settings.route, settings.lane, start=settings.depart_position
         )
@@ -188,18 +186,16 @@ class Departures:
     def _require_room(self, ego: WaitingEgo, path: EgoPath, departure: float) -> None:
         distance = ego.config.ego.travel_distance
         if departure >= path.length - 1e-3:
-            msg = (
+            raise ScenarioError(
                 f"ego '{ego.id}': its way is {path.length:.1f} m long and it departs at "
                 f"{departure:.1f} m; let it depart earlier or lengthen its route"
             )
-            raise ScenarioError(msg)
         if distance is not None and departure + distance > path.length:
-            msg = (
+            raise ScenarioError(
                 f"--ego-travel-distance {distance:g}: the way of ego '{ego.id}' is "
                 f"{path.length:.1f} m long and it departs at {departure:.1f} m; "
                 "shorten the distance or lengthen --ego-route"
             )
-            raise ScenarioError(msg)
 
     # --- entering -----------------------------------------------------------------------------
 

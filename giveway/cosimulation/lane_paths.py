@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from giveway.geometry.kernel import Array
     from giveway.sumo.vehicles import SumoVehicles
 
-    Array = NDArray[np.float64]
     Indices = NDArray[np.int64]
 
 _REACH = 2.0  # times the present sight: a vehicle that accelerates still finds its lanes known

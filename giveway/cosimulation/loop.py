@@ -20,7 +20,6 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from controller import ControllerError
 from fmus import FmuError
@@ -33,12 +32,13 @@ from giveway.records.progress import Ending, Progress, Watcher
 from pedestrian_model import PedestrianModelError, arrived
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from giveway.cosimulation.assembly import Parts
     from giveway.ego.ego import Ego
+    from giveway.geometry.kernel import Array
     from giveway.processes.interrupts import DeferredInterrupt
     from giveway.recording.recorder import Recorder
-
-Array = NDArray[np.float64]
 
 
 ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived

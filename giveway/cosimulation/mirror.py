@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from giveway.errors import CrowdError, VehicleError
 from giveway.geometry.angles import angle_of_velocity
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.passage import SIGHT
 from giveway.sumo.background import NO_VEHICLES, BackgroundVehicles
 from pedestrian_model import Vehicles
@@ -17,11 +16,12 @@ from pedestrian_model import Vehicles
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
     from giveway.crowd.roster import Roster
     from giveway.ego.ego import Ego
     from giveway.sumo.session import SumoSession
 
-Array = NDArray[np.float64]
 
 _INFLUENCE_RANGE = 10.0  # [m] from a vehicle's contour: the influence is exp(-26) of the strongest
 _NOSE = 1.5  # [s] the contour's nose is no longer than this times the speed
@@ -145,11 +145,10 @@ class Mirror:
         angles = self._row[: len(present)]
         bad = walking_angles(crowd.position, crowd.velocity, present, self._angles, angles)
         if bad >= 0:
-            msg = (
+            raise CrowdError(
                 f"pedestrian '{roster.ids[present[bad]]}' at step {step}: position "
                 f"{crowd.position[bad].tolist()}; expected finite numbers"
             )
-            raise CrowdError(msg)
         x, y = crowd.position.T.tolist()
         self._session.mirror(places, roster.names, x, y, angles.tolist())
 

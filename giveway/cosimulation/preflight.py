@@ -76,11 +76,10 @@ def substeps_of(time_step: float, step_length: float) -> int:
     """
     substeps = round(step_length / time_step)
     if substeps < 1 or abs(substeps * time_step - step_length) > 1e-9:
-        msg = (
+        raise ConfigError(
             f"--time-step {time_step:g}: SUMO's step of {step_length:g} s is not a whole multiple "
             "of it; choose another time step [s] or --sumo-step-length, or leave it out"
         )
-        raise ConfigError(msg)
     return substeps
 
 
@@ -93,5 +92,6 @@ def _require_distinct(egos: Sequence[EgoRunConfig]) -> None:
     names = [ego.ego_id for ego in egos]
     for name in names:
         if names.count(name) > 1:
-            msg = f"ego '{name}': two egos have this id; give each [[egos]] entry its own"
-            raise ConfigError(msg)
+            raise ConfigError(
+                f"ego '{name}': two egos have this id; give each [[egos]] entry its own"
+            )

@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from giveway.config import RunConfig
+    from giveway.geometry.kernel import Array
     from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles
 
-    Array = NDArray[np.float64]
 
 _STREAM = 0xACC  # tells these draws from others of the same seed
 

@@ -13,15 +13,13 @@ from pedestrian_model import Crowd, Surroundings, Walls
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from giveway.crowd.roster import Roster
     from giveway.crowd.zone import Zone
+    from giveway.geometry.kernel import Array
     from giveway.sumo.persons import Person
     from giveway.sumo.session import SumoSession
     from giveway.walkways import WalkNetwork
 
-    Array = NDArray[np.float64]
 
 HANDED_BACK_WITHIN = 3.0  # [m] of the middle of a lane for pedestrians, or SUMO makes them jump
 _CLOSED = frozenset("rRyYus")  # states of a crossing's light at which nobody sets out

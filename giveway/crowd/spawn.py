@@ -10,12 +10,10 @@ import numpy as np
 from giveway.errors import CrowdError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from giveway.config.sections import CrowdConfig
+    from giveway.geometry.kernel import Array
     from giveway.geometry.path import EgoPath, Pose
 
-    Array = NDArray[np.float64]
 
 _REDRAWS = 1_000
 _ATTEMPTS_PER_PERSON = 2_000  # rejection sampling up to a third of the densest packing
@@ -54,8 +52,9 @@ def spawn(config: CrowdConfig, path: EgoPath | None, seed: int, prefix: str = PR
     axis = None
     if config.two_sided:
         if path is None:
-            msg = "--two-sided: mirrors about the way of an inserted ego; insert one (--ego-route)"
-            raise CrowdError(msg)
+            raise CrowdError(
+                "--two-sided: mirrors about the way of an inserted ego; insert one (--ego-route)"
+            )
         axis = _axis(config, path)
     position = _scatter(config, random, axis)
     desired_speed = _truncated_normal(config, random)
@@ -93,12 +92,11 @@ def _scatter(config: CrowdConfig, random: np.random.Generator, axis: Pose | None
                 break
         else:
             area = (x_max - x_min) * (y_max - y_min)
-            msg = (
+            raise CrowdError(
                 f"--pedestrians {config.pedestrians}: only {count} fit into the spawn area of "
                 f"{area:.0f} m2 at a spacing of {config.minimum_spacing} m; enlarge --spawn-area "
                 "or lower the number or [crowd] minimum_spacing"
             )
-            raise CrowdError(msg)
     return places
 
 

@@ -13,7 +13,8 @@ from giveway.errors import ConfigError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from giveway.geometry.kernel import Array
+
 
 _EXPECTED = (
     "expected metres round each ego (like 50), 'everywhere', 'none', or a polygon of at least "
@@ -54,8 +55,7 @@ class Zone:
             self._outer = self._inner.union(self._inner.buffer(margin))  # which may be rounded away
             shapely.prepare((self._inner, self._outer))
         else:
-            msg = f"--zone '{text}': {_EXPECTED}"
-            raise ConfigError(msg)
+            raise ConfigError(f"--zone '{text}': {_EXPECTED}")
 
     @property
     def follows_egos(self) -> bool:
@@ -74,11 +74,10 @@ class Zone:
         if self._inner is None or self._inner.intersects(shapely.box(*boundary)):
             return
         x_min, y_min, x_max, y_max = boundary
-        msg = (
+        raise ConfigError(
             f"--zone '{self._text}': lies outside of the network, which reaches from "
             f"{x_min:.0f},{y_min:.0f} to {x_max:.0f},{y_max:.0f} m; name a place inside"
         )
-        raise ConfigError(msg)
 
     def enters(self, points: Array, egos: Array) -> NDArray[np.bool_]:
         """Which of ``points`` (n, 2) [m] lie in the zone.
@@ -111,6 +110,7 @@ def _polygon(text: str, numbers: list[float]) -> shapely.Polygon:
     polygon = shapely.Polygon(np.reshape(numbers, (-1, 2)))
     if not polygon.is_valid or polygon.area <= 0.0:
         reason = shapely.is_valid_reason(polygon)
-        msg = f"--zone '{text}': not a polygon that encloses an area ({reason}); {_EXPECTED}"
-        raise ConfigError(msg)
+        raise ConfigError(
+            f"--zone '{text}': not a polygon that encloses an area ({reason}); {_EXPECTED}"
+        )
     return polygon

@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from giveway.ego.lights import Lights
     from giveway.ego.waiting import WaitingEgo
     from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.kernel import Array
     from giveway.geometry.path import EgoPath, Pose
     from pedestrian_model import Crowd, Surroundings
 
-    Array = NDArray[np.float64]
 
 _KEPT = 0.5  # [m] that the approach to a vehicle ends before the safe distance
 _BEYOND = 0.5  # [m] beyond the stopping place no plan may lead
@@ -231,12 +231,11 @@ class Ego:
         controller = self._controller
         decision = controller.control(self._observation(time, seen))
         if not math.isfinite(decision.force):
-            msg = (
+            raise ControlError(
                 f"controller '{decision.acting}' of '{self.id}' at step {step}: force = "
                 f"{decision.force}; expected a finite number [N]; please report this with the "
                 "run's config.toml"
             )
-            raise ControlError(msg)
         if self._guard is not None:
             safe = self._guard.overrule(decision, self.front, self.vehicle.speed, seen.crowd)
             if safe is not None:

@@ -15,14 +15,12 @@ from giveway.geometry.path import body_pose
 from giveway.metrics.conflicts import CRITICAL_TTC
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from controller import Manoeuvre
     from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.kernel import Array
     from giveway.geometry.path import EgoPath
     from pedestrian_model import Crowd, Predictor, Surroundings
 
-    Array = NDArray[np.float64]
 
 PASSED = 0.3  # [m] behind the front bumper people still count as in front: they are squeezed past
 _EVERY = 2  # steps from one search for conflicts to the next

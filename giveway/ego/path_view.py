@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.geometry.kernel import Array
     from giveway.geometry.path import EgoPath
 
-    Array = NDArray[np.float64]
 
 _HALF = 2.5  # [m] before and behind a place, whose mean headings give the curvature there
 

@@ -12,15 +12,13 @@ from giveway.geometry.kernel import kernel
 from giveway.geometry.path import body_pose, segment_at
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from controller import Decision
     from giveway.config import EgoRunConfig
     from giveway.geometry.bodies import VehicleShape
+    from giveway.geometry.kernel import Array
     from giveway.geometry.path import EgoPath
     from pedestrian_model import Crowd
 
-    Array = NDArray[np.float64]
 
 _FINEST = 0.25  # [m] between poses: a chord of a bend of 5 m radius is 1.6 mm off
 _MOST = 256  # poses

@@ -10,9 +10,8 @@ from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import kernel
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from giveway.geometry.kernel import Array
 
-    Array = NDArray[np.float64]
 
 _SLOW = 0.2  # [m/s] the ego is no danger (Yang & Özgüner 2019: a standing vehicle is an obstacle)
 _HALVINGS = 5  # of the interval in which the calm speed is looked for

@@ -150,11 +150,10 @@ def _require_sound(
         raise FmuOutputError(f"{path}: {result.problem}; {remedy(result)}")
     if any(goes_the_wrong_way(trace) for trace in result.traces[:1]):
         role = next(role for role, axis in profile.inputs if isinstance(axis, Axis))
-        msg = (
+        raise FmuOutputError(
             f"{path}: a force forwards slows it down, and one backwards does not; turn the sign: "
             f"add the line gain = -1.0 to [inputs.{role}], or to [outputs.speed]"
         )
-        raise FmuOutputError(msg)
     _sound.add(key)
 
 

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from giveway.geometry.kernel import Array
+
 
 _LOOKS: dict[str, tuple[str, Any]] = {  # of each predictor in every picture
     "VCI": (BLUE, "-"),

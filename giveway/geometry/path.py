@@ -56,8 +56,9 @@ class EgoPath:
             moved = np.hypot(*np.diff(vertices, axis=0).T) > 1e-9
             vertices = np.ascontiguousarray(vertices[np.concatenate([[True], moved])])
         if len(vertices) < 2 or not np.isfinite(vertices).all():
-            msg = f"ego path: {len(vertices)} distinct points; expected at least two finite ones"
-            raise ScenarioError(msg)
+            raise ScenarioError(
+                f"ego path: {len(vertices)} distinct points; expected at least two finite ones"
+            )
         steps = np.diff(vertices, axis=0)
         stations = np.concatenate([[0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))])
         return cls(vertices, stations, np.arctan2(steps[:, 1], steps[:, 0]))

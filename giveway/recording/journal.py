@@ -25,7 +25,6 @@ import struct
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from giveway.processes.heartbeat import Heartbeat
 
@@ -33,7 +32,8 @@ if TYPE_CHECKING:
     from io import FileIO
     from pathlib import Path
 
-Array = NDArray[np.float64]
+    from giveway.geometry.kernel import Array
+
 
 ROWS_FILE = "rows"
 META_FILE = "meta.json"

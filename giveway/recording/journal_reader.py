@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from giveway.errors import ResultsError
 from giveway.processes.heartbeat import Heartbeat, Pulse
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-Array = NDArray[np.float64]
+    from giveway.geometry.kernel import Array
 
 
 @dataclass(frozen=True)
@@ -54,8 +53,9 @@ def read_journal(folder: Path) -> JournalContents:
     content = np.memmap(rows_file, np.uint8, mode="r").data
     begun = bytes(content[: len(MAGIC)]).rstrip(b"\0")  # the process may have died within it
     if not MAGIC.startswith(begun):
-        msg = f"{rows_file}: is not a journal of giveway ({MAGIC.decode()} expected at its start)"
-        raise ResultsError(msg)
+        raise ResultsError(
+            f"{rows_file}: is not a journal of giveway ({MAGIC.decode()} expected at its start)"
+        )
     reader = _Reader()
     for step in _steps(content):
         reader.take(step)

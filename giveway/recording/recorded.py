@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from giveway.geometry.kernel import Array
 
 
 class RecordedEgo(NamedTuple):

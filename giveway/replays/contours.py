@@ -18,11 +18,9 @@ from giveway.replays.packing import MILLIMETRES, packed
 from pedestrian_model import Vehicles, vehicle_influence
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
+    from giveway.geometry.kernel import Array
     from pedestrian_model import VciParameters
 
-    Array = NDArray[np.float64]
 
 _RESOLUTION = 0.15  # [m]
 _SLOW = (0.0, 0.1, 0.3, 0.5)  # [m/s] below 0.2 a vehicle is an obstacle like a wall

@@ -77,8 +77,9 @@ def write_replay(
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(page, encoding="utf-8")
     except OSError as error:
-        msg = f"{target}: cannot be written ({error.strerror}); name another file with --out"
-        raise ResultsError(msg) from error
+        raise ResultsError(
+            f"{target}: cannot be written ({error.strerror}); name another file with --out"
+        ) from error
     return target
 
 

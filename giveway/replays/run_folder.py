@@ -18,12 +18,10 @@ from giveway.records.scene import Scene
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
     from giveway.config import RunConfig
+    from giveway.geometry.kernel import Array
     from giveway.records.columns import Column
 
-    Array = NDArray[np.float64]
 
 PREDICTIONS = "predictions.csv"
 
@@ -84,14 +82,12 @@ class RunFolder:
         try:
             config = build_config([read_toml(folder / "config.toml")])
         except ConfigError as error:
-            msg = f"{error}; expected a folder that 'giveway run' wrote"
-            raise ResultsError(msg) from error
+            raise ResultsError(f"{error}; expected a folder that 'giveway run' wrote") from error
         ego = _table(folder / "ego.csv", EGO_COLUMNS)
         trajectories = _table(folder / "trajectories.csv", TRAJECTORY_COLUMNS)
         time = np.union1d(*(rows["time"].to_numpy(np.float64) for rows in (ego, trajectories)))
         if not len(time):
-            msg = f"{folder}: the run left no rows; there is nothing to play"
-            raise ResultsError(msg)
+            raise ResultsError(f"{folder}: the run left no rows; there is nothing to play")
         configs = {own.ego_id: own for own in config.each_ego()}
         unnamed = EgoRunConfig.model_validate(config.model_dump(exclude={"egos"}))
         return cls(
@@ -128,8 +124,7 @@ def _require_run(folder: Path) -> None:
         what = "a run is still writing there, or was killed"
     else:
         what = f"no run in it ('{missing[0]}' is missing)"
-    msg = f"{folder}: {what}; expected a results folder that 'giveway run' wrote"
-    raise ResultsError(msg)
+    raise ResultsError(f"{folder}: {what}; expected a results folder that 'giveway run' wrote")
 
 
 def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
@@ -141,16 +136,17 @@ def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
     except FileNotFoundError:
         return pd.DataFrame()
     except OSError as error:
-        msg = f"{file}: cannot be read ({error.strerror})"
-        raise ResultsError(msg) from error
+        raise ResultsError(f"{file}: cannot be read ({error.strerror})") from error
     except (ValueError, pd.errors.ParserError) as error:
         reason = " ".join(str(error).split())
-        msg = f"{file}: not a table of giveway ({reason}); make the run again"
-        raise ResultsError(msg) from error
+        raise ResultsError(
+            f"{file}: not a table of giveway ({reason}); make the run again"
+        ) from error
     missing = [column.name for column in columns if column.name not in frame]
     if missing:
-        msg = f"{file}: column '{missing[0]}' is missing; make the run again with this giveway"
-        raise ResultsError(msg)
+        raise ResultsError(
+            f"{file}: column '{missing[0]}' is missing; make the run again with this giveway"
+        )
     text = list(texts)
     frame[text] = frame[text].fillna("")
     return frame
@@ -162,6 +158,5 @@ def _json(file: Path) -> dict[str, Any]:
     except FileNotFoundError:
         return {}
     except (OSError, ValueError) as error:
-        msg = f"{file}: cannot be read ({error}); make the run again"
-        raise ResultsError(msg) from error
+        raise ResultsError(f"{file}: cannot be read ({error}); make the run again") from error
     return content if isinstance(content, dict) else {}

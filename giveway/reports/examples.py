@@ -61,8 +61,7 @@ def _ego(result: RunResult, name: str) -> EgoResult:
     for ego in result.egos:
         if ego.id == name:
             return ego
-    msg = f"no ego '{name}' in this run"
-    raise LookupError(msg)
+    raise LookupError(f"no ego '{name}' in this run")
 
 
 def _picture(pair: ExamplePair, sides: Sequence[PairSide], number: int) -> Picture:

@@ -114,8 +114,9 @@ def write_report(
         )
         target.write_text(html, encoding="utf-8", newline="\n")
     except OSError as error:
-        msg = f"{error.filename or target}: cannot be written ({error.strerror}); free the disk"
-        raise ResultsError(msg) from error
+        raise ResultsError(
+            f"{error.filename or target}: cannot be written ({error.strerror}); free the disk"
+        ) from error
     return target
 
 

@@ -46,26 +46,26 @@ def check_folder(
     if not folder.exists():
         return
     if not folder.is_dir():
-        msg = f"{folder}: is a file; expected a folder for the results, name another with --out"
-        raise ResultsError(msg)
+        raise ResultsError(
+            f"{folder}: is a file; expected a folder for the results, name another with --out"
+        )
     present = sorted(path.name for path in folder.iterdir())
     foreign = [name for name in present if name not in ours]
     if foreign:
-        msg = (
+        raise ResultsError(
             f"{folder}: holds '{foreign[0]}', which {writer} did not write; "
             "name another folder with --out"
         )
-        raise ResultsError(msg)
     marker = folder / "manifest.json"
     if present == [marker.name] and not force and marker.read_text("utf-8") == _RUNNING:
-        msg = (
+        raise ResultsError(
             f"{folder}: another run is writing there, or was killed; name another folder with "
             "--out, or replace it with --force"
         )
-        raise ResultsError(msg)
     if present and not force:
-        msg = f"{folder}: results exist; replace them with --force or name another with --out"
-        raise ResultsError(msg)
+        raise ResultsError(
+            f"{folder}: results exist; replace them with --force or name another with --out"
+        )
 
 
 def take_folder(folder: Path, *, force: bool) -> bool:
@@ -85,11 +85,13 @@ def take_folder(folder: Path, *, force: bool) -> bool:
         with (folder / "manifest.json").open("x", encoding="utf-8") as marker:
             marker.write(_RUNNING)
     except FileExistsError:
-        msg = f"{folder}: another run is writing there; name another folder with --out"
-        raise ResultsError(msg) from None
+        raise ResultsError(
+            f"{folder}: another run is writing there; name another folder with --out"
+        ) from None
     except OSError as error:
-        msg = f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
-        raise ResultsError(msg) from error
+        raise ResultsError(
+            f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
+        ) from error
     return True
 
 
@@ -126,8 +128,9 @@ def write_results(result: RunResult, folder: Path, *, parquet: bool = False) -> 
         if result.sumo_messages:
             (folder / "sumo.log").write_text(result.sumo_messages, encoding="utf-8")
     except OSError as error:
-        msg = f"{error.filename or folder}: cannot be written ({error.strerror}); free the disk"
-        raise ResultsError(msg) from error
+        raise ResultsError(
+            f"{error.filename or folder}: cannot be written ({error.strerror}); free the disk"
+        ) from error
 
 
 def _summary(result: RunResult) -> dict[str, Any]:
@@ -161,10 +164,9 @@ def sumo_folder(folder: Path) -> Path:
     except FileNotFoundError:
         pass
     except OSError as error:
-        msg = (
+        raise ResultsError(
             f"{error.filename or folder}: cannot be removed ({error.strerror}); name another --out"
-        )
-        raise ResultsError(msg) from error
+        ) from error
     return folder / SUMO_FOLDER
 
 
@@ -177,8 +179,9 @@ def require_parquet() -> None:
     try:
         import pyarrow  # noqa: F401
     except ImportError as error:
-        msg = "--parquet needs pyarrow; install it with: pip install 'giveway[parquet]'"
-        raise ResultsError(msg) from error
+        raise ResultsError(
+            "--parquet needs pyarrow; install it with: pip install 'giveway[parquet]'"
+        ) from error
 
 
 def data_package(result: RunResult) -> dict[str, Any]:

@@ -43,8 +43,9 @@ def write_pictures(result: RunResult, folder: Path) -> None:
     try:
         _write_pictures(result, folder)
     except OSError as error:
-        msg = f"{folder}: a picture cannot be written ({error.strerror}); free the disk"
-        raise ResultsError(msg) from error
+        raise ResultsError(
+            f"{folder}: a picture cannot be written ({error.strerror}); free the disk"
+        ) from error
 
 
 def _write_pictures(result: RunResult, folder: Path) -> None:

@@ -144,8 +144,9 @@ class RunResult:
             LookupError: no ego was on the road.
         """
         if not self.egos:
-            msg = "this run had no ego on the road; look at crowd_track and background_track"
-            raise LookupError(msg)
+            raise LookupError(
+                "this run had no ego on the road; look at crowd_track and background_track"
+            )
         return self.egos[0].track
 
     @property

@@ -96,27 +96,25 @@ class ScenarioFiles:
             ScenarioError: the first one that does not exist.
         """
         for option, path in self.missing:
-            msg = (
+            raise ScenarioError(
                 f"{self.config_file}: {option} names {path}, which does not exist; expected a file "
                 "(relative paths start at the .sumocfg's folder); put it there or correct the name"
             )
-            raise ScenarioError(msg)
         for option, path in self.inputs:
             if "," in str(path):
-                msg = (
+                raise ScenarioError(
                     f"{self.config_file}: {option} names {path}; SUMO takes the ',' for the end of "
                     "a file's name; expected a path without one; rename the folder"
                 )
-                raise ScenarioError(msg)
             if path.is_dir():
-                msg = f"{self.config_file}: {option} names the folder {path}; expected a file"
-                raise ScenarioError(msg)
+                raise ScenarioError(
+                    f"{self.config_file}: {option} names the folder {path}; expected a file"
+                )
             if not os.access(path, os.R_OK):
-                msg = (
+                raise ScenarioError(
                     f"{self.config_file}: {option} names {path}, which you may not read; "
                     "expected a readable file; change its permissions"
                 )
-                raise ScenarioError(msg)
 
 
 def read_scenario(config_file: Path) -> ScenarioFiles:
@@ -134,25 +132,24 @@ def read_scenario(config_file: Path) -> ScenarioFiles:
     options = _options(config_file)
     for name in INSTEAD_OF_SIMULATING:
         if name in options:
-            msg = (
+            raise ScenarioError(
                 f"{config_file}: {name} = '{options[name]}' makes SUMO write that file instead of "
                 "simulating; expected a configuration to simulate; remove the option"
             )
-            raise ScenarioError(msg)
     networks = _paths(config_file, options.get("net-file", ""))
     if len(networks) != 1:
         value = options.get("net-file", "")
-        msg = (
+        raise ScenarioError(
             f"{config_file}: net-file = '{value}'; expected one road network; "
             'add <net-file value="NETWORK.net.xml"/>'
         )
-        raise ScenarioError(msg)
     time = partial(_parsed, config_file, options, parse=seconds, expected=_A_TIME)
     step_length, end = time("step-length"), time("end")
     step_length = 1.0 if step_length is None else step_length
     if step_length <= 0.0:
-        msg = f"{config_file}: step-length = {step_length:g}; expected more than 0 s, like 0.1"
-        raise ScenarioError(msg)
+        raise ScenarioError(
+            f"{config_file}: step-length = {step_length:g}; expected more than 0 s, like 0.1"
+        )
     return ScenarioFiles(
         config_file=config_file,
         options=options,
@@ -177,11 +174,10 @@ def _options(config_file: Path) -> dict[str, str]:
         if not value.strip():
             continue  # a section, or an option that is left as it is
         if name in options:
-            msg = (
+            raise ScenarioError(
                 f"{config_file}: {name} = '{value}' stands there a second time "
                 f"(first '{options[name]}'); expected once; remove one"
             )
-            raise ScenarioError(msg)
         options[name] = _VARIABLE.sub(lambda found: os.environ.get(found[1], ""), value)
     return options
 
@@ -191,19 +187,15 @@ def _root(config_file: Path) -> ET.Element:
     try:
         content = config_file.read_bytes()  # SUMO does not read a compressed one either
     except FileNotFoundError:
-        msg = f"{config_file}: no such file; {expected}"
-        raise ScenarioError(msg) from None
+        raise ScenarioError(f"{config_file}: no such file; {expected}") from None
     except OSError as error:
-        msg = f"{config_file}: cannot be read ({error}); {expected}"
-        raise ScenarioError(msg) from None
+        raise ScenarioError(f"{config_file}: cannot be read ({error}); {expected}") from None
     if not content.strip():
-        msg = f"{config_file}: the file is empty; {expected}"
-        raise ScenarioError(msg)
+        raise ScenarioError(f"{config_file}: the file is empty; {expected}")
     try:
         return ET.fromstring(content)
     except (ET.ParseError, ValueError, LookupError) as error:
-        msg = f"{config_file}: not XML ({error}); {expected}"
-        raise ScenarioError(msg) from None
+        raise ScenarioError(f"{config_file}: not XML ({error}); {expected}") from None
 
 
 def _names(value: str, option: str) -> tuple[str, ...]:
@@ -260,5 +252,6 @@ def _parsed(
     try:
         return parse(options[name].strip())
     except ValueError:
-        msg = f"{config_file}: {name} = '{options[name]}'; expected {expected}"
-        raise ScenarioError(msg) from None
+        raise ScenarioError(
+            f"{config_file}: {name} = '{options[name]}'; expected {expected}"
+        ) from None

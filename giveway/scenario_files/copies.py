@@ -98,8 +98,9 @@ class Copies:
             if _has_signs(file):
                 self._prepared[file] = self._copied(file)
         except (OSError, EOFError) as error:
-            msg = f"{file}: cannot be read ({error}); the scenario needs it; put it there"
-            raise ScenarioError(msg) from error
+            raise ScenarioError(
+                f"{file}: cannot be read ({error}); the scenario needs it; put it there"
+            ) from error
         return self._prepared[file]
 
     def _copied(self, file: Path) -> Path:

@@ -132,18 +132,17 @@ def parse_options(extra: Sequence[str]) -> dict[str, str]:
     while words:
         word = words.pop(0)
         if not word.startswith("-") or word.strip("-") == "":
-            msg = f"SUMO option '{word}': expected a name that begins with --, like --scale 0.5"
-            raise ConfigError(msg)
+            raise ConfigError(
+                f"SUMO option '{word}': expected a name that begins with --, like --scale 0.5"
+            )
         name, equals, value = word.lstrip("-").partition("=")
         if not equals:
             value = words.pop(0) if words and not _is_option(words[0]) else "true"
         name = canonical(name)
         if name in _OURS:
-            msg = f"SUMO option '{word}': giveway sets it itself; leave it out"
-            raise ConfigError(msg)
+            raise ConfigError(f"SUMO option '{word}': giveway sets it itself; leave it out")
         if name == "seed" and not value.lstrip("-").isdecimal():
-            msg = f"SUMO option --seed '{value}': expected a whole number"
-            raise ConfigError(msg)
+            raise ConfigError(f"SUMO option --seed '{value}': expected a whole number")
         options[name] = value
     return options
 

@@ -63,16 +63,14 @@ class OutputFolder:
 
     def _prepared(self) -> Path:
         if not is_file(str(self.folder)):
-            msg = (
+            raise ResultsError(
                 f"{self.folder}: SUMO takes the ':' for a network address and cannot write there; "
                 "choose a results folder without one"
             )
-            raise ResultsError(msg)
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            msg = (
+            raise ResultsError(
                 f"{self.folder}: cannot be made for SUMO's outputs ({error.strerror}); name another"
-            )
-            raise ResultsError(msg) from error
+            ) from error
         return self.folder

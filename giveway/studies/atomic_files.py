@@ -34,11 +34,10 @@ def write_atomically(path: Path, text: str, *, durable: bool = False) -> None:
                 os.fsync(file.fileno())
         new.replace(path)
     except OSError as error:
-        msg = (
+        raise ResultsError(
             f"{path}: cannot be written ({error.strerror}); every run finished before is kept: "
             "free the disk and go on with --resume"
-        )
-        raise ResultsError(msg) from error
+        ) from error
 
 
 def finished_name(name: str) -> str:

@@ -74,11 +74,10 @@ def baseline_level(design: Design, comparison: Comparison) -> Level:
     level = factor.level(comparison.baseline)
     if level is None:
         known = ", ".join(level.label for level in factor.levels)
-        msg = (
+        raise ConfigError(
             f"comparison.baseline = '{comparison.baseline}': no level of {factor.name}; "
             f"expected one of {known}"
         )
-        raise ConfigError(msg)
     return level
 
 

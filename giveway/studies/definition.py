@@ -24,8 +24,7 @@ _NAME = r"^[\w.-]*\w[\w.-]*$"
 
 def _not_empty(value: dict[str, Any]) -> dict[str, Any]:
     if not value:
-        msg = "expected at least one factor, like controller = ['mpc', 'pid-tuned']"
-        raise ValueError(msg)
+        raise ValueError("expected at least one factor, like controller = ['mpc', 'pid-tuned']")
     return value
 
 
@@ -94,8 +93,9 @@ class StudyDefinition(Section):
     @model_validator(mode="after")
     def _seeds_in_range(self) -> StudyDefinition:
         if self.first_seed + self.replications > 2**31:
-            msg = f"first_seed = {self.first_seed}: the last seed would be beyond 2147483647"
-            raise ValueError(msg)
+            raise ValueError(
+                f"first_seed = {self.first_seed}: the last seed would be beyond 2147483647"
+            )
         return self
 
 
@@ -123,8 +123,7 @@ def find_study(name: str | Path) -> Path:
     if str(name) in bundled_studies():
         return Path(str(files("giveway.studies") / BUNDLED / f"{name}.toml"))
     known = ", ".join(bundled_studies())
-    msg = f"study '{name}': no such study; expected a .toml file or one of {known}"
-    raise ConfigError(msg)
+    raise ConfigError(f"study '{name}': no such study; expected a .toml file or one of {known}")
 
 
 def read_definition(path: Path) -> StudyDefinition:
@@ -136,12 +135,12 @@ def read_definition(path: Path) -> StudyDefinition:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
-        msg = f"{path}: no such file; expected a study (TOML), see giveway study --help"
-        raise ConfigError(msg) from None
+        raise ConfigError(
+            f"{path}: no such file; expected a study (TOML), see giveway study --help"
+        ) from None
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "not UTF-8 text"
-        msg = f"{path}: cannot be read ({reason}); expected a study (TOML)"
-        raise ConfigError(msg) from error
+        raise ConfigError(f"{path}: cannot be read ({reason}); expected a study (TOML)") from error
     return parse_definition(text, str(path), path.parent.absolute())
 
 
@@ -159,8 +158,7 @@ def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
     try:
         values = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        msg = f"{origin}: not valid TOML: {error}; mend the line named"
-        raise ConfigError(msg) from None
+        raise ConfigError(f"{origin}: not valid TOML: {error}; mend the line named") from None
     return _validated(values | _folder_of(values, folder), origin)
 
 

@@ -113,8 +113,7 @@ class Design:
             if factor.name == name:
                 return factor
         names = ", ".join(factor.name for factor in self.factors)
-        msg = f"factor '{name}': not in this study; expected one of {names}"
-        raise ConfigError(msg)
+        raise ConfigError(f"factor '{name}': not in this study; expected one of {names}")
 
 
 def design(definition: StudyDefinition, origin: str) -> Design:
@@ -141,8 +140,9 @@ def design(definition: StudyDefinition, origin: str) -> Design:
     cells = tuple(Cell(number, levels) for number, levels in enumerate(chosen, start=1))
     for a, b in itertools.combinations(cells, 2):
         if a.label == b.label:
-            msg = f"{origin}: cells {a.number} and {b.number} are the same ({a.label}); drop one"
-            raise ConfigError(msg)
+            raise ConfigError(
+                f"{origin}: cells {a.number} and {b.number} are the same ({a.label}); drop one"
+            )
     return Design(factors, cells)
 
 
@@ -158,11 +158,10 @@ def label_of(value: object) -> str:
 def _require_no_seed(settings: dict[str, Any], place: str) -> None:
     """Make sure that no cell sets a seed of its own: runs are paired by their seeds."""
     if "seed" in settings:
-        msg = (
+        raise ConfigError(
             f"{place} seed = {settings['seed']!r}: every cell is run with the same seeds; leave it "
             "out, and set replications and first_seed"
         )
-        raise ConfigError(msg)
 
 
 def _factors(definition: StudyDefinition, origin: str) -> list[Factor]:
@@ -180,19 +179,18 @@ def _factors(definition: StudyDefinition, origin: str) -> list[Factor]:
         elif isinstance(levels, dict) and _all_are(dict, levels):
             found.append(_named_factor(name, levels, place, definition))
         else:
-            msg = (
+            raise ConfigError(
                 f"{place} = {levels!r}: expected a list of values, or a table of named levels like "
                 '{ "short" = { mpc = { horizon = 10 } }, ... }'
             )
-            raise ConfigError(msg)
     names = [factor.name for factor in found]
     for name in names:
         if name in _RESERVED:
-            msg = f"{origin}: [factors] {name}: this name is taken by a column; choose another"
-            raise ConfigError(msg)
+            raise ConfigError(
+                f"{origin}: [factors] {name}: this name is taken by a column; choose another"
+            )
         if names.count(name) > 1:
-            msg = f"{origin}: [factors] {name}: given twice; merge the two"
-            raise ConfigError(msg)
+            raise ConfigError(f"{origin}: [factors] {name}: given twice; merge the two")
     return found
 
 
@@ -207,8 +205,7 @@ def _named_factor(
     for label, settings in levels.items():
         _require_no_seed(settings, f"{place}.{label}:")
         if not label.strip():
-            msg = f"{place}: level {label!r}: expected a name that tables can show"
-            raise ConfigError(msg)
+            raise ConfigError(f"{place}: level {label!r}: expected a name that tables can show")
         named.append(Level(label, label, definition.placed(settings)))
     return _factor(name, named, place)
 
@@ -216,13 +213,13 @@ def _named_factor(
 def _option_factor(name: str, values: list[Any], place: str, definition: StudyDefinition) -> Factor:
     known = {".".join(option.location): option for option in options()}
     if name == "seed":
-        msg = f"{place}: seeds are not a factor; set replications and first_seed"
-        raise ConfigError(msg)
+        raise ConfigError(f"{place}: seeds are not a factor; set replications and first_seed")
     if name not in known:
         close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
         hint = f"did you mean '{close[0]}'?" if close else "giveway config lists the options"
-        msg = f"{place}: no such option; {hint} (a factor of your own has named levels)"
-        raise ConfigError(msg)
+        raise ConfigError(
+            f"{place}: no such option; {hint} (a factor of your own has named levels)"
+        )
     option = known[name]
     levels = []
     for value in values:
@@ -238,13 +235,11 @@ def _option_factor(name: str, values: list[Any], place: str, definition: StudyDe
 
 def _factor(name: str, levels: list[Level], place: str, unit: str | None = None) -> Factor:
     if not levels:
-        msg = f"{place}: no levels; expected at least one"
-        raise ConfigError(msg)
+        raise ConfigError(f"{place}: no levels; expected at least one")
     labels = [level.label for level in levels]
     for label in labels:
         if labels.count(label) > 1:
-            msg = f"{place}: level '{label}' twice; drop one"
-            raise ConfigError(msg)
+            raise ConfigError(f"{place}: level '{label}' twice; drop one")
     return Factor(name, tuple(levels), unit)
 
 
@@ -260,14 +255,14 @@ def _listed(entry: dict[str, Any], factors: tuple[Factor, ...], place: str) -> d
     missing = [name for name in names if name not in flat]
     if unknown or missing:
         what = f"unknown factor '{unknown[0]}'" if unknown else f"no level of '{missing[0]}'"
-        msg = f"{place}: {what}; expected one level of each of {', '.join(names)}"
-        raise ConfigError(msg)
+        raise ConfigError(f"{place}: {what}; expected one level of each of {', '.join(names)}")
     levels = {}
     for factor in factors:
         level = factor.level(flat[factor.name])
         if level is None:
             known = ", ".join(level.label for level in factor.levels)
-            msg = f"{place}: {factor.name} = {flat[factor.name]!r}: expected one of {known}"
-            raise ConfigError(msg)
+            raise ConfigError(
+                f"{place}: {factor.name} = {flat[factor.name]!r}: expected one of {known}"
+            )
         levels[factor.name] = level
     return levels

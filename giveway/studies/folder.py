@@ -74,19 +74,17 @@ class StudyFolder:
             labels: dict[int, str] = {cell["cell"]: cell["label"] for cell in cells}
             self._seeds = int(self.manifest["seeds"])
         except (OSError, ValueError, KeyError, TypeError):
-            msg = (
+            raise ResultsError(
                 f"{path}: no study there ({DEFINITION} and {MANIFEST} that giveway wrote); "
                 "name the folder that giveway study printed"
-            )
-            raise ResultsError(msg) from None
+            ) from None
         self.definition = parse_definition(text, origin, path.absolute())
         self.design = design(self.definition, origin)
         if labels != {cell.number: cell.label for cell in self.design.cells}:
-            msg = (
+            raise ResultsError(
                 f"{path}: {MANIFEST} lists other cells than {DEFINITION}, as after a kill in the "
                 "very beginning; go on with giveway study and --resume"
             )
-            raise ResultsError(msg)
 
     @classmethod
     def open(cls, path: str | Path) -> StudyFolder:
@@ -184,11 +182,10 @@ class StudyFolder:
                 return cell, seed
         first = run_id(1, self.seeds[0])
         last = run_id(len(self.design.cells), self.seeds[-1])
-        msg = (
+        raise ResultsError(
             f"run '{run}': not in {self.path}; expected c<cell>-s<seed>, "
             f"{first} to {last}: see runs.csv"
         )
-        raise ResultsError(msg)
 
     def record(self, run: str) -> RunRecord | None:
         """The record of a run; None if the run has not been made.

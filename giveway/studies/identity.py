@@ -93,12 +93,11 @@ def require_same(task: Task) -> None:
     """
     here = socket.gethostname()
     if task.software != software_identity():
-        msg = (
+        raise ConfigError(
             f"worker on {here}: its giveway or libraries differ from those that planned run "
             f"{task.run}; install the same versions on every machine; if they were changed "
             "meanwhile, go on with --resume"
         )
-        raise ConfigError(msg)
     config = RunConfig.model_validate_json(task.config)
     try:
         files = {f"scenario {name}": file for name, file in _scenario_files(find(config.scenario))}
@@ -109,12 +108,11 @@ def require_same(task: Task) -> None:
     for name, expected in task.inputs.items():
         if found.get(name) != expected:
             what = "another content" if name in found else "nothing"
-            msg = (
+            raise ConfigError(
                 f"worker on {here}: {name}: found {what} where run {task.run} was planned with "
                 "this file; put the study's files under the same path on every machine; if it was "
                 "changed meanwhile, go on with --resume"
             )
-            raise ConfigError(msg)
 
 
 def _scenario_files(scenario: Scenario) -> tuple[tuple[str, Path], ...]:

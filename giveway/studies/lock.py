@@ -48,11 +48,13 @@ def reserved(out: Path, study: str, options: StudyOptions) -> Iterator[None]:
         lock = filelock.FileLock(out / LOCK, timeout=0)
         lock.acquire()
     except filelock.Timeout:
-        msg = f"{out}: another giveway study is at work there; wait for it, or name another --out"
-        raise ResultsError(msg) from None
+        raise ResultsError(
+            f"{out}: another giveway study is at work there; wait for it, or name another --out"
+        ) from None
     except OSError as error:
-        msg = f"{out}: cannot be written ({error.strerror}); name another folder with --out"
-        raise ResultsError(msg) from error
+        raise ResultsError(
+            f"{out}: cannot be written ({error.strerror}); name another folder with --out"
+        ) from error
     try:
         _require_free(out, study, options)  # another process may have written there before
         yield
@@ -64,30 +66,28 @@ def _require_free(out: Path, study: str, options: StudyOptions) -> None:
     if not out.exists():
         return
     if not out.is_dir():
-        msg = f"{out}: is a file; expected a folder for the study, name another with --out"
-        raise ResultsError(msg)
+        raise ResultsError(
+            f"{out}: is a file; expected a folder for the study, name another with --out"
+        )
     present = {path.name for path in out.iterdir()} - {LOCK}
     foreign = sorted(name for name in present if finished_name(name) not in _STUDY_FILES)
     beginning = not (options.resume and present & _STUDY_FILES)
     if foreign and beginning:  # foreign files do not harm a study that goes on
-        msg = (
+        raise ResultsError(
             f"{out}: holds '{foreign[0]}', which no study of giveway wrote; name another folder "
             "with --out"
         )
-        raise ResultsError(msg)
     if present and not (options.resume or options.force):
-        msg = (
+        raise ResultsError(
             f"{out}: a study is there; go on with it by --resume, replace it by --force, or name "
             "another folder with --out"
         )
-        raise ResultsError(msg)
     there = _name_of(out)
     if options.resume and there not in {None, study}:
-        msg = (
+        raise ResultsError(
             f"{out}: holds the study '{there}'; expected '{study}' to go on with; replace it by "
             "--force, or name another folder with --out"
         )
-        raise ResultsError(msg)
 
 
 def _name_of(out: Path) -> str | None:
@@ -126,5 +126,6 @@ def _remove(out: Path, names: frozenset[str]) -> None:
             else:
                 path.unlink(missing_ok=True)
         except OSError as error:
-            msg = f"{path}: cannot be removed ({error.strerror}); name another folder with --out"
-            raise ResultsError(msg) from error
+            raise ResultsError(
+                f"{path}: cannot be removed ({error.strerror}); name another folder with --out"
+            ) from error

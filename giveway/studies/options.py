@@ -40,17 +40,15 @@ class StudyOptions:
 
     def __post_init__(self) -> None:
         if self.resume and self.force:
-            msg = (
+            raise ConfigError(
                 "--resume and --force: contradict each other; expected one: keep the study, or "
                 "replace it"
             )
-            raise ConfigError(msg)
         if self.cluster is not None and self.jobs is not None:
-            msg = (
+            raise ConfigError(
                 "--jobs and --cluster: contradict each other; expected one: a cluster's workers "
                 "are counted by its threads"
             )
-            raise ConfigError(msg)
 
     def executor(self) -> Executor:
         """What makes the runs.

@@ -119,8 +119,9 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
     baseline = factor.levels[-1] if wanted.baseline is None else factor.level(wanted.baseline)
     if baseline is None:
         known = ", ".join(level.label for level in factor.levels)
-        msg = f"{origin}: [comparison] baseline = {wanted.baseline!r}: expected one of {known}"
-        raise ConfigError(msg)
+        raise ConfigError(
+            f"{origin}: [comparison] baseline = {wanted.baseline!r}: expected one of {known}"
+        )
     complete = wanted.model_copy(update={"factor": factor.name, "baseline": baseline.label})
     return definition.model_copy(update={"comparison": complete})
 

@@ -110,8 +110,7 @@ class RunRecord:
             remarks = tuple(values.pop("remarks"))
             return cls(rows=rows, remarks=remarks, computing=computing, **values)
         except (TypeError, KeyError, AttributeError) as error:
-            msg = f"not a run's record: {error}"
-            raise ValueError(msg) from error
+            raise ValueError(f"not a run's record: {error}") from error
 
 
 def _plain(value: Any) -> Any:

@@ -98,19 +98,17 @@ def require_same_rows(result: RunResult, record: RunRecord, study: StudyFolder) 
     """
     rows = rows_of(result)
     if len(rows) != len(record.rows):
-        msg = (
+        raise OtherNumbersError(
             f"run {record.run}: {len(rows)} egos where {study.path} has {len(record.rows)}; "
             f"{_PERHAPS}"
         )
-        raise OtherNumbersError(msg)
     for ours, theirs in zip(rows, record.rows, strict=True):
         for name, value in theirs.items():
             if not _same(ours.get(name), value):
-                msg = (
+                raise OtherNumbersError(
                     f"run {record.run}: {name} = {ours.get(name)} where {study.path} has {value}; "
                     f"{_PERHAPS}"
                 )
-                raise OtherNumbersError(msg)
 
 
 def _same(a: Any, b: Scalar) -> bool:

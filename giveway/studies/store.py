@@ -42,8 +42,9 @@ class RecordStore:
         except (FileNotFoundError, ValueError):
             return None
         except OSError as error:
-            msg = f"{self._path(key)}: cannot be read ({error.strerror}); mend the disk"
-            raise ResultsError(msg) from error
+            raise ResultsError(
+                f"{self._path(key)}: cannot be read ({error.strerror}); mend the disk"
+            ) from error
         return record if record.key == key else None
 
     def put(self, record: RunRecord) -> None:

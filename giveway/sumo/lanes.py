@@ -80,8 +80,9 @@ class Lanes:
         """
         for edge in edges:
             if edge not in self._edges:
-                msg = f"{self._config_file}: ego route: no edge '{edge}' in the network"
-                raise ScenarioError(msg)
+                raise ScenarioError(
+                    f"{self._config_file}: ego route: no edge '{edge}' in the network"
+                )
         first = self._start_lanes(edges[0], lane, kind)
         pairs, links = self._cheapest(edges, first, kind)
         points: list[Array] = []
@@ -140,20 +141,18 @@ class Lanes:
     def _start_lanes(self, edge: str, lane: int | None, kind: str) -> list[int]:
         count = int(self._sumo.edge.getLaneNumber(edge))
         if lane is not None and lane >= count:
-            msg = (
+            raise ScenarioError(
                 f"{self._config_file}: ego lane {lane}: edge '{edge}' has {count} lane(s); "
                 f"expected 0 to {count - 1}"
             )
-            raise ScenarioError(msg)
         drivable = self._drivable(edge, kind)
         if (lane is None and not drivable) or (lane is not None and lane not in drivable):
             named = f"lane '{edge}_{lane}' is" if lane is not None else f"edge '{edge}' is"
             users = "cars" if kind == "passenger" else f"vehicles of class '{kind}'"
-            msg = (
+            raise ScenarioError(
                 f"{self._config_file}: ego lane {lane}: {named} not for {users}; "
                 f"expected one of {drivable or 'no lane of this edge'}, name it with --ego-lane"
             )
-            raise ScenarioError(msg)
         return drivable if lane is None else [lane]
 
     def _drivable(self, edge: str, kind: str) -> list[int]:
@@ -178,11 +177,10 @@ class Lanes:
                             taken = [*pairs, (entry, leave)]
                             reached[target] = (cost, taken, [*links, link])
             if not reached:
-                msg = (
+                raise ScenarioError(
                     f"{self._config_file}: ego route: edge '{edge}' has no connection to edge "
                     f"'{following}'; choose another lane or route"
                 )
-                raise ScenarioError(msg)
             best = reached
         lane, (_, pairs, links) = min(best.items(), key=lambda item: (item[1][0], item[0]))
         return [*pairs, (lane, lane)], links

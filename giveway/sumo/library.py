@@ -16,8 +16,9 @@ def import_libsumo() -> Any:
     try:
         import libsumo
     except ImportError as error:
-        msg = f"libsumo cannot be imported ({error}); reinstall with: pip install giveway"
-        raise InstallationError(msg) from error
+        raise InstallationError(
+            f"libsumo cannot be imported ({error}); reinstall with: pip install giveway"
+        ) from error
     return libsumo
 
 

@@ -73,8 +73,9 @@ class SumoSession:
         native_log: Path | None = None,
     ) -> None:
         if SumoSession._running:
-            msg = "SUMO: a simulation is already running; libsumo holds one per process, close it"
-            raise SumoError(msg)
+            raise SumoError(
+                "SUMO: a simulation is already running; libsumo holds one per process, close it"
+            )
         self._sumo = import_libsumo()
         self._config_file = scenario.config_file
         self._native_log = native_log
@@ -168,15 +169,13 @@ class SumoSession:
     def add_persons(self, ids: Sequence[str], host_edge: str) -> None:
         """Add persons who live on ``host_edge``; they appear with the next :meth:`mirror`."""
         if host_edge not in self._sumo.edge.getIDList():
-            msg = (
+            raise ScenarioError(
                 f"{self._config_file}: host edge '{host_edge}' for the pedestrians does not exist; "
                 "name an edge that allows pedestrians with [crowd] host_edge"
             )
-            raise ScenarioError(msg)
         taken = set(self._sumo.person.getIDList()).intersection(ids)
         if taken:
-            msg = f"person id '{min(taken)}': the scenario already has this person"
-            raise ScenarioError(msg)
+            raise ScenarioError(f"person id '{min(taken)}': the scenario already has this person")
         for name in ids:
             self.call(self._sumo.person.add, name, host_edge, 0.0, _DEPART_NOW, PEDESTRIAN_TYPE)
             self.call(self._sumo.person.appendWalkingStage, name, [host_edge], -1.0)
@@ -299,8 +298,7 @@ def _compare(
 ) -> None:
     deviation = math.hypot(there[0] - here[0], there[1] - here[1])
     if deviation > POSITION_TOLERANCE:
-        msg = (
+        raise SumoError(
             f"{kind} '{name}' at {time:.3f} s: SUMO has it {deviation:.3g} m away from our state; "
             f"expected at most {POSITION_TOLERANCE:g} m; is it moved by somebody else?"
         )
-        raise SumoError(msg)

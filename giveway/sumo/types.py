@@ -37,11 +37,10 @@ def ego_type(vehicle_class: str) -> str:
         ScenarioError: a vehicle of this class does not drive on roads.
     """
     if vehicle_class not in ROAD_CLASSES:
-        msg = (
+        raise ScenarioError(
             f"vehicle class '{vehicle_class}': an ego drives where people walk; expected one of "
             f"{', '.join(ROAD_CLASSES)}; name another vehicle with --ego"
         )
-        raise ScenarioError(msg)
     return f"{EGO_TYPE}_{vehicle_class}"
 
 

@@ -195,11 +195,10 @@ class SumoVehicles:
         except SumoError as error:
             if "already exists" not in str(error):
                 raise
-            msg = (
+            raise ScenarioError(
                 f"ego id '{ego_id}': the scenario already has this vehicle; choose another id, or "
                 f"take it over with --ego {ego_id}"
-            )
-            raise ScenarioError(msg) from error
+            ) from error
         self.egos.add(ego_id)
 
     def adopt(self, state: VehicleState, shape: VehicleShape) -> None:

@@ -144,12 +144,14 @@ def split(
         ConfigError: ``held_out`` is not a share.
     """
     if not 0.0 <= held_out < 1.0:
-        msg = f"--held-out {held_out}: expected a share from 0 to less than 1 of the clips"
-        raise ConfigError(msg)
+        raise ConfigError(
+            f"--held-out {held_out}: expected a share from 0 to less than 1 of the clips"
+        )
     count = max(1, round(held_out * len(clips))) if held_out else 0
     if count >= len(clips):
-        msg = f"clips: {len(clips)} is too few to hold {count} out; expected more, or --held-out 0"
-        raise DatasetError(msg)
+        raise DatasetError(
+            f"clips: {len(clips)} is too few to hold {count} out; expected more, or --held-out 0"
+        )
     rank: dict[str, int] = {}
     order: list[tuple[int, int, int]] = []
     for i in np.random.default_rng(seed).permutation(len(clips)):
@@ -165,14 +167,13 @@ def _checked(names: Sequence[str], start: VciParameters) -> tuple[str, ...]:
     for name in names:
         require_parameter(name, "--parameters")
         if names.count(name) > 1:
-            msg = f"--parameters: {name} is named twice; expected once"
-            raise ConfigError(msg)
+            raise ConfigError(f"--parameters: {name} is named twice; expected once")
         if getattr(start, name) == 0.0:
-            msg = f"--parameters: {name} starts at 0 and is scaled from there; start elsewhere"
-            raise ConfigError(msg)
+            raise ConfigError(
+                f"--parameters: {name} starts at 0 and is scaled from there; start elsewhere"
+            )
     if not names:
-        msg = f"--parameters: expected at least one of {', '.join(NAMES)}"
-        raise ConfigError(msg)
+        raise ConfigError(f"--parameters: expected at least one of {', '.join(NAMES)}")
     return tuple(names)
 
 

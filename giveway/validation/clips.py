@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    Array = NDArray[np.float64]
+    from giveway.geometry.kernel import Array
+
 
 PEDESTRIANS: Final = "_traj_ped_filtered.csv"
 VEHICLES: Final = "_traj_veh_filtered.csv"
@@ -82,23 +83,27 @@ def read_clips(folder: Path) -> tuple[Clip, ...]:
         DatasetError: there is no such folder, no clip in it, or a file cannot be used.
     """
     if not folder.is_dir():
-        msg = f"{folder}: no such folder; expected the CITR dataset's, or a part of it"
-        raise DatasetError(msg)
+        raise DatasetError(
+            f"{folder}: no such folder; expected the CITR dataset's, or a part of it"
+        )
     files = sorted(folder.rglob(f"*{PEDESTRIANS}"))
     for file in sorted(folder.rglob(f"*{VEHICLES}")):
         partner = file.with_name(file.name.removesuffix(VEHICLES) + PEDESTRIANS)
         if not partner.is_file():
-            msg = f"{file}: no pedestrians beside it; expected {partner.name}, or remove the file"
-            raise DatasetError(msg)
+            raise DatasetError(
+                f"{file}: no pedestrians beside it; expected {partner.name}, or remove the file"
+            )
     if not files:
-        msg = f"{folder}: no clip found; expected files *{PEDESTRIANS} in it or its folders"
-        raise DatasetError(msg)
+        raise DatasetError(
+            f"{folder}: no clip found; expected files *{PEDESTRIANS} in it or its folders"
+        )
     clips = [read_clip(file) for file in files]
     names: dict[str, Path] = {}
     for clip, file in zip(clips, files, strict=True):
         if names.setdefault(clip.name, file) != file:
-            msg = f"{file}: a clip of this name is in {names[clip.name].parent} too; keep one"
-            raise DatasetError(msg)
+            raise DatasetError(
+                f"{file}: a clip of this name is in {names[clip.name].parent} too; keep one"
+            )
     return tuple(clips)
 
 
@@ -115,8 +120,7 @@ def read_clip(file: Path) -> Clip:
     first = int(pedestrians["frame"].min())
     last = int(pedestrians["frame"].max())
     if last - first >= _LONGEST:
-        msg = f"{file}: frames {first} to {last}: expected at most {_LONGEST}"
-        raise DatasetError(msg)
+        raise DatasetError(f"{file}: frames {first} to {last}: expected at most {_LONGEST}")
     ids, rows = _spread(pedestrians, _PEDESTRIAN_COLUMNS, first, last)
     poses = np.empty((last - first + 1, 0, 4))
     if vehicles is not None:
@@ -144,16 +148,15 @@ def _read(file: Path, columns: tuple[str, ...]) -> pd.DataFrame:
         table = pd.read_csv(file, dtype=str, keep_default_na=False)
     except (OSError, ValueError) as error:  # pandas' and Unicode's errors are ValueErrors
         reason = error.strerror if isinstance(error, OSError) else str(error).splitlines()[0]
-        msg = f"{file}: cannot be read as CSV ({reason}); take the file from the dataset again"
-        raise DatasetError(msg) from error
+        raise DatasetError(
+            f"{file}: cannot be read as CSV ({reason}); take the file from the dataset again"
+        ) from error
     missing = [name for name in ("id", "frame", *columns) if name not in table.columns]
     if missing:
         expected = ",".join(("id", "frame", "label", *columns))
-        msg = f"{file}: column '{missing[0]}' is missing; expected {expected}"
-        raise DatasetError(msg)
+        raise DatasetError(f"{file}: column '{missing[0]}' is missing; expected {expected}")
     if table.empty:
-        msg = f"{file}: no rows; take the file from the dataset again"
-        raise DatasetError(msg)
+        raise DatasetError(f"{file}: no rows; take the file from the dataset again")
     numbers = pd.DataFrame({name: _numbers(file, table, name) for name in ("id", "frame")})
     numbers = numbers.astype(np.int64)
     for name in columns:
@@ -162,8 +165,9 @@ def _read(file: Path, columns: tuple[str, ...]) -> pd.DataFrame:
     if twice.any():
         row = int(twice.to_numpy().argmax())
         who, frame = (int(numbers[name].iloc[row]) for name in ("id", "frame"))
-        msg = f"{file}: line {row + 2}: id {who} is in frame {frame} twice; expected once"
-        raise DatasetError(msg)
+        raise DatasetError(
+            f"{file}: line {row + 2}: id {who} is in frame {frame} twice; expected once"
+        )
     return numbers
 
 
@@ -178,6 +182,5 @@ def _numbers(file: Path, table: pd.DataFrame, name: str) -> NDArray[np.float64]:
         row = int(bad.argmax())
         expected = "a whole number" if whole else "a finite number"
         found = str(table[name].iloc[row])
-        msg = f"{file}: line {row + 2}: {name} = {found!r}: expected {expected}"
-        raise DatasetError(msg)
+        raise DatasetError(f"{file}: line {row + 2}: {name} = {found!r}: expected {expected}")
     return values

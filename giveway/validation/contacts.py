@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from giveway.validation.clips import Array, Clip
+    from giveway.geometry.kernel import Array
+    from giveway.validation.clips import Clip
     from giveway.validation.protocol import Protocol
     from pedestrian_model import VciParameters
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from giveway.validation.clips import Array
+    from giveway.geometry.kernel import Array
     from giveway.validation.intervals import ClipBootstrap
     from giveway.validation.predictors import TrackPredictor
     from giveway.validation.protocol import Protocol, Window

@@ -23,7 +23,7 @@ from pedestrian_model import ParameterError, PedestrianModelError
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from giveway.validation.clips import Array
+    from giveway.geometry.kernel import Array
     from giveway.validation.protocol import Protocol, Window
     from pedestrian_model import VciParameters
 

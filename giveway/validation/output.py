@@ -45,8 +45,9 @@ def write_validation(found: Validation, parameters: VciParameters, folder: Path)
             for suffix in _SUFFIXES:
                 save_figure(figure, folder / f"{name}{suffix}")
     except OSError as error:
-        msg = f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
-        raise ResultsError(msg) from error
+        raise ResultsError(
+            f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
+        ) from error
 
 
 def _pictures(found: Validation, parameters: VciParameters) -> tuple[Figure, Figure, Figure]:

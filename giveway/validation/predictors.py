@@ -10,7 +10,7 @@ import numpy as np
 from pedestrian_model import Crowd, Predictor
 
 if TYPE_CHECKING:
-    from giveway.validation.clips import Array
+    from giveway.geometry.kernel import Array
     from giveway.validation.protocol import Window
     from pedestrian_model import VciParameters
 

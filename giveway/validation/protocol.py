@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from giveway.validation.clips import Array, Clip
+    from giveway.geometry.kernel import Array
+    from giveway.validation.clips import Clip
 
 _NOWHERE = 1e6  # [m] where a vehicle stands in frames in which it is not seen
 

@@ -96,9 +96,8 @@ def cut_windows(clips: tuple[Clip, ...], protocol: Protocol) -> tuple[Window, ..
     if not cut:
         needed = protocol.skip + min(protocol.horizons) + 1
         longest = max((clip.frames for clip in clips), default=0)
-        msg = (
+        raise DatasetError(
             f"clips: the longest has {longest} frames: expected at least {needed} in which "
             f"somebody is seen ({protocol.skip} are skipped, {min(protocol.horizons)} predicted)"
         )
-        raise DatasetError(msg)
     return cut

@@ -108,23 +108,26 @@ def survey(net_file: Path) -> Survey:
                 reader.read(stream)
     except OSError as error:
         # gzip's own complaints are OSErrors without a strerror.
-        msg = f"{net_file}: the network cannot be read: {error.strerror or error}"
-        raise ScenarioError(msg) from error
+        raise ScenarioError(
+            f"{net_file}: the network cannot be read: {error.strerror or error}"
+        ) from error
     except (EOFError, zlib.error) as error:
-        msg = f"{net_file}: the network's gzip is damaged ({error}); write it again"
-        raise ScenarioError(msg) from error
+        raise ScenarioError(
+            f"{net_file}: the network's gzip is damaged ({error}); write it again"
+        ) from error
     except expat.ExpatError as error:
-        msg = f"{net_file}: not XML ({error}); expected a SUMO network, made by netconvert"
-        raise ScenarioError(msg) from error
+        raise ScenarioError(
+            f"{net_file}: not XML ({error}); expected a SUMO network, made by netconvert"
+        ) from error
     except (KeyError, ValueError) as error:
         reason = f"attribute {error} is missing" if isinstance(error, KeyError) else str(error)
-        msg = (
+        raise ScenarioError(
             f"{net_file}: line {reader.line}: {reason}; expected a SUMO network, made by netconvert"
-        )
-        raise ScenarioError(msg) from error
+        ) from error
     if not reader.is_network:
-        msg = f"{net_file}: no <net> in it; expected a SUMO network, made by netconvert"
-        raise ScenarioError(msg)
+        raise ScenarioError(
+            f"{net_file}: no <net> in it; expected a SUMO network, made by netconvert"
+        )
     return reader.survey
 
 

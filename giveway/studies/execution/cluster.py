@@ -62,8 +62,9 @@ class ClusterExecutor:
         _require_dask()
         local = _LOCAL.fullmatch(address)
         if local is None and not _REMOTE.fullmatch(address):
-            msg = f"cluster '{address}': expected tcp://host:port of a Dask scheduler, or local:N"
-            raise WorkerError(msg)
+            raise WorkerError(
+                f"cluster '{address}': expected tcp://host:port of a Dask scheduler, or local:N"
+            )
         self._address = address
         self._local = 0 if local is None else int(local.group(1) or _LOCAL_WORKERS)
         self._limits = limits
@@ -142,8 +143,9 @@ class ClusterExecutor:
             self._missed = now
             self._tell(f"{missing}; waiting {self._patience:g} s for it, nothing is lost")
         if now - self._missed > self._patience:
-            msg = f"{missing}, for {self._patience:g} s; start it again and go on with --resume"
-            raise WorkerError(msg)
+            raise WorkerError(
+                f"{missing}, for {self._patience:g} s; start it again and go on with --resume"
+            )
         return False
 
     def abandon(self, futures: Iterable[Any]) -> None:
@@ -194,10 +196,9 @@ class ClusterExecutor:
             self._threads = sum(self._client.nthreads().values())
         except (OSError, ValueError, RuntimeError) as error:
             reason = " ".join(str(error).split()) or type(error).__name__
-            msg = (
+            raise WorkerError(
                 f"cluster '{self._address}': cannot be reached ({reason}); is 'dask scheduler' up?"
-            )
-            raise WorkerError(msg) from error
+            ) from error
         return self._client
 
 
@@ -205,8 +206,9 @@ def _require_dask() -> None:
     try:
         import distributed  # noqa: F401
     except ImportError as error:
-        msg = f"a cluster needs Dask ({error}); pip install 'giveway[cluster]'"
-        raise WorkerError(msg) from error
+        raise WorkerError(
+            f"a cluster needs Dask ({error}); pip install 'giveway[cluster]'"
+        ) from error
 
 
 def _try_briefly(call: Callable[[], Any]) -> None:

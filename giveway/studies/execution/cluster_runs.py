@@ -114,8 +114,9 @@ class ClusterRuns:
             if future.status != "error":  # its worker died before it could be fetched
                 return None
             reason = " ".join(f"{type(error).__name__}: {error}".split())
-            msg = f"a worker cannot make runs ({reason}); install this giveway on every machine"
-            raise WorkerError(msg) from error
+            raise WorkerError(
+                f"a worker cannot make runs ({reason}); install this giveway on every machine"
+            ) from error
         finally:
             future.release()
         if REFUSED in answer:

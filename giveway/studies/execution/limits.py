@@ -35,8 +35,9 @@ class Limits:
         """
         for name, value in (("hang_limit", hang_limit), ("run_limit", run_limit)):
             if value is not None and not value > 0.0:
-                msg = f"{name} = {value!r}: expected seconds above 0; leave it out for the default"
-                raise WorkerError(msg)
+                raise WorkerError(
+                    f"{name} = {value!r}: expected seconds above 0; leave it out for the default"
+                )
         return cls(hang_limit, math.inf if run_limit is None else run_limit)
 
     def quiet(self, phase: Phase) -> float:

@@ -31,8 +31,9 @@ class LocalExecutor:
 
     def __init__(self, jobs: int, limits: Limits) -> None:
         if jobs < 1:
-            msg = f"jobs = {jobs}: expected at least 1 process; the number of cores is a good one"
-            raise WorkerError(msg)
+            raise WorkerError(
+                f"jobs = {jobs}: expected at least 1 process; the number of cores is a good one"
+            )
         self._jobs = jobs
         self._limits = limits
         self._pool: Pool | None = None
@@ -78,11 +79,13 @@ class LocalExecutor:
             try:
                 self._pool = Pool(self._jobs, self._limits)
             except OSError as error:
-                msg = f"{error}: the workers' temporary folder; free the disk or set TMPDIR"
-                raise WorkerError(msg) from error
+                raise WorkerError(
+                    f"{error}: the workers' temporary folder; free the disk or set TMPDIR"
+                ) from error
             except RuntimeError as error:  # no more threads
-                msg = f"{self._jobs} workers: {error}; free memory or lower --jobs"
-                raise WorkerError(msg) from error
+                raise WorkerError(
+                    f"{self._jobs} workers: {error}; free memory or lower --jobs"
+                ) from error
         return self._pool
 
     def _close(self) -> None:

@@ -205,12 +205,11 @@ class Pool:
         self._failed_starts += 1
         if self._failed_starts >= _MOST_FAILED_STARTS:
             self._failed_starts = 0
-            msg = (
+            raise WorkerError(
                 f"{_MOST_FAILED_STARTS} processes in turn have ended before they could make a run "
                 f"({cause}); free memory, lower --jobs, or run 'giveway doctor'; what is finished "
                 "stays"
             )
-            raise WorkerError(msg)
         self._closed.wait(_PAUSE * 2**self._failed_starts)
 
     def _raise_if_closed(self) -> None:

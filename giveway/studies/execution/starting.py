@@ -71,8 +71,7 @@ def _start_with_callback(
                 connection.close()
     process.kill()
     process.wait()
-    msg = f"a worker ended while it started (exit code {process.returncode})"
-    raise OSError(msg)
+    raise OSError(f"a worker ended while it started (exit code {process.returncode})")
 
 
 def _popen(

@@ -100,8 +100,7 @@ class WorkerProcess:
                 if self._process.poll() is not None:
                     raise EOFError
                 if waited > START_LIMIT:
-                    msg = f"it was not ready after {waited:g} s"
-                    raise NotBegunError(msg)
+                    raise NotBegunError(f"it was not ready after {waited:g} s")
             if message[0] != READY:
                 raise GarbledError
         except (EOFError, GarbledError):

@@ -76,5 +76,4 @@ def metric(name: str) -> Metric:
     names = [known.name for known in METRICS]
     close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
     hint = f"did you mean '{close[0]}'?" if close else f"expected one of {', '.join(names)}"
-    msg = f"metric '{name}': no such number to compare; {hint}"
-    raise ConfigError(msg)
+    raise ConfigError(f"metric '{name}': no such number to compare; {hint}")
