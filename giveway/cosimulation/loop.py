@@ -159,13 +159,13 @@ class Loop:
         )
 
     def _progress(self, acting: str) -> Progress:
-        elapsed, people = self._k * self._time_step, len(self._roster)
+        elapsed, pedestrians = self._k * self._time_step, len(self._roster)
         clock = self._start + elapsed
         if not self._egos:
-            return Progress(elapsed, clock, np.nan, np.nan, np.nan, acting, people)
+            return Progress(elapsed, clock, np.nan, np.nan, np.nan, acting, pedestrians)
         ego = self._egos[0]
         position, speed = ego.vehicle.position, ego.vehicle.speed
-        return Progress(elapsed, clock, position, ego.goal, speed, acting, people)
+        return Progress(elapsed, clock, position, ego.goal, speed, acting, pedestrians)
 
     # --- step 1 -------------------------------------------------------------------------------
 
@@ -219,7 +219,7 @@ class Loop:
             recorder.ego(ego.id, ego.row(time, seen, decision))
             predicted = ego.expected(seen) if self._looks else None
             if predicted is not None:
-                self._record_predictions(ego.id, predicted, seen.whom)
+                self._record_predictions(ego.id, predicted, seen.relevant)
             predicting += decide_at - look_at
             controlling += controlled_at - decide_at
             acting = acting or decision.acting
@@ -239,16 +239,16 @@ class Loop:
         self._recorder.crowd(roster.present, crowd.position, crowd.velocity, self._places(), within)
 
     def _record_predictions(
-        self, ego_id: str, predicted: Array, whom: NDArray[np.bool_] | None
+        self, ego_id: str, predicted: Array, relevant: NDArray[np.bool_] | None
     ) -> None:
         present = self._roster.present
-        people = present if whom is None else present[whom]
+        pedestrians = present if relevant is None else present[relevant]
         every = min(
             self._looks, len(predicted)
         )  # for a period beyond the horizon, the horizon's end is kept
         kept = predicted[every - 1 :: every]
         looks = np.arange(every, len(predicted) + 1, every, dtype=np.float64)
-        self._recorder.predictions(ego_id, people, self._time_step * looks, kept)
+        self._recorder.predictions(ego_id, pedestrians, self._time_step * looks, kept)
 
     def _record_background(self) -> None:
         background = self._mirror.background
@@ -310,8 +310,7 @@ class Loop:
         if self._disturbance is None:
             parts.crowd_model.advance(crowd, *now)
         else:
-            people = roster.present, len(roster.ids)
-            self._disturbance.advance(crowd, *now, *people)
+            self._disturbance.advance(crowd, *now, roster.present, len(roster.ids))
         there = arrived(roster.crowd, ARRIVAL_RADIUS)
         if not np.count_nonzero(there):
             return

@@ -1,4 +1,4 @@
-"""What no model knows of how people walk: a random acceleration on top of their own."""
+"""A random acceleration on top of the model's: pedestrians walk as no model predicts."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _STREAM = 0xACC  # tells these draws from others of the same seed
 
 
 class Disturbance:
-    """A random acceleration of everybody, constant over each step and new in the next.
+    """A random acceleration of each pedestrian, constant over a step and new in the next.
 
-    Drawn for everybody who ever was in the crowd, present or not: a pedestrian meets the same
+    It is drawn for all that ever were in the crowd, present or not: a pedestrian meets the same
     accelerations at the same instants whichever controller drives.
 
     Args:
@@ -45,20 +45,20 @@ class Disturbance:
         vehicles: Vehicles,
         surroundings: Surroundings,
         present: NDArray[np.integer],
-        people: int,
+        known: int,
     ) -> None:
-        """Step the crowd in place as the model does, and push everybody.
+        """Step the crowd in place as the model does, and push each pedestrian.
 
         Args:
-            crowd: n people.
+            crowd: n pedestrians.
             vehicles: in their way.
             surroundings: the walls and lights that they heed.
-            present: (n,) which of all ``people`` they are.
-            people: how many ever were in the crowd.
+            present: (n,) which of all ``known`` pedestrians they are.
+            known: how many pedestrians ever were in the crowd.
         """
         before = crowd.velocity.copy()
         self._model.advance(crowd, vehicles, surroundings)
-        push = planar_noise(self._random, people)[present]
+        push = planar_noise(self._random, known)[present]
         push *= self._deviation * self._time_step
         self.push(crowd, before, push)
 

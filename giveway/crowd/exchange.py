@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 HANDED_BACK_WITHIN = 3.0  # [m] of the middle of a lane for pedestrians, or SUMO makes them jump
-_CLOSED = frozenset("rRyYus")  # states of a crossing's light at which nobody sets out
+_CLOSED = frozenset("rRyYus")  # states of a crossing's light at which pedestrians wait
 
 
 class Exchange:
@@ -30,10 +30,10 @@ class Exchange:
 
     Args:
         session: the running simulation.
-        network: where people can walk.
+        network: where pedestrians can walk.
         zone: where they are ours.
         roster: our crowd.
-        walls: whether the edges of walkways hold people back.
+        walls: whether the edges of walkways hold pedestrians back.
     """
 
     def __init__(

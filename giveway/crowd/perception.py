@@ -20,10 +20,10 @@ _STREAM = 0x5EE  # tells these draws from others of the same seed
 
 
 class Perception:
-    """One ego's eyes: positions with noise, and desired speeds that nobody can see.
+    """One ego's eyes: positions with noise, and desired speeds that cannot be seen.
 
-    Each observation draws new noise for everybody, from a generator of this ego's own: equal runs
-    see the same, whatever else runs beside them.
+    Each observation draws new noise for all, from a generator of this ego's own: equal runs see the
+    same, whatever other egos there are.
 
     Args:
         config: of the ego.
@@ -49,7 +49,7 @@ class Perception:
             crowd: as it is; not changed. Its arrays are shared where they are seen as they are.
 
         Returns:
-            A crowd of the same people in the same order, which the next call overwrites.
+            A crowd of the same pedestrians in the same order, which the next call overwrites.
         """
         if self.exact or not len(crowd):
             return crowd

@@ -19,7 +19,7 @@ class Roster:
     """The crowd and the names of those in it.
 
     Attributes:
-        ids: everybody who ever was in the crowd; the tables refer to them by index.
+        ids: of all that ever were in the crowd; the tables refer to them by index.
         crowd: the state of those who are in it now.
         present: (n,) index into ``ids`` of each of them.
         names: the ids of each of them.
@@ -40,7 +40,7 @@ class Roster:
 
     @property
     def ledger(self) -> dict[str, int]:
-        """Where everybody is; added + taken over = handed back + arrived + continued + walking."""
+        """Where they are; added + taken over = handed back + arrived + continued + walking."""
         added, walking = len(self.added), len(self.present)
         return {"added": added, **self._counts, "walking": walking}
 
@@ -67,5 +67,5 @@ class Roster:
         return names
 
     def count(self, event: str, number: int = 1) -> None:
-        """Note what became of people who left the crowd."""
+        """Note what became of pedestrians that left the crowd."""
         self._counts[event] += number

@@ -32,7 +32,7 @@ class Spawned:
 
 
 def spawn(config: CrowdConfig, path: EgoPath | None, seed: int, prefix: str = PREFIX) -> Spawned:
-    """Draw ``config.pedestrians`` people, uniformly in the spawn area, none closer than allowed.
+    """Draw ``config.pedestrians`` pedestrians, uniform in the spawn area, none closer than allowed.
 
     With ``two_sided`` every second one stands on, and walks to, the mirror image about the ego's
     path where it passes the spawn area. The first k of a larger crowd of the same seed are not the
@@ -45,7 +45,7 @@ def spawn(config: CrowdConfig, path: EgoPath | None, seed: int, prefix: str = PR
         prefix: of their ids; a number follows.
 
     Raises:
-        CrowdError: the area is too small for so many people at this spacing, or there is no ego
+        CrowdError: the area is too small for so many at this spacing, or there is no ego
             about whose path to mirror.
     """
     random = np.random.default_rng(seed)

@@ -23,7 +23,7 @@ _EXPECTED = (
 
 
 class Zone:
-    """Where people are ours: round the egos, in a polygon, everywhere or nowhere.
+    """Where pedestrians are ours: round the egos, in a polygon, everywhere or nowhere.
 
     Args:
         text: as in the configuration.

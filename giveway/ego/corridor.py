@@ -1,9 +1,9 @@
 """Who and what is in front of the ego: the corridor about its path, now and in the future.
 
-The paper speaks of "the closest pedestrian in front" without saying who that is. Our reading (an
-option): body centres ahead of the front bumper, at most ``half_width`` from the ego's path, at
-that instant. A vehicle is in front where a part of its outline is. Nobody in front is an infinite
-distance, and so is whoever is out of sight: more than 100 m ahead along the path.
+The paper speaks of "the closest pedestrian in front" without defining it. Our reading (an option):
+pedestrians whose body centre is ahead of the front bumper and at most ``half_width`` from the ego's
+path, at that instant. A vehicle is in front if a part of its outline is. If nothing is in front, or
+only beyond the sight of 100 m along the path, the distance is infinite.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 
 
 class Corridor:
-    """The corridor about a path; its arrays are allocated once and handed out again and again.
+    """The corridor about a path; its arrays are allocated once and reused in every step.
 
     Args:
         path: the ego's.
         half_width: [m].
         horizon: N [steps].
         time_step: [s].
-        walking_speed_limit: [m/s] that nobody exceeds on foot.
+        walking_speed_limit: [m/s] that no pedestrian exceeds.
         body_length: of the ego [m].
         straight: steps for which vehicles beside the path are taken to go straight on; None: N.
     """
@@ -54,20 +54,21 @@ class Corridor:
         self._reach = walking_speed_limit * horizon * time_step  # [m] walked within the horizon
         self._ahead = np.full(horizon, np.inf)
         self._vehicles_ahead = np.full(horizon, np.inf)
-        self._nobody = np.full(horizon, np.inf)
+        self._empty = np.full(horizon, np.inf)
         self._steps, self._distance, self._speed = (np.zeros(0) for _ in range(3))
 
     @property
-    def nobody(self) -> Array:
-        """(N,) what :meth:`closest_predicted` gives when nobody is ever in front."""
-        return self._nobody
+    def empty(self) -> Array:
+        """(N,) what :meth:`closest_predicted` gives when no pedestrian is ever in front."""
+        return self._empty
 
     def closest_now(self, positions: Array, front: float) -> tuple[float, bool]:
         """Station of the closest pedestrian in front [m], and whether a prediction is needed.
 
-        It is not when nobody can be in front within the horizon: everybody is further from the
-        path than the half width plus what can be walked, or (on a straight path, where stations
-        change no faster than people walk) is left behind by more than that.
+        No prediction is needed if no pedestrian can get in front within the horizon: because all
+        are farther from the path than the half width plus the distance that can be walked, or (on
+        a straight path, where stations change no faster than pedestrians walk) because they are
+        behind by more than that.
         """
         path = self.path
         closest, reachable = closest_in_sight(
@@ -197,7 +198,7 @@ def closest_in_front(
     half_width: float,
     reach: float,
 ) -> tuple[float, bool]:
-    """Station of the closest person in front; can anybody get there by walking ``reach``?"""
+    """Station of the closest pedestrian in front; can any get there by walking ``reach``?"""
     closest = np.inf
     reachable = False
     low_x, high_x = np.min(vertices[first : last + 2, 0]), np.max(vertices[first : last + 2, 0])

@@ -30,25 +30,29 @@ if TYPE_CHECKING:
     from pedestrian_model import Crowd, Surroundings
 
 
-_KEPT = 0.5  # [m] that the approach to a vehicle ends before the safe distance
-_BEYOND = 0.5  # [m] beyond the stopping place no plan may lead
-_RECOVERY = 2.0  # [s] in which a safe distance that is lost is to be regained
-_STRAIGHT = 1.0  # [s] of a long horizon in which others go straight on; then the road may bend
-_PREDICT_ALL = 150  # persons; of a larger crowd only who matters to the ego is predicted
+_KEPT = 0.5  # [m] before the safe distance at which the approach to a vehicle ends
+_BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
+_RECOVERY = 2.0  # [s] in which a lost safe distance is to be regained
+_STRAIGHT = (
+    1.0  # [s] for which other vehicles are predicted straight on; beyond it the road may bend
+)
+_PREDICT_ALL = 150  # pedestrians; of a larger crowd only those that matter to the ego are predicted
 
 
 class Seen(NamedTuple):
     """What the ego reacts to at one instant."""
 
-    person: float  # station [m] of the closest pedestrian in front; inf: nobody
+    pedestrian: float  # station [m] of the closest pedestrian in front; inf: none
     leader: Leader
     stop: float  # station [m] where a red light wants the front bumper; inf: none
     ahead: Array  # (N,) stations [m] of the closest obstacle at steps 1 ... N
-    predicted: Array | None  # (N, n, 2) [m] of people at steps 1 ... N, until the next look
-    whom: NDArray[np.bool_] | None  # of the crowd has been predicted; None: everybody
-    closest: float  # station [m] of ``person`` in truth, however it is seen: for the tables
+    predicted: Array | None  # (N, n, 2) [m] positions at steps 1 ... N, until the next look
+    relevant: NDArray[np.bool_] | None  # (n,) who has been predicted; None: the whole crowd
+    closest: float  # station [m] as ``pedestrian``, but of the true positions: for the tables
     crowd: Crowd  # the pedestrians as they are seen
-    foresight: CrowdForesight | None  # for a controller that foresees, if somebody may come
+    foresight: (
+        CrowdForesight | None
+    )  # for a controller that foresees, if a pedestrian may come in front
     poses: Array  # (N, m, 7) of all vehicles at steps 0 ... N-1
     row: int  # the ego's among them
 
@@ -57,7 +61,7 @@ class Ego:
     """A vehicle on the road.
 
     Args:
-        waiting: what it was before its departure; its FMU has been started.
+        waiting: the ego before its departure; its FMU has been started.
         path: of the ego.
         departure: station [m] of the front bumper where the FMU's position is 0.
         shape: of its body.
@@ -171,20 +175,20 @@ class Ego:
         truth, perception = crowd, self._perception
         if perception is not None:
             crowd = perception.observe(truth)
-        person, reachable = corridor.closest_now(crowd.position, front)
-        closest = person
+        pedestrian, reachable = corridor.closest_now(crowd.position, front)
+        closest = pedestrian
         if perception is not None:
             closest, _ = corridor.closest_now(truth.position, front)
-        ahead = corridor.nobody
-        predictor, predicted, whom, foresight = self._predictor, None, None, None
+        ahead = corridor.empty
+        predictor, predicted, relevant, foresight = self._predictor, None, None, None
         if reachable and predictor is not None:
-            whom = self._relevant(crowd, speed)
-            people = crowd if whom is None else crowd.select(whom)
+            relevant = self._relevant(crowd, speed)
+            pedestrians = crowd if relevant is None else crowd.select(relevant)
             horizon, foresight = poses[: predictor.horizon], self._foresight
             if foresight is not None:
-                foresight.look(people, surroundings, horizon, row, front, speed)
+                foresight.look(pedestrians, surroundings, horizon, row, front, speed)
             else:
-                predicted = predictor.predict(people, horizon, surroundings)
+                predicted = predictor.predict(pedestrians, horizon, surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
         leader, stop = NO_LEADER, math.inf
         if self._heed_vehicles and poses.shape[1] > 1:
@@ -196,14 +200,24 @@ class Ego:
                 allowed = stop + _BEYOND + self._origin
                 ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
         return Seen(
-            person, leader, stop, ahead, predicted, whom, closest, crowd, foresight, poses, row
+            pedestrian,
+            leader,
+            stop,
+            ahead,
+            predicted,
+            relevant,
+            closest,
+            crowd,
+            foresight,
+            poses,
+            row,
         )
 
     def _relevant(self, crowd: Crowd, speed: float) -> NDArray[np.bool_] | None:
-        """(n,) whom of a large crowd the plan, or somebody whom it depends on, may meet.
+        """(n,) the pedestrians of a large crowd that can matter to the plan; None: all of them.
 
-        None is everybody. Who is left out acts on the plan only through others, and moves those
-        whom it may meet by less than a micrometre within the horizon.
+        Those who are left out act on the plan only through others, and move the pedestrians that
+        the ego may meet by less than a micrometre within the horizon.
         """
         if len(crowd) <= _PREDICT_ALL:
             return None
@@ -255,7 +269,7 @@ class Ego:
         return Observation(
             position=origin,
             speed=vehicle.speed,
-            gap=min(seen.person, seen.leader.station, stop) - origin,
+            gap=min(seen.pedestrian, seen.leader.station, stop) - origin,
             obstacle_positions=seen.ahead,
             speed_limit=math.inf if free else self._speed_limit(seen),
             safe_distance=safe_distance,
@@ -271,11 +285,11 @@ class Ego:
         )
 
     def expected(self, seen: Seen) -> Array | None:
-        """(N, n, 2) [m] where the decision expects people at steps 1 ... N, until the next look."""
+        """(N, n, 2) [m] positions that the decision expects at steps 1 ... N; overwritten next time."""
         return seen.predicted if seen.foresight is None else seen.foresight.best
 
     def _speed_limit(self, seen: Seen) -> float:
-        """From which speed the comfortable deceleration brings it to a light or behind a leader."""
+        """The speed [m/s] that comfortable braking allows before a light or behind a leader."""
         regulation = self.config.regulation
         b = regulation.comfortable_deceleration
         limit = math.inf
@@ -295,7 +309,7 @@ class Ego:
         self.vehicle.step(self._force)
 
     def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
-        """What the tables keep of this instant."""
+        """The row of this instant for the tables."""
         front = self.front
         origin = front + self._origin
         return EgoRow(

@@ -1,4 +1,4 @@
-"""What a manoeuvre would lead to: the crowd predicted under it, seen from the ego on its path."""
+"""What a manoeuvre would lead to: the crowd predicted under it, as seen from the ego."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pedestrian_model import Crowd, Predictor, Surroundings
 
 
-PASSED = 0.3  # [m] behind the front bumper people still count as in front: they are squeezed past
+PASSED = 0.3  # [m] behind the front bumper pedestrians still count as in front, being squeezed by
 _EVERY = 2  # steps from one search for conflicts to the next
 
 
@@ -48,8 +48,8 @@ class CrowdForesight:
         shape: of its body.
         half_width: of the corridor [m].
         growth: of it with the look-ahead, on each side [m/s].
-        planned_speed: people are predicted under the manoeuvre, else under the present speed.
-        clearance: [m] that the safety layer keeps to people's bodies.
+        planned_speed: the crowd is predicted under the manoeuvre, else under the present speed.
+        clearance: [m] that the safety layer keeps to pedestrians' bodies.
         braking: [m/s^2] of the ego at most.
         safety_layer: whether there is one: only then it matters what it would do.
         conflict_time: time to collision of a conflict [s] (FHWA-HRT-08-051).
@@ -77,13 +77,13 @@ class CrowdForesight:
         self._view = tuple(
             View(shape.length, shape.width, half_width, growth, conflict_time, predictor.time_step)
         )
-        people = predictor.parameters
+        walking = predictor.parameters
         self._alarm = tuple(
             Alarm(
-                people.body_radius,
+                walking.body_radius,
                 clearance,
-                people.max_acceleration,
-                people.max_speed,
+                walking.max_acceleration,
+                walking.max_speed,
                 braking,
                 safety_layer,
             )
@@ -99,7 +99,7 @@ class CrowdForesight:
 
     def look(
         self,
-        people: Crowd,
+        pedestrians: Crowd,
         surroundings: Surroundings,
         poses: Array,
         row: int,
@@ -109,20 +109,20 @@ class CrowdForesight:
         """Begin an instant.
 
         Args:
-            people: whom to predict.
+            pedestrians: to be predicted.
             surroundings: the walls and lights that they heed.
             poses: (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
             row: the ego's.
             front: the front bumper's station [m].
             speed: the ego's [m/s].
         """
-        self._people, self._surroundings = people, surroundings
+        self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front, self._now = poses, row, front, speed
         self._copied, self._stale, self._preferred = False, True, False
 
     @property
     def best(self) -> Array | None:
-        """(N, n, 2) [m] people at steps 1 ... N under the manoeuvre preferred; None: none was."""
+        """(N, n, 2) [m] positions at steps 1 ... N under the preferred manoeuvre, if any was."""
         return self._best if self._preferred else None
 
     def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
@@ -152,7 +152,7 @@ class CrowdForesight:
         return self._prospect
 
     def prefer(self) -> None:
-        """Remember where everybody would be under the latest manoeuvre."""
+        """Keep the positions under the latest manoeuvre as those of the preferred one."""
         if self._best.shape != self._predicted.shape:
             self._best = np.empty_like(self._predicted)
         self._best[:] = self._predicted
@@ -173,7 +173,9 @@ class CrowdForesight:
             self._row,
             self._poses,
         )
-        self._predicted = self._predictor.predict(self._people, self._poses, self._surroundings)
+        self._predicted = self._predictor.predict(
+            self._pedestrians, self._poses, self._surroundings
+        )
         self._stale = False
 
     def _copy(self) -> None:

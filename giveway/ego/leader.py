@@ -42,7 +42,9 @@ def outline_in_front(
     """Station of the closest point of a vehicle's outline in front; inf: none is."""
     cos, sin = np.cos(vehicle[2]), np.sin(vehicle[2])
     rear, length, half = -vehicle[5], vehicle[4] + vehicle[5], vehicle[6] / 2.0
-    apart = max(_FINEST_OUTLINE, min(_OUTLINE, half_width))  # none slips through the corridor
+    apart = max(
+        _FINEST_OUTLINE, min(_OUTLINE, half_width)
+    )  # so that no vehicle slips through the corridor
     along = max(1, int(np.ceil(length / apart)))
     closest = np.inf
     for i in range(along + 1):
@@ -73,11 +75,11 @@ def vehicles_in_front(
 ) -> tuple[float, float]:
     """The closest vehicle now (station, speed along the path); fills ``ahead`` for 1 ... N.
 
-    One that is in the corridor now is taken to follow the path at its present speed, any other
-    one to go straight on, for ``straight`` steps: so a car ahead in a bend stays ahead, and one
-    from the side comes. Over a horizon longer than that, oncoming cars are taken to keep to the
-    lane beside. One that is in the corridor behind the front bumper stays behind: it does not
-    drive through us.
+    A vehicle that is in the corridor now is predicted to follow the path at its present speed, any
+    other to go straight on for ``straight`` steps: so a vehicle ahead in a bend stays ahead, and one
+    from the side arrives. Beyond these steps oncoming vehicles are predicted to keep to their own
+    lane. A vehicle in the corridor behind the front bumper stays behind: it does not drive through
+    the ego.
     """
     N = ahead.shape[0]
     first, last = window(stations, front, BEHIND)
@@ -103,7 +105,7 @@ def vehicles_in_front(
             nearest_to_it, _ = project(vertices, stations, vehicle[0], vehicle[1])
             i = segment_at(stations, nearest_to_it)
             if np.cos(vehicle[2] - headings[i]) < _ONCOMING:
-                continue  # on the lane beside ours, which bends as ours does
+                continue  # it is on the oncoming lane, which bends as ours does
         reach = min(N, straight) * (advance + abs(vehicle[3]) * time_step) + size + half_width
         if away > reach:
             continue  # it cannot meet the ego within the horizon

@@ -28,7 +28,7 @@ class Guard:
     """Watches over one ego's forces.
 
     Args:
-        limits: of people and of the brake.
+        limits: of pedestrians and of the brake.
         config: of the ego.
         path: of the ego.
         shape: of its body.

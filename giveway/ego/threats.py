@@ -1,4 +1,4 @@
-"""Who is about to collide with the ego, and up to which speed nobody could make it stop hard."""
+"""Pedestrians about to collide with the ego, and speeds at which none could make it stop hard."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Alarm(NamedTuple):
 
     radius: float  # of a body [m]
     clearance: float  # kept to it by the safety layer [m]
-    walking_acceleration: float  # [m/s^2] that nobody exceeds
-    walking_speed: float  # [m/s] that nobody exceeds
+    walking_acceleration: float  # [m/s^2] that no pedestrian exceeds
+    walking_speed: float  # [m/s] that no pedestrian exceeds
     braking: float  # of the ego at most [m/s^2]
     heeded: bool  # there is a safety layer that would act
 
@@ -44,7 +44,7 @@ def conflicts_and_calm(
 ) -> tuple[float, float]:
     """Persons who would touch the ego within the conflict time if both kept their velocity.
 
-    Also the speed [m/s] from which on nobody could force an emergency stop, see
+    Also the speed [m/s] from which on no pedestrian could force an emergency stop, see
     :func:`is_threat`; inf: ``speed`` is slow enough.
     """
     if speed <= _SLOW:
@@ -88,7 +88,7 @@ def is_threat(
     time_step: float,
     alarm: Alarm,
 ) -> bool:
-    """Whether somebody could get before the front while the ego brakes fully from here on.
+    """Whether a pedestrian could get before the front while the ego brakes fully from here on.
 
     The safety layer would act then (controller/safety.py knows exactly; this is its outline).
 

@@ -84,7 +84,7 @@ def test_who_is_left_out_changes_nothing_that_a_manoeuvre_would_lead_to(
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
                 look = ego.look(0, poses, people, OPEN_GROUND)
                 assert look.foresight is not None
-                left_out += look.whom is not None and not look.whom.all()
+                left_out += look.relevant is not None and not look.relevant.all()
                 way = speed * 0.05 * np.arange(N + 1)
                 steady = Manoeuvre(way, np.full(N + 1, speed), np.zeros(N + 1))
                 seen.append([column.copy() for column in look.foresight.prospect(steady)])

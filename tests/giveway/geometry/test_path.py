@@ -78,7 +78,7 @@ def test_nobody_in_front_is_infinitely_far() -> None:
     plaza = corridor([(0, 0), (100, 0)])
     assert plaza.closest_now(np.empty((0, 2)), 5.0) == (math.inf, False)
     assert plaza.closest_now(np.array([[9.0, 30.0]]), 5.0) == (math.inf, False)
-    assert np.isinf(plaza.nobody).all()
+    assert np.isinf(plaza.empty).all()
 
 
 def test_the_gate_opens_for_whoever_can_walk_into_the_corridor() -> None:
