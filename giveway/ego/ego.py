@@ -285,7 +285,7 @@ class Ego:
         )
 
     def expected(self, seen: Seen) -> Array | None:
-        """(N, n, 2) [m] positions that the decision expects at steps 1 ... N; overwritten next time."""
+        """(N, n, 2) [m] positions that the decision expects at steps 1 ... N; reused later."""
         return seen.predicted if seen.foresight is None else seen.foresight.best
 
     def _speed_limit(self, seen: Seen) -> float:

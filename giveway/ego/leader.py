@@ -76,7 +76,7 @@ def vehicles_in_front(
     """The closest vehicle now (station, speed along the path); fills ``ahead`` for 1 ... N.
 
     A vehicle that is in the corridor now is predicted to follow the path at its present speed, any
-    other to go straight on for ``straight`` steps: so a vehicle ahead in a bend stays ahead, and one
+    other to go straight on for ``straight`` steps. So one ahead in a bend stays ahead, and one
     from the side arrives. Beyond these steps oncoming vehicles are predicted to keep to their own
     lane. A vehicle in the corridor behind the front bumper stays behind: it does not drive through
     the ego.
