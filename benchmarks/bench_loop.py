@@ -1,6 +1,6 @@
 """The cost of the whole loop at 30 pedestrians, part by part, next to SUMO and the FMU alone.
 
-Run: python benchmarks/bench_loop.py [--pairs N]
+Run: python benchmarks/bench_loop.py [--pairs N] [--controller NAME]
 
 The baseline makes the same moves, SUMO steps and FMU steps as a recorded run, with nothing in
 between. Both are timed in turn in one process; the ratio is what counts.
@@ -22,6 +22,8 @@ from giveway.cosimulation.assembly import assemble
 from giveway.cosimulation.preflight import preflight
 from giveway.geometry.angles import headings_to_angles
 from giveway.records.tracks import Timings
+
+CONTROLLERS = ("mpc", "pid-tuned", "mpc-paper", "pid-paper")
 
 
 def baseline(result: RunResult) -> float:
@@ -60,8 +62,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seed", type=int, default=4, help="4 meets the crowd and keeps moving")
     parser.add_argument("--pairs", type=int, default=15, help="loop and baseline, in turn")
+    parser.add_argument("--controller", action="append", choices=CONTROLLERS, help="these only")
     options = parser.parse_args()
-    for controller in ("mpc", "pid-tuned", "mpc-paper", "pid-paper"):
+    for controller in options.controller or CONTROLLERS:
         checked = preflight(*load([Layer("", {"controller": controller, "seed": options.seed})]))
         simulate(checked)  # compiles, and warms the file cache
         results, ratios = [], []

@@ -48,6 +48,19 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
         config.option.dist = "worksteal"
 
 
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the tests of ``fmus``, which need no compiled kernels, behind the first half.
+
+    Two workers begin at the two halves: so one of them compiles the kernels, and the other finds
+    them compiled when it comes to tests that need them.
+    """
+    needs_none = [item for item in items if "fmus" in item.path.parent.parts]
+    others = [item for item in items if "fmus" not in item.path.parent.parts]
+    half = len(items) // 2
+    items[:] = [*others[:half], *needs_none, *others[half:]]
+
+
 @pytest.fixture(scope="session")
 def zoo(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> Any:
     """FMUs of every kind, built on demand (tests/support/fmus/README.md is the menu)."""

@@ -12,7 +12,7 @@ BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 @pytest.mark.parametrize(
     ("script", "words", "printed"),
     [
-        ("bench_loop.py", ["--pairs", "1"], "real-time factor"),
+        ("bench_loop.py", ["--pairs", "1", "--controller", "mpc"], "real-time factor"),
         ("bench_scenario.py", ["--walkers", "100", "--window", "1"], "walkers"),
         ("bench_metrics.py", ["--repetitions", "1"], "summary"),
     ],

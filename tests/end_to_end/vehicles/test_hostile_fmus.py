@@ -187,7 +187,8 @@ def test_an_fmu_that_fails_at_the_start_says_so(zoo, isolated, fmi, fault, phase
 
 @pytest.mark.parametrize("phase", ["terminate", "free", "unload"])
 @pytest.mark.parametrize("fault", ["segfault", "exit_0", "hang", "fatal"])
-def test_what_happens_at_the_end_no_longer_matters(zoo, isolated, fault, phase):
+def test_what_happens_at_the_end_no_longer_matters(zoo, isolated, fault, phase, monkeypatch):
+    monkeypatch.setattr("fmus.isolation.isolated_vehicle._END_TIMEOUT", 1.0)
     if (fault, phase) == ("fatal", "unload"):
         pytest.skip("nobody asks for a status then")
     vehicle = isolated(zoo.car(behaviour=fault, phase=phase, at=0.0))

@@ -235,10 +235,11 @@ def test_what_contradicts_itself_is_refused():
 
 
 def test_a_cluster_that_is_not_there_costs_nothing(
-    small_study, study_of, small_study_text, tmp_path
+    small_study, study_of, small_study_text, tmp_path, monkeypatch
 ):
     import shutil
 
+    monkeypatch.setattr("giveway.studies.execution.cluster._CONNECT", 0.5)
     folder = shutil.copytree(small_study.path, tmp_path / "kept")
     before = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
     with pytest.raises(GivewayError, match="cannot be reached"):

@@ -115,7 +115,8 @@ def test_an_address_that_is_none(address, refused):
         cluster_executor(address)
 
 
-def test_nobody_at_the_address(refused):
+def test_nobody_at_the_address(refused, monkeypatch):
+    monkeypatch.setattr("giveway.studies.execution.cluster._CONNECT", 0.5)
     with (
         refused(WorkerError, "tcp://127.0.0.1:1", "cannot be reached"),
         cluster_executor("tcp://127.0.0.1:1"),
