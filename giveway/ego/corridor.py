@@ -55,7 +55,6 @@ class Corridor:
         self._ahead = np.full(horizon, np.inf)
         self._vehicles_ahead = np.full(horizon, np.inf)
         self._empty = np.full(horizon, np.inf)
-        self._steps, self._distance, self._speed = (np.zeros(0) for _ in range(3))
 
     @property
     def empty(self) -> Array:
@@ -133,25 +132,54 @@ class Corridor:
             front: the front bumper's station now [m].
             speed: the ego's speed [m/s].
         """
-        path, steps = self.path, poses.shape[0]
-        if len(self._steps) != steps:
-            self._steps, self._distance, self._speed = (
-                np.arange(steps, dtype=float),
-                *np.empty((2, steps)),
-            )
-        np.multiply(self._steps, speed * self.time_step, out=self._distance)
-        self._speed[:] = speed
-        fill_poses(
+        path = self.path
+        fill_steady_poses(
             path.vertices,
             path.stations,
             path.headings,
             front,
-            self._distance,
-            self._speed,
+            speed * self.time_step,
+            speed,
             self.body_length,
             row,
             poses,
         )
+
+
+@kernel
+def set_pose(
+    vertices: Array,
+    stations: Array,
+    headings: Array,
+    station: float,
+    speed: float,
+    length: float,
+    pose: Array,
+) -> None:
+    """Set a vehicle's ``pose`` (7,) to a body whose front bumper is at ``station`` [m]."""
+    x, y, heading = body_pose(vertices, stations, headings, station, length)
+    pose[0] = x - 0.5 * length * np.cos(heading)
+    pose[1] = y - 0.5 * length * np.sin(heading)
+    pose[2] = heading
+    pose[3] = speed
+
+
+@kernel
+def fill_steady_poses(
+    vertices: Array,
+    stations: Array,
+    headings: Array,
+    front: float,
+    advance: float,
+    speed: float,
+    length: float,
+    row: int,
+    poses: Array,
+) -> None:
+    """As :func:`fill_poses`, for a body that drives ``advance`` [m] in each step."""
+    for i in range(poses.shape[0]):
+        station = front + i * advance
+        set_pose(vertices, stations, headings, station, speed, length, poses[i, row])
 
 
 @kernel
@@ -180,11 +208,8 @@ def fill_poses(
         poses: (N, m, 7).
     """
     for i in range(poses.shape[0]):
-        x, y, heading = body_pose(vertices, stations, headings, front + distance[i], length)
-        poses[i, row, 0] = x - 0.5 * length * np.cos(heading)
-        poses[i, row, 1] = y - 0.5 * length * np.sin(heading)
-        poses[i, row, 2] = heading
-        poses[i, row, 3] = speeds[i]
+        station = front + distance[i]
+        set_pose(vertices, stations, headings, station, speeds[i], length, poses[i, row])
 
 
 @kernel
