@@ -76,6 +76,7 @@ class Heartbeat:
     """
 
     def __init__(self, folder: Path | None) -> None:
+        self._instant = memoryview(bytearray(16)).cast("q")  # step and time, before they are stored
         if folder is None:
             self._slots = memoryview(bytearray(_LAYOUT.size)).cast("q")
             return
@@ -100,8 +101,9 @@ class Heartbeat:
 
     def step(self, step: int, time: float) -> None:
         """Tell which control step begins, at which time [s] of SUMO's clock."""
-        self._slots[_STEP] = step
-        self._slots[_TIME] = round(time * _MILLISECONDS)
+        instant = self._instant
+        instant[0], instant[1] = step, round(time * _MILLISECONDS)
+        self._slots[_STEP : _TIME + 1] = instant  # at once: a kill finds both words or neither
 
     def finish(self, code: int) -> None:
         """Tell that everything has been done, and the exit code: an end without this is a crash."""
