@@ -20,7 +20,7 @@ from giveway.config.layers import Layer
 from giveway.config.loading import load
 from giveway.cosimulation.assembly import assemble
 from giveway.cosimulation.preflight import preflight
-from giveway.geometry.angles import headings_to_angles
+from giveway.geometry.path import headings_to_angles
 from giveway.records.tracks import Timings
 
 CONTROLLERS = ("mpc", "pid-tuned", "mpc-paper", "pid-paper")

@@ -51,6 +51,7 @@ def made_up_run(pedestrians: int, steps: int) -> tuple[EgoTrack, CrowdTrack]:
         acting=np.full(steps, "mpc"),
         reason=np.full(steps, "optimal"),
         solver_status=np.full(steps, "solved"),
+        waits_for=np.full(steps, ""),
         solver_iterations=np.zeros(steps, dtype=np.int64),
     )
     rng = np.random.default_rng(1)

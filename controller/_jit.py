@@ -1,13 +1,13 @@
 """numba's ``njit`` with types: cached on disk, strict IEEE arithmetic."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+Array = NDArray[np.float64]
 
 _Function = TypeVar("_Function", bound="Callable[..., Any]")
 

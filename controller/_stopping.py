@@ -1,22 +1,10 @@
 """The kernels of :mod:`controller.safety`: stopping profiles against what people can reach."""
 
-from __future__ import annotations
-
 from math import sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-from controller._jit import kernel
-from controller.defaults import STANDSTILL
+from controller._jit import Array, kernel
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
-
-LETS_THROUGH, ACTS, UNAVOIDABLE = 0, 1, 2
-_RESOLUTION = 4.0  # [N] to which the largest safe force is found
-_SLACK = 1e-9  # [m] that a new plan keeps and the fallback need not: above rounding, below a hair
 _BETWEEN = 3  # poses of the front in a bend that a box is made to hold, besides the last
 
 
@@ -193,7 +181,7 @@ def _may_meet(
 
 
 @kernel
-def _is_safe(
+def is_safe(
     force: float,
     speed: float,
     way: Array,
@@ -221,53 +209,3 @@ def _is_safe(
         if _may_meet(x, y, velocity[i, 0], velocity[i, 1], steps, slack, c, boxes):
             return False
     return True
-
-
-@kernel
-def largest_safe_force(
-    force: float,
-    speed: float,
-    way: Array,
-    spacing: float,
-    position: Array,
-    velocity: Array,
-    limits: tuple[float, ...],
-    commands: Array,
-    boxes: Array,
-) -> tuple[float, int]:
-    """The largest safe force up to ``force`` [N], and what the layer does; notes the force.
-
-    Args:
-        force: asked for.
-        speed: of the ego.
-        way: (k, 4) of the front's poses ahead.
-        spacing: [m] between them.
-        position: (n, 2) [m].
-        velocity: (n, 2) [m/s].
-        limits: the numbers of :class:`Limits`; a plain tuple, which numba unpacks 2 us faster.
-        commands: (delay + 1,) [N] the forces of the past, the latest last; changed.
-        boxes: (longest stop [steps] + 1, 9) scratch.
-    """
-    c, v = Limits(*limits), speed if speed > STANDSTILL else 0.0
-    verdict, safe = LETS_THROUGH, force
-    if position.shape[0] > 0 and not _is_safe(
-        force, v, way, spacing, position, velocity, c, commands, boxes, _SLACK
-    ):
-        verdict = ACTS
-        safe = max(-c.force_limit, commands[-1] - c.force_rate_limit)
-        safe = min(safe, force)
-        unsafe = force
-        if not _is_safe(safe, v, way, spacing, position, velocity, c, commands, boxes, 0.0):
-            verdict, unsafe = UNAVOIDABLE, safe
-        while unsafe - safe > _RESOLUTION:
-            middle = 0.5 * (safe + unsafe)
-            if _is_safe(middle, v, way, spacing, position, velocity, c, commands, boxes, _SLACK):
-                safe = middle
-            else:
-                unsafe = middle
-        if safe == force and verdict == ACTS:
-            verdict = LETS_THROUGH  # full braking was asked for, and is just enough
-    for i in range(commands.shape[0] - 1):
-        commands[i] = commands[i + 1]
-    commands[-1] = safe
-    return safe, verdict

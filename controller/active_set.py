@@ -5,19 +5,11 @@ thousands of iterations on the problems that matter here, those where the car ju
 stop. The method also ends with a certificate when no plan exists.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
-from controller._jit import kernel
+from controller._jit import Array, kernel
 from controller.verification import PRIMAL_TOLERANCE, equality_solve
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 INFEASIBLE = -1
 UNFINISHED = -2

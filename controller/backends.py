@@ -1,20 +1,12 @@
 """Which solver works on a least-squares problem: the one place where the choice is made."""
 
-from __future__ import annotations
+from typing import Protocol
 
-from typing import TYPE_CHECKING, Protocol
-
+from controller._jit import Array
 from controller.daqp_backend import DaqpBackend
+from controller.defaults import SolverName
+from controller.least_squares import LeastSquares, Outcome
 from controller.osqp_backend import OsqpBackend
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from controller.defaults import SolverName
-    from controller.least_squares import LeastSquares, Outcome
-
-    Array = NDArray[np.float64]
 
 
 class Backend(Protocol):

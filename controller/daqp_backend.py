@@ -1,20 +1,10 @@
 """DAQP, an exact dual active-set solver: the second backend. The only file that imports daqp."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from controller._jit import Array
 from controller.errors import SolverMissingError
-from controller.least_squares import Outcome
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from controller.least_squares import LeastSquares
-
-    Array = NDArray[np.float64]
+from controller.least_squares import LeastSquares, Outcome
 
 _INFINITY = 1e30  # DAQP's
 _SOLVED, _INFEASIBLE, _ITERATION_LIMIT = 1, -1, -4

@@ -1,7 +1,5 @@
 """The defaults that several parts of this package share, each with its unit and its source."""
 
-from __future__ import annotations
-
 from typing import Final, Literal
 
 SolverName = Literal["osqp", "daqp"]

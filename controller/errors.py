@@ -1,7 +1,5 @@
 """What can go wrong in the controllers, one class per thing a user can do something about."""
 
-from __future__ import annotations
-
 
 class ControllerError(Exception):
     """The root of the controllers' errors; the message is one line."""

@@ -1,19 +1,13 @@
 """One sequence for both quadratic programs: exact start, solver, verified optimum."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from controller._jit import Array, kernel
 from controller.active_set import INFEASIBLE, solve_exactly
 from controller.backends import make_backend
-from controller.least_squares import Outcome
+from controller.defaults import SolverName
+from controller.least_squares import LeastSquares, Outcome
 from controller.verification import certifies_infeasibility, refine
-
-if TYPE_CHECKING:
-    from controller.defaults import SolverName
-    from controller.least_squares import LeastSquares
 
 
 class ExactSolver:
@@ -73,10 +67,9 @@ class ExactSolver:
 
     def _start(self) -> bool:
         """Start the solver at the optimum; False if it is proved that there is none."""
-        work = (*self._bounds, self._problem.target, self._multipliers, self.solution)
-        if refine(*work) >= 0:
-            return True
-        code = solve_exactly(*work)
+        code = solve_from(
+            *self._bounds, self._problem.target, self._multipliers, self.solution, True
+        )
         if code >= 0:
             return True
         proved = code == INFEASIBLE and self._certified()
@@ -86,13 +79,43 @@ class ExactSolver:
 
     def _verified(self, outcome: Outcome) -> bool:
         """Make the solution exact; whether it is the verified optimum."""
+        near = outcome is Outcome.SOLVED
         work = (*self._bounds, self._problem.target, self._multipliers, self.solution)
-        if outcome is Outcome.SOLVED and refine(*work) >= 0:
-            return True
-        return solve_exactly(*work) >= 0
+        return solve_from(*work, near) >= 0
 
     def _certified(self) -> bool:
         """Whether the multipliers prove that the problem has no solution."""
         if self._box is None:
             return False
         return certifies_infeasibility(*self._bounds, *self._box, self._multipliers)
+
+
+@kernel
+def solve_from(
+    rows: Array,
+    lower: Array,
+    upper: Array,
+    target: Array,
+    multipliers: Array,
+    solution: Array,
+    near: bool,
+) -> int:
+    """Minimise |V - target|^2 exactly: by refining multipliers, and if that fails from scratch.
+
+    Args:
+        rows: (m, N).
+        lower: (m,); -inf where there is none.
+        upper: (m,); inf where there is none.
+        target: (N,).
+        multipliers: (m,) to start from; receives the optimum's, or a certificate of infeasibility.
+        solution: (N,) receives the minimiser.
+        near: the multipliers are those of a similar problem, or of an approximate solve.
+
+    Returns:
+        Corrections or iterations; below 0: no optimum was verified, see :func:`solve_exactly`.
+    """
+    if near:
+        corrections = refine(rows, lower, upper, target, multipliers, solution)
+        if corrections >= 0:
+            return corrections
+    return solve_exactly(rows, lower, upper, target, multipliers, solution)

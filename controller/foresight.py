@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from controller._jit import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +28,6 @@ class Manoeuvre:
     def empty(cls, horizon: int) -> Manoeuvre:
         """Room for a manoeuvre of N steps."""
         return cls(np.zeros(horizon + 1), np.zeros(horizon + 1), np.zeros(horizon + 1))
-
-    def copy_from(self, other: Manoeuvre) -> None:
-        """Become another one of the same length."""
-        self.distance[:] = other.distance
-        self.speed[:] = other.speed
-        self.acceleration[:] = other.acceleration
 
 
 class Prospect(NamedTuple):

@@ -1,15 +1,9 @@
 """The problem that both model predictive controllers pose, and what a solver says of it."""
 
-from __future__ import annotations
-
 import enum
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from controller._jit import Array
 
 
 class LeastSquares(Protocol):

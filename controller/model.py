@@ -1,7 +1,5 @@
 """The vehicle as the controllers see it: longitudinal, linear, discrete in time."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from controller.defaults import TIME_STEP

@@ -1,16 +1,14 @@
 """The model predictive controller of Yang & Özgüner 2019, section 3."""
 
-from __future__ import annotations
-
 from math import inf, isnan, nan
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from controller._jit import kernel
+from controller._jit import Array, kernel
 from controller.errors import ParameterError
 from controller.exact_solver import ExactSolver
 from controller.least_squares import Outcome
+from controller.model import LongitudinalModel
 from controller.parameters import MpcParameters, require
 from controller.solution import MpcSolution
 from controller.speed_problem import (
@@ -23,13 +21,6 @@ from controller.speed_problem import (
     UNDECIDED,
     SpeedProblem,
 )
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from controller.model import LongitudinalModel
-
-    Array = NDArray[np.float64]
 
 _PROOFS = {
     TOO_CLOSE: "infeasible: too close",

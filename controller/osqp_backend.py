@@ -4,24 +4,15 @@ It gets the paper's problem in the unknowns v(k+1), v(k+2) - v(k+1), ...: from a
 a seventh of the iterations that the speeds themselves cost it, and they would often not converge.
 """
 
-from __future__ import annotations
-
 import signal
-from typing import TYPE_CHECKING
 
 import numpy as np
 import osqp
 from scipy import sparse
 
+from controller._jit import Array
 from controller.errors import SolverSetupError
-from controller.least_squares import Outcome
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from controller.least_squares import LeastSquares
-
-    Array = NDArray[np.float64]
+from controller.least_squares import LeastSquares, Outcome
 
 _INFINITY = 1e30  # OSQP's
 _STATUS = {

@@ -1,7 +1,5 @@
 """The controllers' parameters: Yang & Özgüner 2019, table 1, and the readings it leaves open."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

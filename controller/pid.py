@@ -1,7 +1,5 @@
 """The PID controller of Yang & Özgüner 2019, section 3.4: the MPC's fallback and its rival."""
 
-from __future__ import annotations
-
 from math import inf, isfinite
 
 from controller.defaults import TIME_STEP

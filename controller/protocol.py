@@ -1,19 +1,11 @@
 """What every controller sees, what it answers, and how it is asked."""
 
-from __future__ import annotations
-
 from math import inf
-from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
+from typing import Literal, NamedTuple, Protocol
 
+from controller._jit import Array
 from controller.defaults import SAFE_DISTANCE
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from controller.foresight import Foresight
-
-    Array = NDArray[np.float64]
+from controller.foresight import Foresight
 
 
 class PathAhead(Protocol):

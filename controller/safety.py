@@ -8,26 +8,22 @@ set-based online verification with a fail-safe manoeuvre (Althoff & Dolan, IEEE 
 Althoff, ITSC 2018) and of the safe distances of RSS (Shalev-Shwartz et al., arXiv 1708.06374).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import ceil, exp, inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from controller._stopping import ACTS, UNAVOIDABLE, Limits, largest_safe_force
-from controller.defaults import FORCE_LIMIT
+from controller._jit import Array, kernel
+from controller._stopping import Limits, is_safe
+from controller.defaults import FORCE_LIMIT, STANDSTILL
+from controller.model import LongitudinalModel
 from controller.parameters import require, require_not_negative, require_positive
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from controller.model import LongitudinalModel
-
-    Array = NDArray[np.float64]
-
 LONGEST_STOP = 20.0  # [s] what has not stopped by then does not count as stopping
+LETS_THROUGH, ACTS, UNAVOIDABLE = 0, 1, 2
+_RESOLUTION = 4.0  # [N] to which the largest safe force is found
+_SLACK = 1e-9  # [m] that a new plan keeps and the fallback need not: above rounding, below a hair
 _WHOLE_STEPS = 1e-6  # of a step: a reaction time of so little more is no step more
 
 
@@ -157,3 +153,53 @@ class SafetyLayer:
         if verdict == UNAVOIDABLE:
             return SafeForce(safe, True, "unavoidable")
         return SafeForce(safe, False, "")
+
+
+@kernel
+def largest_safe_force(
+    force: float,
+    speed: float,
+    way: Array,
+    spacing: float,
+    position: Array,
+    velocity: Array,
+    limits: tuple[float, ...],
+    commands: Array,
+    boxes: Array,
+) -> tuple[float, int]:
+    """The largest safe force up to ``force`` [N], and what the layer does; notes the force.
+
+    Args:
+        force: asked for.
+        speed: of the ego.
+        way: (k, 4) of the front's poses ahead.
+        spacing: [m] between them.
+        position: (n, 2) [m].
+        velocity: (n, 2) [m/s].
+        limits: the numbers of :class:`Limits`; a plain tuple, which numba unpacks 2 us faster.
+        commands: (delay + 1,) [N] the forces of the past, the latest last; changed.
+        boxes: (longest stop [steps] + 1, 9) scratch.
+    """
+    c, v = Limits(*limits), speed if speed > STANDSTILL else 0.0
+    verdict, safe = LETS_THROUGH, force
+    if position.shape[0] > 0 and not is_safe(
+        force, v, way, spacing, position, velocity, c, commands, boxes, _SLACK
+    ):
+        verdict = ACTS
+        safe = max(-c.force_limit, commands[-1] - c.force_rate_limit)
+        safe = min(safe, force)
+        unsafe = force
+        if not is_safe(safe, v, way, spacing, position, velocity, c, commands, boxes, 0.0):
+            verdict, unsafe = UNAVOIDABLE, safe
+        while unsafe - safe > _RESOLUTION:
+            middle = 0.5 * (safe + unsafe)
+            if is_safe(middle, v, way, spacing, position, velocity, c, commands, boxes, _SLACK):
+                safe = middle
+            else:
+                unsafe = middle
+        if safe == force and verdict == ACTS:
+            verdict = LETS_THROUGH  # full braking was asked for, and is just enough
+    for i in range(commands.shape[0] - 1):
+        commands[i] = commands[i + 1]
+    commands[-1] = safe
+    return safe, verdict

@@ -1,17 +1,10 @@
 """The MPC where it has a plan, else the PID (Yang & Özgüner 2019, algorithm 1); or a PID alone."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from controller.defaults import STANDSTILL
-from controller.protocol import Decision
-
-if TYPE_CHECKING:
-    from controller.mpc import Mpc
-    from controller.pid import Pid
-    from controller.protocol import Observation
-    from controller.tuned_pid import TunedPid
+from controller.mpc import Mpc
+from controller.pid import Pid
+from controller.protocol import Decision, Observation
+from controller.tuned_pid import TunedPid
 
 
 class SpeedController:

@@ -15,21 +15,11 @@ Rows, for speeds V = [v(k+1), ..., v(k+N)]:
 Forward Euler makes x_1(k+1) independent of all unknowns: its row is a test before any solve.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from controller._jit import kernel
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from controller.model import LongitudinalModel
-    from controller.parameters import MpcParameters
-
-    Array = NDArray[np.float64]
+from controller._jit import Array, kernel
+from controller.model import LongitudinalModel
+from controller.parameters import MpcParameters
 
 SLACK = 1e-9  # [m/s] [m] by which all bounds are widened: a plan that touches its bounds, as those
 # that just stop do, leaves the next problem a single point, which rounding would make empty

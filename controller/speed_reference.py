@@ -1,7 +1,5 @@
 """The speed a tuned PID aims at: a profile over the gap, and how it is got to smoothly."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import copysign, inf, sqrt
 from typing import Literal

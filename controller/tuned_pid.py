@@ -1,7 +1,5 @@
 """A PID as a good engineer would make it: the planning MPC's fair rival (``pid-tuned``)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from math import inf, isfinite
 

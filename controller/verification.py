@@ -6,18 +6,10 @@ section 5.5.3). Likewise a certificate of infeasibility counts only if our own a
 confirms it over the box of possible speeds.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
-from controller._jit import kernel
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from controller._jit import Array, kernel
 
 PRIMAL_TOLERANCE = 1e-10  # [m/s] and below: rounding of sums of at most N speeds
 _PIVOT = 1e-11  # relative: below it a binding row depends on the others

@@ -54,4 +54,4 @@ class FmuStateError(FmuError):
 
 
 class FmuBuildError(FmuError):
-    """The shipped FMUs cannot be rebuilt here."""
+    """An FMU cannot be compiled here."""

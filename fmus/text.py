@@ -1,12 +1,7 @@
 """Text that came from an FMU, made fit for a terminal and a log."""
 
-from __future__ import annotations
-
 import unicodedata
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from collections.abc import Sequence
 
 LIMIT = 200  # characters of one message
 _SPACES = frozenset({"Zl", "Zp", "Zs"})

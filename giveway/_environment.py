@@ -1,7 +1,6 @@
 """What has to be right before anything else is imported."""
 
-from __future__ import annotations
-
+import errno
 import importlib.util
 import os
 import sys
@@ -10,6 +9,7 @@ from pathlib import Path
 from giveway.errors import InstallationError
 
 ROOMS = ("controller", "pedestrian_model", "fmus", "sumo_scenarios")
+_NO_MEMORY = ("failed to map segment", "Cannot allocate memory")  # the dynamic linker's
 _WITH_KERNELS = ("giveway", "controller", "pedestrian_model")
 
 
@@ -32,6 +32,27 @@ def check_rooms() -> None:
             )
 
 
+def out_of_memory(error: BaseException | None) -> bool:
+    """Whether an error, or what it was raised from, says that the system gives no more memory.
+
+    A library that does not fit is an ImportError or an OSError; only its words tell.
+    """
+    while error is not None:
+        if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
+            return True
+        if any(words in str(error) for words in _NO_MEMORY):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
+def user_cache() -> Path:
+    """The folder in the user's cache that is ours; it may not exist, or not be writable."""
+    from platformdirs import user_cache_path
+
+    return user_cache_path("giveway", appauthor=False)
+
+
 def kernel_cache() -> Path:
     """Where compiled kernels are kept.
 
@@ -39,12 +60,10 @@ def kernel_cache() -> Path:
     """
     import tempfile  # none of these is needed before numba is
 
-    from platformdirs import user_cache_path
-
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     if chosen:
         return Path(chosen)
-    folder = user_cache_path("giveway", appauthor=False) / f"kernels-{_fingerprint()}"
+    folder = user_cache() / f"kernels-{_fingerprint()}"
     existing = next(parent for parent in (folder, *folder.parents) if parent.exists())
     if os.access(existing, os.W_OK | os.X_OK):
         return folder

@@ -1,43 +1,38 @@
 """The Python API: one call, one run, everything it left behind."""
 
-from __future__ import annotations
-
 import math
+import shlex
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from giveway.config import RunConfig
 from giveway.config.layers import dump_toml
 from giveway.config.loading import as_layer, load
 from giveway.cosimulation.assembly import Parts, assemble
 from giveway.cosimulation.loop import Loop
 from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.ego.vehicle import model_margin
-from giveway.errors import GivewayError
+from giveway.errors import GivewayError, ResultsError
 from giveway.processes.child import STDERR_FILE
 from giveway.processes.heartbeat import Phase
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.journal import Journal
 from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
-from giveway.results import mismatch
+from giveway.results import mismatch, vehicle_contacts
 from giveway.results.folder import (
     release_folder,
     require_parquet,
     sumo_folder,
-    take_folder,
+    taken_folder,
     write_results,
 )
 from giveway.results.provenance import manifest
-from giveway.results.run_result import RunResult, results_of_egos
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from giveway.config import RunConfig
-    from giveway.results.run_result import EgoResult
-    from sumo_scenarios import Scenario
+from giveway.results.run_result import EgoResult, RunResult, results_of_egos
+from sumo_scenarios import Scenario
 
 __all__ = ["RunResult", "run", "run_checked", "simulate"]
 
@@ -107,20 +102,20 @@ def run_checked(
     folder = None if results is None else Path(results)
     if parquet:
         require_parquet()
-    taken = folder is not None and take_folder(folder, force=force)
-    rows = Journal(journal)
-    where = None if folder is None else str(folder.absolute())
-    wanted = {"results": where, "taken": taken, "parquet": parquet, "pictures": pictures}
-    rows.write_meta({"config": dump_toml(checked.config), **wanted})
-    native_log = None if journal is None or rows.failure else journal / STDERR_FILE
-    with DeferredInterrupt() as interrupt:  # writing is not to be torn either
+    with ExitStack() as stack:
+        taken = folder is not None and stack.enter_context(taken_folder(folder, force=force))
+        rows = Journal(journal)
+        where = None if folder is None else str(folder.absolute())
+        wanted = {"results": where, "taken": taken, "parquet": parquet, "pictures": pictures}
+        rows.write_meta({"config": dump_toml(checked.config), **wanted})
+        native_log = None if journal is None or rows.failure else journal / STDERR_FILE
+        interrupt = stack.enter_context(DeferredInterrupt())  # writing is not to be torn either
         try:
-            outputs = None if folder is None else sumo_folder(folder)
             result = simulate(
                 checked,
                 watcher,
                 interrupt,
-                outputs=outputs,
+                outputs=None if folder is None else sumo_folder(folder),
                 journal=rows,
                 native_log=native_log,
             )
@@ -130,12 +125,23 @@ def run_checked(
             raise
         rows.heartbeat.beat(Phase.WRITING)
         if folder is not None:
-            keep(result, folder, parquet=parquet, pictures=pictures, taken=taken)
+            try:
+                keep(result, folder, parquet=parquet, pictures=pictures, taken=taken)
+            except ResultsError as error:
+                if journal is not None and not rows.failure:
+                    rows.heartbeat.keep()
+                    error.args = (f"{error}; {in_journal(journal)}",)
+                raise
     if result.error is not None:
         if isinstance(result.error, GivewayError):
             result.error.result = result
         raise result.error
     return result
+
+
+def in_journal(journal: Path) -> str:
+    """What to tell a user whose rows could not be written, but are in a journal that is kept."""
+    return f"every row is kept: 'giveway recover {shlex.quote(str(journal))} --force' writes them"
 
 
 def keep(result: RunResult, folder: Path, *, parquet: bool, pictures: bool, taken: bool) -> None:
@@ -209,7 +215,8 @@ def _result(
     """What the loop has left behind."""
     rows = recorder.rows()
     egos = results_of_egos(parts.config, rows, ending, loop.endings)
-    remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos))
+    touched = [text for text in map(vehicle_contacts.remark, egos) if text]
+    remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos), *touched)
     if recorder.journal.failure:
         remarks = (*remarks, recorder.journal.failure)
     return RunResult(

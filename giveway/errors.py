@@ -4,8 +4,6 @@ Every message is one line: the file, key or id, the value, what was expected, wh
 ``exit_code`` is the command line's: 2 for a request that cannot be run, 1 for a run that failed.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 

@@ -6,6 +6,7 @@ import contextlib
 import shutil
 import time
 from fnmatch import fnmatch
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numba
@@ -16,8 +17,6 @@ from giveway._environment import kernel_cache
 from pedestrian_model import Crowd
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from rich.console import Console
 
 _MARKER = "compiled-by-numba-"

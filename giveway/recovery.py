@@ -1,28 +1,28 @@
 """After a crash of native code: the rows that the run had recorded, as a result like any other."""
 
-from __future__ import annotations
-
+import shutil
+import tomllib
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from giveway.api import keep
+from giveway.api import in_journal, keep
+from giveway.config import RunConfig
 from giveway.config.layers import read_toml_text
 from giveway.config.loading import load
-from giveway.errors import CrashError
-from giveway.recording.journal_reader import read_journal
+from giveway.errors import CrashError, GivewayError, ResultsError
+from giveway.processes.heartbeat import Heartbeat
+from giveway.processes.locks import FolderInUseError, locked
+from giveway.processes.supervisor import Verdict, journals, verdict_on_left
+from giveway.recording.journal_reader import JournalContents, read_journal
 from giveway.recording.recorded import RecordedRows
 from giveway.records.progress import Ending
-from giveway.results.folder import release_folder
+from giveway.results.folder import is_marked_only, release_folder, taken_folder
 from giveway.results.provenance import manifest
 from giveway.results.run_result import RunResult, results_of_egos
-
-if TYPE_CHECKING:
-    from giveway.config import RunConfig
-    from giveway.processes.supervisor import Verdict
-    from giveway.recording.journal_reader import JournalContents
-    from sumo_scenarios import Scenario
+from sumo_scenarios import Scenario
 
 
 def recover(journal: Path, verdict: Verdict) -> CrashError:
@@ -39,25 +39,125 @@ def recover(journal: Path, verdict: Verdict) -> CrashError:
         GivewayError: the rows cannot be read or written.
     """
     contents = read_journal(journal)
+    how = "the user has ended the run" if verdict.interrupted else "the run's process died"
     if not contents.meta:
-        return CrashError(f"the run's process died: {verdict.message}; run 'giveway doctor'")
+        doctor = "" if verdict.interrupted else "; run 'giveway doctor'"
+        return CrashError(f"{how}: {verdict.message}{doctor}")
     config, scenario = load([read_toml_text(contents.meta["config"], "the run's configuration")])
-    folder = contents.meta["results"]
-    report = (
-        f"{scenario.config_file}: the run's process died: {verdict.message}; 'giveway doctor "
-        f"{config.scenario}' looks for the cause"
-    )
+    doctor = f"; 'giveway doctor {config.scenario}' looks for the cause"
+    report = f"{scenario.config_file}: {how}: {verdict.message}"
+    report += "" if verdict.interrupted else doctor
     error = CrashError(report)
+    folder = None if contents.meta["results"] is None else Path(contents.meta["results"])
     if not contents.commits:
-        if contents.meta["taken"]:
-            release_folder(Path(folder))
+        if folder is not None and contents.meta["taken"]:
+            release_folder(folder)
         return error
     error.result = result = _result_of(config, scenario, contents, error, verdict)
     if folder is not None:
         wanted = {name: contents.meta[name] for name in ("parquet", "pictures", "taken")}
-        keep(result, Path(folder), **wanted)
+        try:
+            keep(result, folder, **wanted)
+        except ResultsError as failure:
+            Heartbeat(journal).keep()
+            failure.args = (f"{report}; {failure}; {in_journal(journal)}",)
+            raise
         error.args = (f"{report}; rows up to then are in {folder}",)
     return error
+
+
+@dataclass(frozen=True)
+class LeftJournal:
+    """The journal of a run that was killed together with its supervisor.
+
+    Attributes:
+        path: its folder.
+        scenario: of the run.
+        results: where its results were to go; None: nowhere.
+        steps: how many were recorded.
+        clock: the latest [s] of SUMO's time.
+    """
+
+    path: Path
+    scenario: str
+    results: Path | None
+    steps: int
+    clock: float
+
+
+def left_journals() -> list[LeftJournal]:
+    """The journals with rows that killed runs have left where journals are, oldest first."""
+    found = []
+    for path in journals():
+        with suppress(GivewayError, OSError):
+            left = _look_at(path, read_journal(path))
+            if left.steps:
+                found.append(left)
+    return found
+
+
+def recover_left(
+    journal: Path, out: Path | None = None, *, force: bool = False
+) -> tuple[RunResult, Path]:
+    """Write the rows in a journal that a killed run has left, and remove the journal.
+
+    Args:
+        journal: its folder.
+        out: where to write them; None: where the run would have written them.
+        force: replace the results there.
+
+    Returns:
+        The result, and where it is.
+
+    Raises:
+        ResultsError: there is no such journal, its run is still at work, or nothing can be
+            written; the journal stays.
+    """
+    try:
+        with locked(journal):
+            left = _look_at(journal, contents := read_journal(journal))
+            folder = out or left.results
+            if folder is None:
+                raise ResultsError(f"{journal}: the run wrote no results; name a folder with --out")
+            if not left.steps:
+                raise ResultsError(f"{journal}: the run was killed before its first row")
+            config_text = contents.meta["config"]
+            config, scenario = load([read_toml_text(config_text, "the run's configuration")])
+            verdict = verdict_on_left(journal)
+            error = CrashError(f"{scenario.config_file}: the run was {verdict.message}")
+            result = _result_of(config, scenario, contents, error, verdict)
+            wanted = {name: contents.meta[name] for name in ("parquet", "pictures")}
+            with taken_folder(folder, force=force or is_marked_only(folder)) as taken:
+                keep(result, folder, taken=taken, **wanted)
+            shutil.rmtree(journal, ignore_errors=True)
+    except FolderInUseError:
+        raise ResultsError(f"{journal}: its run is still at work; wait for it, or end it") from None
+    except (LookupError, TypeError, ValueError):
+        raise ResultsError(
+            f"{journal}: another version of giveway wrote this journal; recover it with that one"
+        ) from None
+    except OSError as error:
+        raise ResultsError(
+            f"{journal}: no journal can be read there ({error.strerror}); 'giveway recover' lists "
+            "those that there are"
+        ) from error
+    return result, folder
+
+
+def _look_at(journal: Path, contents: JournalContents) -> LeftJournal:
+    if not {"config", "results"} <= contents.meta.keys():
+        raise ResultsError(
+            f"{journal}: holds no journal of a run; 'giveway recover' lists those that there are"
+        )
+    settings = tomllib.loads(contents.meta["config"])
+    results = contents.meta["results"]
+    return LeftJournal(
+        path=journal,
+        scenario=str(settings.get("scenario", "")),
+        results=None if results is None else Path(results),
+        steps=contents.commits,
+        clock=contents.pulse.time,
+    )
 
 
 def _result_of(
@@ -68,6 +168,8 @@ def _result_of(
     verdict: Verdict,
 ) -> RunResult:
     rows = RecordedRows(contents.tables, contents.names)
+    ending = Ending.INTERRUPTED if verdict.interrupted else Ending.CRASHED
+    failure = None if verdict.interrupted else error
     endings = {
         ego.id: Ending.COMPLETED
         for ego in rows.egos()
@@ -76,10 +178,10 @@ def _result_of(
     return RunResult(
         config=config,
         scenario=scenario,
-        ending=Ending.CRASHED,
-        error=error,
+        ending=ending,
+        error=failure,
         time=rows.time,
-        egos=results_of_egos(config, rows, Ending.CRASHED, endings),
+        egos=results_of_egos(config, rows, ending, endings),
         crowd_track=rows.crowd_track(),
         background_track=rows.background_track(),
         timings=rows.timings(),
@@ -94,8 +196,8 @@ def _result_of(
             sumo={},
             time_step=None,
             remarks=(),
-            ending=str(Ending.CRASHED),
-            error=str(error),
+            ending=str(ending),
+            error=None if failure is None else str(failure),
         ),
         sumo_messages="\n".join(part for part in (verdict.last_words, verdict.traceback) if part),
         road=(),

@@ -10,13 +10,14 @@ from pedestrian_model.errors import (
     VehicleError,
 )
 from pedestrian_model.influence import vehicle_influence
-from pedestrian_model.model import CrowdModel
+from pedestrian_model.model import LONGEST_STEP, CrowdModel, require_steady
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
 from pedestrian_model.prediction import Predictor
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
 from pedestrian_model.vehicles import Vehicles
 
 __all__ = [
+    "LONGEST_STEP",
     "OPEN_GROUND",
     "PRESETS",
     "SIM",
@@ -35,5 +36,6 @@ __all__ = [
     "Vehicles",
     "Walls",
     "arrived",
+    "require_steady",
     "vehicle_influence",
 ]

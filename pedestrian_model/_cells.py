@@ -8,10 +8,11 @@ into the buffer, met by each pedestrian of the tile in a vector loop, and the fo
 copied back.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pedestrian_model._jit import add_block, copy_block, fma, inlined, kernel
 from pedestrian_model._pairs import (
@@ -44,10 +45,6 @@ from pedestrian_model._rows import (
     VY,
     fill,
 )
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 # Sizes relative to the interaction radius, found by benchmarks/bench_crowd.py.
 _STRIPS = 4.0  # strips per interaction radius

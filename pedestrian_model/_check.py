@@ -1,15 +1,9 @@
 """Checks of arrays that come from outside, with messages that name the index and the value."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from pedestrian_model.errors import PedestrianModelError
+from pedestrian_model.errors import PedestrianModelError
 
 # Beyond this, squares and differences of coordinates lose their meaning in float64.
 LARGEST = 1e9  # [m], [m/s], [rad]

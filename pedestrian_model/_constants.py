@@ -1,12 +1,11 @@
 """The parameters as the kernels want them: one numpy record, derived factors included."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pedestrian_model._jit import kernel
 from pedestrian_model._mathematics import (
@@ -17,11 +16,7 @@ from pedestrian_model._mathematics import (
     exponential,
 )
 from pedestrian_model._vehicles import LEAST_FORCE
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from pedestrian_model.parameters import VciParameters
+from pedestrian_model.parameters import VciParameters
 
 _PI_8 = 0.39269908169872414
 
@@ -35,7 +30,7 @@ _NAMES = (
     # walls
     "A_w", "b_w",
     # destination, limits
-    "k_des", "s_des_2", "F_2", "inverse_F", "a_max", "v_max", "r_waypoint", "detour",
+    "k_des", "s_des_2", "F_2", "inverse_F", "a_max", "v_max", "r_waypoint", "detour", "u_detour",
 )
 # fmt: on
 _DTYPE = np.dtype([*((name, np.float64) for name in _NAMES), ("g", np.float64, (DEGREE + 1,))])
@@ -47,8 +42,13 @@ def _exp(x: float) -> float:
 
 
 @lru_cache(maxsize=32)
-def pack(parameters: VciParameters) -> NDArray[Any]:
-    """The constants of the kernels for ``parameters``: a read-only array of one record."""
+def pack(parameters: VciParameters, *, detour: bool = True) -> NDArray[Any]:
+    """The constants of the kernels for ``parameters``: a read-only array of one record.
+
+    Args:
+        parameters: of the model.
+        detour: whether people see a way round a standing car.
+    """
     p = parameters
     l_nav = p.navigation_anisotropy
     # flm(d; d0, M, s) = M/(2 d0) ((d0 - d) + sqrt((d0 - d)^2 + s^2)), Ae(phi; l) = exp(-l phi)
@@ -93,6 +93,7 @@ def pack(parameters: VciParameters) -> NDArray[Any]:
         "a_max": p.max_acceleration,
         "v_max": p.max_speed,
         "r_waypoint": p.waypoint_radius,
+        "u_detour": p.static_speed if detour else 0.0,  # below it they see the way round
         "detour": p.vehicle_clearance + p.body_radius + p.detour_margin,
     }
     constants = np.zeros(1, dtype=_DTYPE)

@@ -4,19 +4,16 @@ Without this, a person who walks into the side of a standing car is pushed back 
 and never gets round it: a local minimum of the force field. All of this file is ours.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pedestrian_model._jit import inlined, kernel
 from pedestrian_model._mathematics import cosine_sine
 from pedestrian_model._rows import NVX, NX, NY, PX, PY, TX, TY
 from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 _TOUCH = 1e-9  # [m] a path along the obstacle's edge does not cross it
 _TOGETHER = 32  # rows
@@ -144,7 +141,7 @@ def detour(rows: NDArray[np.float64], n: int, vehicles: NDArray[np.float64], c: 
     """
     standing = False
     for v in range(vehicles.shape[0]):
-        standing |= abs(vehicles[v, SPEED]) < c.u_static
+        standing |= abs(vehicles[v, SPEED]) < c.u_detour
     if not standing:
         return
     for start in range(0, n, _TOGETHER):
@@ -155,7 +152,7 @@ def detour(rows: NDArray[np.float64], n: int, vehicles: NDArray[np.float64], c: 
             y_0, y_1 = min(y_0, rows[PY, k], rows[TY, k]), max(y_1, rows[PY, k], rows[TY, k])
             rows[_ENTRY, k] = _CLEAR
         for v in range(vehicles.shape[0]):
-            if abs(vehicles[v, SPEED]) >= c.u_static:
+            if abs(vehicles[v, SPEED]) >= c.u_detour:
                 continue
             reach = vehicles[v, FRONT] + vehicles[v, REAR] + vehicles[v, WIDTH] + 2.0 * c.detour
             v_x, v_y = vehicles[v, X], vehicles[v, Y]

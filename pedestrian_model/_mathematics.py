@@ -1,7 +1,5 @@
 """Elementary functions of the kernels, of basic operations only: no libm, no branch."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 from functools import lru_cache

@@ -6,18 +6,15 @@ the loops round it (``_ring.py`` for a small crowd, ``_cells.py`` for a large on
 instructions under strict IEEE arithmetic.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pedestrian_model._jit import fma, inlined
 from pedestrian_model._mathematics import angle_polynomial, cosine_sine
 from pedestrian_model._rows import FX, FY, PX, PY, UX, UY, VX, VY
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 COINCIDENT_2 = 1e-6**2  # [m^2] closer centres have no direction of their own (ours)
 _STANDSTILL_2 = 1e-3**2  # [m^2/s^2] slower relative motion is not navigated round (ours)

@@ -5,10 +5,11 @@ that each pair is met once. For one m the loop over the pedestrians is contiguou
 adds to two different rows: long vector loops without any reduction.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pedestrian_model._jit import fma, inlined, kernel
 from pedestrian_model._pairs import (
@@ -34,10 +35,6 @@ from pedestrian_model._rows import (
     STRIDE,
     fill,
 )
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 @inlined

@@ -5,16 +5,13 @@ crosses the line within its half-width has passed, and who has not yet walks to 
 of the line, so that a crowd goes through side by side instead of through one point. All ours.
 """
 
-from __future__ import annotations
+from typing import Any, NamedTuple
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+import numpy as np
+from numpy.typing import NDArray
 
-from pedestrian_model._jit import inlined, kernel
+from pedestrian_model._jit import inlined
 from pedestrian_model._rows import PX, PY, SOFT, TX, TY, V0
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 # [m^2] instead of s_des^2 towards a way-point at which nobody stops: 1 um, against 0/0 only
 _NO_SLOWING = 1e-12
@@ -29,7 +26,7 @@ class Routes(NamedTuple):
     start: NDArray[np.int64]  # (n + 1,) offsets
 
 
-class _Line(NamedTuple):
+class Line(NamedTuple):
     """A way-point and its passage: scalars, because passing arrays about costs a count of each."""
 
     x: float  # [m]
@@ -40,7 +37,7 @@ class _Line(NamedTuple):
 
 
 @inlined
-def _aim(x: float, y: float, p: _Line, R: float) -> tuple[float, float]:
+def aim(x: float, y: float, p: Line, R: float) -> tuple[float, float]:
     """The nearest point to (x, y) of a line, R inside its ends if it can be."""
     if p.half <= 0.0:
         return p.x, p.y
@@ -50,7 +47,7 @@ def _aim(x: float, y: float, p: _Line, R: float) -> tuple[float, float]:
 
 
 @inlined
-def _is_passed(x: float, y: float, p: _Line, radius: float) -> bool:
+def _is_passed(x: float, y: float, p: Line, radius: float) -> bool:
     """Whether (x, y) is within ``radius`` of the way-point, or beyond its line where that is."""
     dx, dy = x - p.x, y - p.y
     if dx * dx + dy * dy <= radius * radius:
@@ -82,7 +79,7 @@ def set_targets(
         x, y = rows[PX, k], rows[PY, k]
         last = start[i + 1] - 1
         at = start[i] + waypoint_index[i]
-        p = _Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+        p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
         soft = c.s_des_2
         while at < last and not (signal[at] >= 0 and closed[signal[at]]):
             if not _is_passed(x, y, p, radius):
@@ -90,54 +87,7 @@ def set_targets(
                 break
             waypoint_index[i] += 1
             at += 1
-            p = _Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
-        rows[TX, k], rows[TY, k] = _aim(x, y, p, R)
+            p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+        rows[TX, k], rows[TY, k] = aim(x, y, p, R)
         rows[V0, k] = desired_speed[i]
         rows[SOFT, k] = soft
-
-
-@kernel
-def fill_arrived(
-    position: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    passage: NDArray[np.float64],
-    start: NDArray[np.int64],
-    waypoint_index: NDArray[np.int64],
-    radius: float,
-    mask: NDArray[np.bool_],
-) -> None:
-    """Who is on the way to the last way-point and within ``radius`` of it, or of its line."""
-    w, q = waypoints, passage
-    for i in range(len(mask)):
-        last = start[i + 1] - 1
-        x, y = position[i, 0], position[i, 1]
-        p = _Line(w[last, 0], w[last, 1], q[last, 0], q[last, 1], q[last, 2])
-        to_x, to_y = _aim(x, y, p, 0.0)
-        dx, dy = to_x - x, to_y - y
-        on_the_way = start[i] + waypoint_index[i] == last
-        mask[i] = on_the_way and dx * dx + dy * dy <= radius * radius
-
-
-@kernel
-def select_routes(
-    old: tuple[NDArray[Any], ...], mask: NDArray[np.bool_], new: tuple[NDArray[Any], ...]
-) -> None:
-    """Copy the routes of those in ``mask`` from ``old`` to ``new``, one after the other.
-
-    Both are the arrays of :class:`Routes`; the offsets of the new ones are known.
-    """
-    routes = Routes(*old)
-    waypoints, passage, signal, start = new
-    kept = 0
-    for i in range(len(mask)):
-        if not mask[i]:
-            continue
-        shift = start[kept] - routes.start[i]
-        for at in range(routes.start[i], routes.start[i + 1]):
-            waypoints[at + shift, 0] = routes.waypoints[at, 0]
-            waypoints[at + shift, 1] = routes.waypoints[at, 1]
-            passage[at + shift, 0] = routes.passage[at, 0]
-            passage[at + shift, 1] = routes.passage[at, 1]
-            passage[at + shift, 2] = routes.passage[at, 2]
-            signal[at + shift] = routes.signal[at]
-        kept += 1

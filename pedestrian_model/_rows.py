@@ -5,21 +5,17 @@ far-away dummies, so that vector loops need no scalar tail. The pair loops work 
 whose rows lie a constant ``STRIDE`` apart: the compiler then sees that they do not overlap.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pedestrian_model._jit import inlined
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    #: What Python hands to a kernel: numba looks the class of a named tuple up in each call, which
-    #: takes 10 us for the arrays of a step; one plain tuple takes less time than its arrays alone.
-    Arrays = tuple[NDArray[Any], ...]
+#: What Python hands to a kernel: numba looks the class of a named tuple up in each call, which
+#: takes 10 us for the arrays of a step; one plain tuple takes less time than its arrays alone.
+Arrays = tuple[NDArray[Any], ...]
 
 #: Width of the blocks in which pairs are evaluated and summed, whatever the machine's vectors:
 #: the order of the sums, and so the result, depends on it.

@@ -1,13 +1,14 @@
-"""One step of the crowd, and N steps ahead: the compiled entry points."""
-
-from __future__ import annotations
+"""One step of the crowd: all forces from the old state, then all states at once."""
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pedestrian_model._cells import add_near_pairs
 from pedestrian_model._detour import detour
-from pedestrian_model._jit import fma, inlined, kernel
+from pedestrian_model._jit import fma, inlined
 from pedestrian_model._ring import add_all_pairs
 from pedestrian_model._routes import Routes, set_targets
 from pedestrian_model._rows import (
@@ -28,16 +29,11 @@ from pedestrian_model._rows import (
     VFY,
     VX,
     VY,
+    Arrays,
     Scratch,
 )
 from pedestrian_model._vehicles import add_near_vehicles, add_vehicles
 from pedestrian_model._walls import add_walls
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from pedestrian_model._rows import Arrays
 
 #: The result of a step that went well; otherwise the index of the offending pedestrian.
 FINE = -1
@@ -129,7 +125,7 @@ def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
 
 
 @inlined
-def _march(
+def march(
     state: State,
     scene: Scene,
     vehicles: NDArray[np.float64],
@@ -163,61 +159,7 @@ def _march(
 
 
 @inlined
-def _parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
+def parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
     """What Python has handed over as one plain tuple, by name."""
     scene = Scene(arrays[3], Routes(*arrays[4:8]), *arrays[8:11])
     return State(*arrays[:3]), scene, Scratch(*arrays[11:])
-
-
-@kernel
-def advance(
-    arrays: Arrays,
-    vehicles: NDArray[np.float64],
-    constants: NDArray[Any],
-    dt: float,
-    substeps: int,
-    cell_list_from: int,
-) -> int:
-    """Advance the state in place by ``substeps`` steps of dt; ``FINE`` or the first bad index.
-
-    Args:
-        arrays: those of State, Scene (its routes too) and Scratch, one after the other.
-        vehicles: (m, 7).
-        constants: of the model.
-        dt: [s].
-        substeps: how many steps.
-        cell_list_from: the crowd size from which neighbours are found by a cell list.
-    """
-    state, scene, scratch = _parts(arrays)
-    return _march(state, scene, vehicles, scratch, constants, dt, substeps, cell_list_from)
-
-
-@kernel
-def predict(
-    arrays: Arrays,
-    vehicles: NDArray[np.float64],
-    constants: NDArray[Any],
-    dt: float,
-    substeps: int,
-    cell_list_from: int,
-    own: Arrays,
-    out: NDArray[np.float64],
-) -> int:
-    """Fill ``out`` (N, n, 2) with the positions of the next N steps; the state stays as it is.
-
-    As :func:`advance`, with ``vehicles`` (N, m, 7), and in ``own`` other State arrays to fill.
-    """
-    state, scene, scratch = _parts(arrays)
-    ahead = State(*own)
-    n, x, v = state.position.shape[0], ahead.position, ahead.velocity
-    for i in range(n):
-        x[i, 0], x[i, 1] = state.position[i, 0], state.position[i, 1]
-        v[i, 0], v[i, 1] = state.velocity[i, 0], state.velocity[i, 1]
-        ahead.waypoint_index[i] = state.waypoint_index[i]
-    for k in range(out.shape[0]):
-        insane = _march(ahead, scene, vehicles[k], scratch, constants, dt, substeps, cell_list_from)
-        if insane != FINE:
-            return insane
-        for i in range(n):
-            out[k, i, 0], out[k, i, 1] = x[i, 0], x[i, 1]
-    return FINE

@@ -6,20 +6,16 @@ nose is flat and the contour a rectangle. TSAS 2020 for the form, Yang & Özgün
 rectangle and the vehicle's role as a potential field that changes with its speed.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._cells import Grid
 from pedestrian_model._jit import fma, inlined, kernel
 from pedestrian_model._mathematics import cosine_sine, exponential
 from pedestrian_model._rows import BLOCK, PX, PY, VFX, VFY, VX, VY, S
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from pedestrian_model._cells import Grid
 
 #: A vehicle's force is left out where it is less than this, if there are many vehicles.
 LEAST_FORCE = 1e-9  # [N]

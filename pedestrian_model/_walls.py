@@ -5,19 +5,15 @@ looked up in a grid of cells, built once. Where two walls meet, a place is on th
 it is on the side of the sum of their normals: either normal alone is wrong behind a sharp corner.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pedestrian_model._jit import inlined, kernel
 from pedestrian_model._mathematics import exponential
 from pedestrian_model._rows import PX, PY, WS, WX, WY
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 REACH = 2.0  # [m] no wall is felt further away: exp(-b_w s) is nothing long before
 DEPTH = 1.0  # [m] who is further behind a wall than this is let go (ours)

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pedestrian_model._check import as_floats, check_not_negative, check_shape, check_values
-from pedestrian_model._routes import Routes, fill_arrived, select_routes
+from pedestrian_model._jit import kernel
+from pedestrian_model._routes import Line, Routes, aim
+from pedestrian_model._rows import Arrays
 from pedestrian_model.errors import CrowdError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from pedestrian_model._rows import Arrays
 
 _UNIT = 1e-6  # a direction's length may differ from one by this
 
@@ -217,7 +214,7 @@ class Crowd:
         total = int(start[-1])
         waypoints, passage = np.empty((total, 2)), np.empty((total, 3))
         signal = np.empty(total, dtype=np.int64)
-        select_routes(self.routes, mask, (waypoints, passage, signal, start))
+        _select_routes(self.routes, mask, (waypoints, passage, signal, start))
         return _unchecked(
             {
                 "position": self.position[chosen],
@@ -249,7 +246,7 @@ _JOINED = tuple(field.name for field in fields(Crowd) if field.name != "waypoint
 def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
     """Mask (n,): on the way to the last way-point and within ``radius`` [m] of it, or its line."""
     mask = np.empty(len(crowd), dtype=np.bool_)
-    fill_arrived(
+    _fill_arrived(
         crowd.position,
         crowd.waypoints,
         crowd.waypoint_passage,
@@ -316,3 +313,50 @@ def _unchecked(state: dict[str, Any]) -> Crowd:
     crowd = object.__new__(Crowd)
     crowd.__dict__.update(state)
     return crowd
+
+
+@kernel
+def _fill_arrived(
+    position: NDArray[np.float64],
+    waypoints: NDArray[np.float64],
+    passage: NDArray[np.float64],
+    start: NDArray[np.int64],
+    waypoint_index: NDArray[np.int64],
+    radius: float,
+    mask: NDArray[np.bool_],
+) -> None:
+    """Who is on the way to the last way-point and within ``radius`` of it, or of its line."""
+    w, q = waypoints, passage
+    for i in range(len(mask)):
+        last = start[i + 1] - 1
+        x, y = position[i, 0], position[i, 1]
+        p = Line(w[last, 0], w[last, 1], q[last, 0], q[last, 1], q[last, 2])
+        to_x, to_y = aim(x, y, p, 0.0)
+        dx, dy = to_x - x, to_y - y
+        on_the_way = start[i] + waypoint_index[i] == last
+        mask[i] = on_the_way and dx * dx + dy * dy <= radius * radius
+
+
+@kernel
+def _select_routes(
+    old: tuple[NDArray[Any], ...], mask: NDArray[np.bool_], new: tuple[NDArray[Any], ...]
+) -> None:
+    """Copy the routes of those in ``mask`` from ``old`` to ``new``, one after the other.
+
+    Both are the arrays of :class:`Routes`; the offsets of the new ones are known.
+    """
+    routes = Routes(*old)
+    waypoints, passage, signal, start = new
+    kept = 0
+    for i in range(len(mask)):
+        if not mask[i]:
+            continue
+        shift = start[kept] - routes.start[i]
+        for at in range(routes.start[i], routes.start[i + 1]):
+            waypoints[at + shift, 0] = routes.waypoints[at, 0]
+            waypoints[at + shift, 1] = routes.waypoints[at, 1]
+            passage[at + shift, 0] = routes.passage[at, 0]
+            passage[at + shift, 1] = routes.passage[at, 1]
+            passage[at + shift, 2] = routes.passage[at, 2]
+            signal[at + shift] = routes.signal[at]
+        kept += 1

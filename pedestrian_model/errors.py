@@ -1,7 +1,5 @@
 """What can go wrong in the pedestrian model, one class per thing a user can do something about."""
 
-from __future__ import annotations
-
 
 class PedestrianModelError(Exception):
     """Root of the errors of this room."""

@@ -1,10 +1,9 @@
 """The vehicle influence alone, at any point: the paper's figure 2."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pedestrian_model._check import as_floats, check_shape, check_values
 from pedestrian_model._constants import pack
@@ -12,13 +11,8 @@ from pedestrian_model._jit import kernel
 from pedestrian_model._rows import PX, PY, VFX, VFY, VX, VY, S, Workspace
 from pedestrian_model._vehicles import add_vehicle
 from pedestrian_model.errors import CrowdError
-from pedestrian_model.parameters import SIM
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from pedestrian_model.parameters import VciParameters
-    from pedestrian_model.vehicles import Vehicles
+from pedestrian_model.parameters import SIM, VciParameters
+from pedestrian_model.vehicles import Vehicles
 
 
 def vehicle_influence(

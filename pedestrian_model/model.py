@@ -1,25 +1,20 @@
 """The crowd, stepped: Newton's law under the sum of the sub-forces."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pedestrian_model import _step
 from pedestrian_model._constants import pack
-from pedestrian_model._rows import Workspace
+from pedestrian_model._jit import kernel
+from pedestrian_model._rows import Arrays, Workspace
+from pedestrian_model._step import FINE, march, parts
+from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import DivergenceError, ParameterError, SurroundingsError
-from pedestrian_model.parameters import SIM
-from pedestrian_model.surroundings import OPEN_GROUND
-from pedestrian_model.vehicles import COLUMNS
-
-if TYPE_CHECKING:
-    from pedestrian_model.crowd import Crowd
-    from pedestrian_model.parameters import VciParameters
-    from pedestrian_model.surroundings import Surroundings
-    from pedestrian_model.vehicles import Vehicles
+from pedestrian_model.parameters import SIM, VciParameters
+from pedestrian_model.surroundings import OPEN_GROUND, Surroundings
+from pedestrian_model.vehicles import COLUMNS, Vehicles
 
 #: The longest step the integration takes at once: k_col dt^2 / m = 0.31 is stable.
 LONGEST_STEP = 0.05  # [s]
@@ -38,6 +33,42 @@ def substeps(time_step: float) -> int:
     return max(1, math.ceil(time_step / LONGEST_STEP - 1e-9))
 
 
+def require_steady(parameters: VciParameters, time_step: float) -> None:
+    """Make sure that the integration's step does not make people's speeds swing.
+
+    Somebody alone under the destination force has v' = (k_des/m)(v_d - v), of which one step of
+    forward Euler makes v_d - v_(n+1) = (1 - z)(v_d - v_n), z = k_des dt/m (Hairer & Wanner 1996,
+    "Solving Ordinary Differential Equations II", section IV.2). For z <= 1 the speed settles, for
+    1 < z < 2 it overshoots in every step, beyond 2 it swings until a_max and v_max hold it. Near
+    the last destination v_d = -v0 x/s_des, and the step (x too is integrated) has
+    the trace 2 - z - z W/2 and the determinant 1 - z + z W/2 with W = v0 dt/s_des: for z <= 1 it
+    is stable and has no negative eigenvalue exactly if W < 2.
+
+    Args:
+        parameters: of the model.
+        time_step: [s]; its sub-steps count.
+
+    Raises:
+        ParameterError: they swing.
+    """
+    dt = time_step / substeps(time_step)
+    p = parameters
+    steady = p.mass / dt
+    if p.destination_gain > steady:
+        raise ParameterError(
+            f"destination_gain = {p.destination_gain:g} N s/m: people's speeds swing from step to "
+            f"step, k_des dt/m = {p.destination_gain / steady:.2g} > 1; expected at most m/dt = "
+            f"{steady:g} N s/m for {p.mass:g} kg and steps of {dt:.4g} s"
+        )
+    nearest = 0.5 * p.max_speed * dt
+    if p.destination_smoothing <= nearest:
+        raise ParameterError(
+            f"destination_smoothing = {p.destination_smoothing:g} m: people swing about their "
+            f"destinations; expected more than v_max dt/2 = {nearest:g} m for {p.max_speed:g} m/s "
+            f"and steps of {dt:.4g} s"
+        )
+
+
 class CrowdModel:
     """The VCI model with a time step; it holds no state but scratch memory.
 
@@ -47,9 +78,11 @@ class CrowdModel:
             drive straight on at constant speed.
         cell_list_from: the crowd size from which neighbours are found by a cell list (they always
             are beyond 332, where the ring no longer fits its buffer).
+        detour: whether people see the way round a standing car (ours), or walk into its side and
+            stay there, as by the published forces alone.
 
     Raises:
-        ParameterError: if the time step is not positive and finite.
+        ParameterError: if the time step is not positive and finite, or makes speeds swing.
     """
 
     def __init__(
@@ -58,13 +91,15 @@ class CrowdModel:
         time_step: float = 0.05,
         *,
         cell_list_from: int = CELL_LIST_FROM,
+        detour: bool = True,
     ) -> None:
+        require_steady(parameters, time_step)
         self.parameters = parameters
         self.time_step = float(time_step)
         self.cell_list_from = int(cell_list_from)
         self._substeps = substeps(self.time_step)
         self._dt = self.time_step / self._substeps
-        self._constants = pack(parameters)
+        self._constants = pack(parameters, detour=detour)
         self._workspace = Workspace()
 
     def step(
@@ -95,7 +130,7 @@ class CrowdModel:
             raise unknown_signal(crowd, surroundings)
         if crowd.position.shape[0] > self._workspace.capacity:
             self._workspace.reserve(crowd.position.shape[0])
-        bad = _step.advance(
+        bad = _advance(
             (*crowd.state, *crowd.wishes, *surroundings.arrays, *self._workspace.arrays),
             vehicles.array,
             self._constants,
@@ -103,8 +138,31 @@ class CrowdModel:
             self._substeps,
             self.cell_list_from,
         )
-        if bad != _step.FINE:
+        if bad != FINE:
             raise divergence(bad, crowd, vehicles)
+
+
+@kernel
+def _advance(
+    arrays: Arrays,
+    vehicles: NDArray[np.float64],
+    constants: NDArray[Any],
+    dt: float,
+    substeps: int,
+    cell_list_from: int,
+) -> int:
+    """Advance the state in place by ``substeps`` steps of dt; ``FINE`` or the first bad index.
+
+    Args:
+        arrays: those of State, Scene (its routes too) and Scratch, one after the other.
+        vehicles: (m, 7).
+        constants: of the model.
+        dt: [s].
+        substeps: how many steps.
+        cell_list_from: the crowd size from which neighbours are found by a cell list.
+    """
+    state, scene, scratch = parts(arrays)
+    return march(state, scene, vehicles, scratch, constants, dt, substeps, cell_list_from)
 
 
 def unknown_signal(crowd: Crowd, surroundings: Surroundings) -> SurroundingsError:

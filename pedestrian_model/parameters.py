@@ -9,42 +9,73 @@ and Systems, TSAS 2020): the same five sub-forces and the same beta.
 "ours" marks what no publication states.
 """
 
-from __future__ import annotations
-
-import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from pedestrian_model.errors import ParameterError
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+_LENGTH = "a part of a body or a gap between bodies is between a millimetre and some metres"
+_FORCE = "people are moved by some hundred newtons, and 400 N are a_max for 80 kg already"
+_SHARE = "it is a share"
 
-_MAY_BE_ZERO = frozenset(
+
+@dataclass(frozen=True)
+class _Range:
+    """Which values of a parameter make sense, and why no others.
+
+    Attributes:
+        low, high: in the parameter's unit; both are allowed.
+        reason: of the two.
+        zero: whether 0 is allowed too, as "there is none".
+    """
+
+    low: float
+    high: float
+    reason: str
+    zero: bool = False
+
+
+_RANGES: Mapping[str, _Range] = MappingProxyType(
     {
-        "repulsion_anisotropy",
-        "repulsion_strength",
-        "navigation_anisotropy",
-        "navigation_strength",
-        "collision_stiffness",
-        "vehicle_clearance",
-        "vehicle_nose",
-        "vehicle_lookahead",
-        "vehicle_strength",
-        "vehicle_anisotropy",
-        "static_speed",
-        "wall_strength",
-        "influence_low",
-        "waypoint_radius",
-        "detour_margin",
+        "mass": _Range(10.0, 500.0, "it is a person's"),
+        "body_radius": _Range(0.05, 1.0, "it is a person's, seen from above"),
+        "desired_speed": _Range(0.01, 12.5, "nobody runs faster than that"),
+        "repulsion_distance": _Range(0.01, 20.0, _LENGTH),
+        "repulsion_smoothing": _Range(0.001, 20.0, _LENGTH),
+        "repulsion_anisotropy": _Range(0.0, 1.0, _SHARE),
+        "repulsion_strength": _Range(0.01, 10_000.0, _FORCE, zero=True),
+        "navigation_distance": _Range(0.01, 20.0, _LENGTH),
+        "navigation_smoothing": _Range(0.001, 20.0, _LENGTH),
+        # up to 4 the kernel's polynomial is exact to 1e-12
+        "navigation_anisotropy": _Range(0.0, 4.0, "a steeper decay is not resolved"),
+        "navigation_strength": _Range(0.01, 10_000.0, _FORCE, zero=True),
+        "collision_stiffness": _Range(
+            0.1, 100_000.0, "a body is softer than that: 100 kN/m are 1 cm under 1000 N", zero=True
+        ),
+        "interaction_radius": _Range(0.001, 100.0, "it holds the people whom somebody reacts to"),
+        "vehicle_clearance": _Range(0.001, 10.0, _LENGTH, zero=True),
+        "vehicle_nose": _Range(0.001, 20.0, _LENGTH, zero=True),
+        "vehicle_lookahead": _Range(0.001, 30.0, "people look some seconds ahead", zero=True),
+        "vehicle_strength": _Range(0.01, 20_000.0, _FORCE, zero=True),
+        "vehicle_decay": _Range(0.01, 100.0, "a force fades over a centimetre to 100 m"),
+        "vehicle_anisotropy": _Range(0.0, 1.0, _SHARE),
+        "vehicle_exponent_cap": _Range(0.1, 20.0, "exp(20) is 5e8 already"),
+        "static_speed": _Range(0.001, 5.0, "a faster vehicle does not stand", zero=True),
+        "wall_strength": _Range(0.01, 50_000.0, _FORCE, zero=True),
+        "wall_decay": _Range(0.01, 1000.0, "a force fades over a millimetre to 100 m"),
+        "destination_gain": _Range(
+            0.1, 1e5, "m/k_des is the time in which people take up their pace"
+        ),
+        "destination_smoothing": _Range(0.001, 100.0, _LENGTH),
+        "influence_low": _Range(0.01, 50_000.0, _FORCE, zero=True),
+        "influence_high": _Range(0.01, 50_000.0, _FORCE),
+        "waypoint_radius": _Range(0.001, 20.0, _LENGTH, zero=True),
+        "detour_margin": _Range(0.001, 10.0, _LENGTH, zero=True),
+        "max_acceleration": _Range(0.1, 50.0, "a sprinter starts with 10 m/s^2"),
+        "max_speed": _Range(0.1, 12.5, "nobody runs faster than that"),
     }
 )
-_UPPER_BOUND = {
-    "repulsion_anisotropy": 1.0,
-    "vehicle_anisotropy": 1.0,
-    "navigation_anisotropy": 4.0,  # up to here the kernel's polynomial is exact to 1e-12
-}
 
 
 @dataclass(frozen=True)
@@ -104,21 +135,31 @@ class VciParameters:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            name, value = field.name, getattr(self, field.name)
-            lower, upper = 0.0, _UPPER_BOUND.get(name, 1e9)
-            if isinstance(value, bool) or not isinstance(value, int | float):
-                raise ParameterError(f"{name} = {value!r}, expected a number")
-            above = value >= lower if name in _MAY_BE_ZERO else value > lower
-            if not (math.isfinite(value) and above and value <= upper):
-                sign = ">=" if name in _MAY_BE_ZERO else ">"
-                raise ParameterError(
-                    f"{name} = {value}, expected a number {sign} {lower:g} and <= {upper:g}"
-                )
+            _require(field.name, getattr(self, field.name), _RANGES[field.name])
         if self.influence_low >= self.influence_high:
             raise ParameterError(
                 f"influence_low = {self.influence_low} N, expected less than "
                 f"influence_high = {self.influence_high} N"
             )
+
+
+def _require(name: str, value: object, expected: _Range) -> None:
+    """Make sure that ``value`` makes sense as the parameter ``name``.
+
+    Raises:
+        ParameterError: it does not; the message says what would, and why.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ParameterError(f"{name} = {value!r}, expected a number")
+    zero = expected.zero or expected.low == 0.0
+    if (zero and value == 0.0) or expected.low <= value <= expected.high:
+        return
+    if not value > 0.0:
+        wanted = f"a number {'>=' if zero else '>'} 0 and <= {expected.high:g}"
+    else:
+        none = "0 or " if expected.zero else ""
+        wanted = f"{none}a number >= {expected.low:g} and <= {expected.high:g}"
+    raise ParameterError(f"{name} = {value}, expected {wanted}: {expected.reason}")
 
 
 #: The preset to simulate with: head-on pedestrians never overlap.

@@ -1,25 +1,19 @@
 """Where the crowd will be: the model itself, applied N times under given vehicle poses."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pedestrian_model import _step
 from pedestrian_model._constants import pack
-from pedestrian_model._rows import Workspace
+from pedestrian_model._jit import kernel
+from pedestrian_model._rows import Arrays, Workspace
+from pedestrian_model._step import FINE, State, march, parts
+from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import DivergenceError, ParameterError, VehicleError
-from pedestrian_model.model import CELL_LIST_FROM, substeps, unknown_signal
-from pedestrian_model.parameters import SIM
-from pedestrian_model.surroundings import OPEN_GROUND
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from pedestrian_model.crowd import Crowd
-    from pedestrian_model.parameters import VciParameters
-    from pedestrian_model.surroundings import Surroundings
+from pedestrian_model.model import CELL_LIST_FROM, require_steady, substeps, unknown_signal
+from pedestrian_model.parameters import SIM, VciParameters
+from pedestrian_model.surroundings import OPEN_GROUND, Surroundings
 
 
 class Predictor:
@@ -32,9 +26,11 @@ class Predictor:
         time_step: [s]; above 0.05 s it is divided into sub-steps as in ``CrowdModel``.
         horizon: N, the number of steps.
         cell_list_from: the crowd size from which neighbours are found by a cell list.
+        detour: whether people see the way round a standing car (ours), or walk into its side and
+            stay there, as by the published forces alone.
 
     Raises:
-        ParameterError: if the time step or the horizon is not positive.
+        ParameterError: if the time step or the horizon is not positive, or speeds would swing.
     """
 
     def __init__(
@@ -44,23 +40,26 @@ class Predictor:
         horizon: int = 15,
         *,
         cell_list_from: int = CELL_LIST_FROM,
+        detour: bool = True,
     ) -> None:
         if horizon < 1:
             raise ParameterError(f"horizon = {horizon} steps, expected at least 1")
+        require_steady(parameters, time_step)
         self.parameters = parameters
         self.time_step = float(time_step)
         self.horizon = int(horizon)
         self.cell_list_from = int(cell_list_from)
         self._substeps = substeps(self.time_step)
         self._dt = self.time_step / self._substeps
-        self._constants = pack(parameters)
+        self._constants = pack(parameters, detour=detour)
         self._workspace = Workspace()
         self._capacity = -1
         self._reserve(0)
 
     def _reserve(self, n: int) -> None:
         """Contiguous views of buffers that grow only: people come and go in each step."""
-        self._workspace.reserve(n)
+        if n > self._workspace.capacity:
+            self._workspace.reserve(n)
         if n > self._capacity:
             self._capacity = max(n, 2 * self._capacity)
             self._memory = np.empty((2 + self.horizon) * self._capacity * 2)
@@ -101,7 +100,7 @@ class Predictor:
             raise VehicleError("vehicles_trajectory is expected to be C-contiguous float64")
         if crowd.position.shape[0] != self._out.shape[1]:
             self._reserve(crowd.position.shape[0])
-        bad = _step.predict(
+        bad = _predict(
             (*crowd.state, *crowd.wishes, *surroundings.arrays, *self._workspace.arrays),
             vehicles_trajectory,
             self._constants,
@@ -111,9 +110,41 @@ class Predictor:
             self._state,
             self._out,
         )
-        if bad != _step.FINE:
+        if bad != FINE:
             raise DivergenceError(
                 f"pedestrian {bad}: the predicted state is not finite; check its present position "
                 f"{crowd.position[bad]} m, velocity {crowd.velocity[bad]} m/s and the vehicles"
             )
         return self._out
+
+
+@kernel
+def _predict(
+    arrays: Arrays,
+    vehicles: NDArray[np.float64],
+    constants: NDArray[Any],
+    dt: float,
+    substeps: int,
+    cell_list_from: int,
+    own: Arrays,
+    out: NDArray[np.float64],
+) -> int:
+    """Fill ``out`` (N, n, 2) with the positions of the next N steps; the state stays as it is.
+
+    As the kernel of ``CrowdModel.advance``, with ``vehicles`` (N, m, 7), and in ``own`` other State
+    arrays to fill.
+    """
+    state, scene, scratch = parts(arrays)
+    ahead = State(*own)
+    n, x, v = state.position.shape[0], ahead.position, ahead.velocity
+    for i in range(n):
+        x[i, 0], x[i, 1] = state.position[i, 0], state.position[i, 1]
+        v[i, 0], v[i, 1] = state.velocity[i, 0], state.velocity[i, 1]
+        ahead.waypoint_index[i] = state.waypoint_index[i]
+    for k in range(out.shape[0]):
+        insane = march(ahead, scene, vehicles[k], scratch, constants, dt, substeps, cell_list_from)
+        if insane != FINE:
+            return insane
+        for i in range(n):
+            out[k, i, 0], out[k, i, 1] = x[i, 0], x[i, 1]
+    return FINE

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pedestrian_model import _walls
 from pedestrian_model._check import as_floats, check_shape, check_values
 from pedestrian_model.errors import SurroundingsError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
 
 _CELL = 1.0  # [m] of the grid of walls
 _MOST_CELLS = 2**21  # the grid of a larger place is coarser: 16 MB

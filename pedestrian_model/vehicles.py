@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pedestrian_model._check import as_floats, check_shape, check_values
 from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 from pedestrian_model.errors import VehicleError
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
 
 COLUMNS = ("x", "y", "heading", "speed", "front", "rear", "width")
 

@@ -6,8 +6,6 @@ netconvert give the same bytes: netconvert's header, which holds the date and th
 by a line that says where the file comes from.
 """
 
-from __future__ import annotations
-
 import argparse
 import importlib.util
 import os
@@ -15,14 +13,11 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from sumo_scenarios.catalogue import available, find
 from sumo_scenarios.errors import BuildError, ScenarioError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 _HEADER = re.compile(r"<!-- generated on .*?-->", re.DOTALL)
 

@@ -1,7 +1,5 @@
 """How scenarios are found: by the name of a bundled one, by folder, or by .sumocfg file."""
 
-from __future__ import annotations
-
 import difflib
 import os
 import tomllib

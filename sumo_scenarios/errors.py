@@ -1,7 +1,5 @@
 """What can go wrong here, one class per thing a user can do something about."""
 
-from __future__ import annotations
-
 
 class ScenarioError(Exception):
     """A scenario cannot be found or read; the message says what was looked for and what to do."""

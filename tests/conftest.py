@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import re
 import signal
 import sys
@@ -16,6 +17,11 @@ SUPPORT = Path(__file__).parent / "support"
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell without job control starts what is in its background deaf to Ctrl-C, which tests send.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# Hundreds of programs are started; none shall compile our modules again, even where Python has been
+# told to keep no bytecode.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 
 def _load_support() -> None:
@@ -32,6 +38,7 @@ def _load_support() -> None:
 
 _load_support()
 pytest_plugins = [
+    "support.browser",
     "support.clips",
     "support.commands",
     "support.running",

@@ -1,9 +1,8 @@
 """The numbers of the planning MPC; docs/controllers.md says what each one gives."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
+from typing import NamedTuple, Self
 
 from controller.defaults import (
     FORCE_LIMIT,
@@ -110,3 +109,44 @@ class PlannerParameters:
         require_not_negative("jerk_weight", self.jerk_weight, "s^3")
         require_not_negative("block_growth", self.block_growth, "-")
         require(self.solver in ("osqp", "daqp"), "solver", self.solver, "'osqp' or 'daqp'")
+
+
+class Weights(NamedTuple):
+    """The numbers of the cost.
+
+    What is called from outside gets them as a plain tuple: numba looks the class of a named one up
+    in each call, which takes 2 us.
+    """
+
+    reference_speed: float
+    safe_distance: float
+    minimum_distance: float
+    headway: float
+    deceleration: float
+    time: float
+    acceleration: float
+    nearness: float
+    closeness: float
+    conflict: float
+    threat: float
+    final: float
+    terminal: bool
+
+    @classmethod
+    def of(cls, p: PlannerParameters, m: ManoeuvreParameters) -> Self:
+        """The weights of a planner."""
+        return cls(
+            p.reference_speed,
+            p.safe_distance,
+            m.minimum_distance,
+            m.headway,
+            m.deceleration,
+            m.time_weight,
+            m.acceleration_weight,
+            m.nearness_weight,
+            m.closeness_weight,
+            m.conflict_weight,
+            m.threat_weight,
+            m.final_weight,
+            p.terminal,
+        )

@@ -19,22 +19,16 @@ that violate no more than that (Nocedal & Wright 2006, section 17.2), so the bou
 the unavoidable amount: no slack variables, and always a solution.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from controller._jit import kernel
+from controller._jit import Array, kernel
+from controller.model import LongitudinalModel
+from controller.planning.parameters import PlannerParameters
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from controller.model import LongitudinalModel
-    from controller.planning.parameters import PlannerParameters
-
-    Array = NDArray[np.float64]
-    Indices = NDArray[np.int64]
+Indices = NDArray[np.int64]
 
 WIDER = 1e-7  # [m/s] [m] by which bounds are widened, so that rounding leaves no empty problem
 

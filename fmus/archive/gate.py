@@ -5,10 +5,9 @@ folder, fill the memory or the disk, or read other files. Everything else passes
 several hundred megabytes.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
+import os
 import re
 import stat
 import struct
@@ -16,20 +15,18 @@ import unicodedata
 import zipfile
 import zlib
 from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import lru_cache
+from itertools import zip_longest
+from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from fmus.archive.markup import check_xml
 from fmus.errors import FmuArchiveError, FmuFileError
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    import os
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
 
 DESCRIPTION: Final = "modelDescription.xml"
 ROOT: Final = "fmiModelDescription"
@@ -44,6 +41,7 @@ MAX_NAME: Final = 1024
 CHUNK: Final = 1 << 20  # [bytes]
 READABLE: Final = frozenset({zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED})
 DRIVE: Final = re.compile(r"[A-Za-z]:")
+TWICE: Final = "twice in the archive (capitals and how accents are coded do not count)"
 LOCAL_HEADER: Final = 30  # [bytes] before the name of a member in the archive
 
 
@@ -73,7 +71,8 @@ def open_archive(path: Path) -> Archive:
 @lru_cache(maxsize=2)
 def _open(path: Path, _state: tuple[int, int, int]) -> Archive:
     with _reading(path) as archive:
-        members = _examined(path, archive.infolist())
+        members, copies = _examined(path, archive.infolist())
+        _require_same(path, archive, members, copies)
         info = members.get(DESCRIPTION)
         if info is None:
             raise FmuFileError(_no_description(path, members))
@@ -188,11 +187,18 @@ def _require_file(path: Path) -> os.stat_result:
 # ---- examining ----
 
 
-def _examined(path: Path, infos: Sequence[zipfile.ZipInfo]) -> dict[str, zipfile.ZipInfo]:
-    """The members that are files, by name; refuses the archive for its first bad member."""
+def _examined(
+    path: Path, infos: Sequence[zipfile.ZipInfo]
+) -> tuple[dict[str, zipfile.ZipInfo], list[zipfile.ZipInfo]]:
+    """The members that are files, by name, and further ones of the same names.
+
+    Raises:
+        FmuArchiveError: for the first bad member.
+    """
     if len(infos) > MAX_MEMBERS:
         raise _beyond(f"{path}: {len(infos)} members", str(MAX_MEMBERS))
     members: dict[str, zipfile.ZipInfo] = {}
+    copies: list[zipfile.ZipInfo] = []
     folded: dict[str, str] = {}
     for info in infos:
         fault = _fault(info)
@@ -202,17 +208,34 @@ def _examined(path: Path, infos: Sequence[zipfile.ZipInfo]) -> dict[str, zipfile
             continue
         plain = unicodedata.normalize("NFC", info.filename).casefold()
         other = folded.setdefault(plain, info.filename)
-        if info.filename in members or other != info.filename:
-            what = "twice in the archive (capitals and how accents are coded do not count)"
-            raise _refused(path, info, what)
-        members[info.filename] = info
+        if other != info.filename:
+            raise _refused(path, info, TWICE)
+        if members.setdefault(info.filename, info) is not info:
+            copies.append(info)
     for name, info in members.items():
         parents = unicodedata.normalize("NFC", name).casefold().split("/")[:-1]
         if any("/".join(parents[: n + 1]) in folded for n in range(len(parents))):
             raise _refused(path, info, "lies in a folder that is also a file")
-    _require_sane_sizes(path, members)
+    _require_sane_sizes(path, [*members.values(), *copies])
     _require_separate_places(path, infos)
-    return members
+    return members, copies
+
+
+def _require_same(
+    path: Path,
+    archive: zipfile.ZipFile,
+    members: Mapping[str, zipfile.ZipInfo],
+    copies: Sequence[zipfile.ZipInfo],
+) -> None:
+    """Refuse a name that stands for two contents; some tools write the same file twice.
+
+    Raises:
+        FmuArchiveError: which of them counts would depend on who reads the archive.
+    """
+    for info in copies:
+        pairs = zip_longest(_chunks(archive, members[info.filename]), _chunks(archive, info))
+        if any(one != other for one, other in pairs):
+            raise _refused(path, info, f"{TWICE}, with different contents")
 
 
 def _fault(info: zipfile.ZipInfo) -> str:
@@ -239,12 +262,12 @@ def _fault(info: zipfile.ZipInfo) -> str:
     return ""
 
 
-def _require_sane_sizes(path: Path, members: Mapping[str, zipfile.ZipInfo]) -> None:
-    total = sum(info.file_size for info in members.values())
-    packed = sum(info.compress_size for info in members.values())
+def _require_sane_sizes(path: Path, members: Sequence[zipfile.ZipInfo]) -> None:
+    total = sum(info.file_size for info in members)
+    packed = sum(info.compress_size for info in members)
     if total > MAX_TOTAL:
         raise _beyond(f"{path}: {_megabytes(total)} unpacked", _megabytes(MAX_TOTAL))
-    for info in members.values():
+    for info in members:
         if _inflated(info.file_size, info.compress_size):
             raise _bomb(f"{path}: member {_quoted(info)}", info.file_size, info.compress_size)
     if _inflated(total, packed):

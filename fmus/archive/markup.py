@@ -7,15 +7,13 @@ parser (expat) that reads the rest.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final, NoReturn
+from typing import Final, NoReturn
 from xml.parsers import expat
 
 from fmus.errors import FmuArchiveError, FmuFileError
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
 
 MAX_DEPTH: Final = 64  # of elements; FMI's own go to 6, annotations are free
 MAX_ELEMENTS: Final = 600_000  # 50,000 variables make 150,000

@@ -6,15 +6,10 @@ The mean of F over each step is computed exactly for any tau and d, also fractio
 Y(t), the integral of the lagged force without dead time, it is (Y(t + h - d) - Y(t - d)) / h.
 """
 
-from __future__ import annotations
-
 from itertools import accumulate
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from numpy.typing import NDArray
 
 NEGLIGIBLE = 1e-6  # share of a step: a shorter lag is ignored
 

@@ -1,25 +1,19 @@
 """The dry run of a vehicle FMU: a few drives, and a finding for each property they test."""
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 from fmus.checking import consistency
 from fmus.checking import observations as observe
 from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
-from fmus.checking.manoeuvres import Phase, try_to_drive
-from fmus.checking.self_check import convergence, milliseconds, plain, remedy
+from fmus.checking.manoeuvres import Attempt, Opener, Phase, Trace, try_to_drive
+from fmus.checking.scale import known_masses
+from fmus.checking.self_check import Convergence, convergence, milliseconds, plain, remedy
 from fmus.errors import FmuCrashError, FmuError, FmuOutputError, FmuStepError
+from fmus.profile.vehicle_profile import VehicleProfile
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from fmus.checking.manoeuvres import Attempt, Opener, Trace
-    from fmus.checking.self_check import Convergence
-    from fmus.profile.vehicle_profile import VehicleProfile
-
+DEFAULT_MASS = 1000.0  # [kg] M of the controllers' model, where nobody says otherwise
 GENTLE = 3.0  # [m/s2] of the manoeuvres, by the controller's model
 FASTEST_START = 4.0  # [m/s] of the rolling start where the run's own is 0
 DRIVE, COAST, BRAKE = 3.0, 3.0, 5.0  # [s]
@@ -63,7 +57,8 @@ def check(
     fmu_step: float | None = None,
     unguarded: Opener | None = None,
     profile: VehicleProfile | None = None,
-    mass: float = 1000.0,
+    mass: float | None = None,
+    vehicle_class: str | None = None,
     friction: float = 100.0,
     horizon: int = 15,
     force_limit: float = 8000.0,
@@ -78,17 +73,21 @@ def check(
         fmu_step: of the FMU itself [s]; None: ``step_size``.
         unguarded: makes the vehicle without guards, to see what is wrong if they stop it.
         profile: of the vehicle, for what to change in it.
-        mass: M of the controller's model [kg].
+        mass: M of the controller's model, and of the vehicle [kg]; None: nobody knows, and the
+            controller's is that of the profile's [model], else 1000 kg.
+        vehicle_class: of SUMO, which tells roughly what the vehicle weighs.
         friction: alpha of it [N.s/m].
         horizon: of the MPC [steps].
         force_limit: u_max [N].
         start_speed: of the rolling start [m/s].
         progress: told the name of each drive before it begins.
     """
+    known = known_masses(profile, mass, vehicle_class)
+    mass = DEFAULT_MASS if mass is None else mass
     if profile is not None and profile.model is not None:
         mass, friction = profile.model.mass, profile.model.friction
     force = min(force_limit, GENTLE * mass)
-    expected = Expected(mass, friction, horizon, start_speed, force, force_limit, profile)
+    expected = Expected(mass, friction, horizon, start_speed, force, force_limit, profile, known)
     report = CheckReport(expected)
     tell = progress or (lambda _name: None)
     go_on = _drive_all(report, opener, unguarded, tell)

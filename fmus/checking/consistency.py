@@ -1,19 +1,14 @@
 """Whether the outputs agree with each other; a constant factor between them is a wrong unit."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
+from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
 from fmus.checking.fitting import STANDSTILL
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fmus.checking.expected import Expected
-    from fmus.checking.manoeuvres import Trace
+from fmus.checking.manoeuvres import Trace
+from fmus.profile.advice import gain_line
+from fmus.profile.vehicle_profile import VehicleProfile
 
 RATIO_TOLERANCE = 0.02  # of a factor between two quantities that should be the same
 
@@ -40,12 +35,12 @@ def position_follows_speed(response: Trace, expected: Expected) -> Finding:
     text = f"the position moves {ratio:.4g} m per metre that the speed accounts for"
     if abs(ratio - 1.0) <= RATIO_TOLERANCE:
         return Finding(name, "pass", text)
-    return Finding(name, "fail", *_position_remedy(text, ratio))
+    return Finding(name, "fail", *_position_remedy(text, ratio, expected.profile))
 
 
-def _position_remedy(text: str, ratio: float) -> tuple[str, str]:
+def _position_remedy(text: str, ratio: float, profile: VehicleProfile | None) -> tuple[str, str]:
     if abs(ratio + 1.0) <= RATIO_TOLERANCE:
-        return text, "set `gain = -1.0` in [outputs.position]"
+        return text, f"set {gain_line(profile, 'outputs', 'position', -1.0)}"
     for unit, factor in SPEED_UNITS:
         if abs(ratio * factor - 1.0) <= RATIO_TOLERANCE:
             return (
@@ -63,7 +58,8 @@ def _position_remedy(text: str, ratio: float) -> tuple[str, str]:
             f"{text}: the position seems to be in {unit}",
             f'set `unit = "{unit}"` in [outputs.position]',
         )
-    return text, f"set `gain = {1.0 / ratio:.6g}` in [outputs.position], or the right unit there"
+    line = gain_line(profile, "outputs", "position", float(f"{1.0 / ratio:.4g}"))
+    return text, f"set {line}, or the right unit there"
 
 
 def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
@@ -78,7 +74,8 @@ def acceleration_follows_speed(response: Trace, expected: Expected) -> Finding:
     if abs(ratio - 1.0) <= 0.05 and misfit <= 0.1:
         return Finding(name, "pass", text)
     if abs(ratio + 1.0) <= 0.05:
-        return Finding(name, "fail", text, "set `gain = -1.0` in [outputs.acceleration]")
+        line = gain_line(expected.profile, "outputs", "acceleration", -1.0)
+        return Finding(name, "fail", text, f"set {line}")
     unit = unit_of(ratio, _ACCELERATION_UNITS)
     if unit:
         gain = 1.0 / dict(_ACCELERATION_UNITS)[unit]

@@ -1,14 +1,9 @@
 """What a run will assume of the checked vehicle."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from fmus.profile.vehicle_profile import Axis
-
-if TYPE_CHECKING:
-    from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
+from fmus.checking.scale import KnownMass
+from fmus.profile.vehicle_profile import Axis, FittedModel, VehicleProfile
 
 
 @dataclass(frozen=True)
@@ -23,6 +18,7 @@ class Expected:
         force: of the manoeuvres [N].
         largest_force: u_max [N].
         profile: of the vehicle; None: the FMU is ours.
+        known: what the vehicle weighs, as far as anybody has said.
     """
 
     mass: float
@@ -32,6 +28,7 @@ class Expected:
     force: float
     largest_force: float
     profile: VehicleProfile | None
+    known: tuple[KnownMass, ...] = ()
 
     @property
     def identified(self) -> FittedModel | None:

@@ -1,11 +1,9 @@
 """The outcome of a check: one finding per test."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 
-Verdict = Literal["pass", "warn", "fail", "skip"]
+Verdict = Literal["pass", "warn", "ask", "fail", "skip"]
 
 
 @dataclass(frozen=True)
@@ -14,7 +12,8 @@ class Finding:
 
     Attributes:
         name: of the test, a few words.
-        verdict: "skip" where the test does not apply, or could not be tried any more.
+        verdict: "skip" where the test does not apply, or could not be tried any more; "ask" where
+            only the user can tell.
         text: what was found, with numbers and units; one line.
         remedy: what to do, ideally the line to add to the profile; empty if nothing.
     """

@@ -5,22 +5,15 @@ eq. (3)), where F is the mean over the step of the force that acts. For a given 
 it is linear in 1 / M and alpha / M; the two are found by a search that minimises the residual.
 """
 
-from __future__ import annotations
-
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fmus.checking.actuator import mean_force
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import NDArray
-
-    from fmus.checking.manoeuvres import Trace
+from fmus.checking.manoeuvres import Trace
 
 STANDSTILL = 0.05  # [m/s] slower steps are not fitted: brakes may hold the vehicle
 SETTLING = 1.0  # [s] at the start are not fitted: earlier forces are unknown
@@ -108,7 +101,7 @@ def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
 
     @cache
     def cost(lag: float, delay: float) -> float:
-        return _solve(drives, lag, delay).residual
+        return solve(drives, lag, delay).residual
 
     best = simplest = (0.0, 0.0)
     if actuator and cost(0.0, 0.0) > EXACT:
@@ -116,7 +109,7 @@ def fit(drives: Sequence[Drive], *, actuator: bool = True) -> Fit | None:
         candidates = [(0.0, 0.0), _line_search(cost, 0), _line_search(cost, 1), best]
         enough = max(cost(*best) * (1.0 + NOTICEABLE), EXACT)
         simplest = next(pair for pair in candidates if cost(*pair) <= enough)
-    solution = _solve(drives, *simplest)
+    solution = solve(drives, *simplest)
     return solution if np.isfinite(solution.mass) else None
 
 
@@ -143,7 +136,7 @@ def resistance_rows(
     return np.column_stack((np.concatenate(acting), -v, -np.ones_like(v), -v * np.abs(v))), y
 
 
-def _solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
+def solve(drives: Sequence[Drive], lag: float, delay: float) -> Fit:
     """Linear least squares in theta = (1 / M, alpha / M)."""
     rows, targets, groups = [], [], []
     for number, drive in enumerate(drives):

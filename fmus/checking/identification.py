@@ -6,25 +6,22 @@ driven by an acceleration, a speed or pedals, this includes the inverse map.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import count
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
 from fmus.checking.fitting import SETTLING, STANDSTILL, Drive, Fit, fit, prepare
-from fmus.checking.manoeuvres import Phase, Trace, drive
+from fmus.checking.manoeuvres import Opener, Phase, Trace, drive
 from fmus.checking.prediction import position_errors, speed_errors
 from fmus.checking.remarks import fit_remarks, saturation_remarks
 from fmus.checking.saturation import force_limits
+from fmus.checking.sides import Sides, fit_apart, side_remarks
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
-from fmus.profile.vehicle_profile import FittedModel
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from pathlib import Path
-
-    from fmus.checking.manoeuvres import Opener
+from fmus.profile.advice import gain_line
+from fmus.profile.vehicle_profile import Axis, FittedModel, VehicleProfile
 
 LEVELS = (0.1, 0.25, 0.5, 1.0)  # of the largest force of the tests
 SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] at the start of the tests
@@ -52,6 +49,7 @@ class Identification:
         tests: the drives that were fitted.
         validation: the drive that was not fitted.
         remarks: what the user should know, one line each.
+        sides: driving and braking apart.
     """
 
     model: FittedModel
@@ -63,6 +61,7 @@ class Identification:
     tests: tuple[Trace, ...]
     validation: Trace
     remarks: tuple[str, ...]
+    sides: Sides
 
     @property
     def fitted_drives(self) -> list[Drive]:
@@ -80,6 +79,7 @@ def identify(
     step_size: float,
     horizon: int,
     force_limit: float,
+    profile: VehicleProfile | None = None,
     speeds: Sequence[float] = SPEEDS,
     progress: Callable[[int, int], None] | None = None,
 ) -> Identification:
@@ -91,6 +91,7 @@ def identify(
         step_size: of the MPC, dt [s].
         horizon: of the MPC, N [steps].
         force_limit: u_max of the MPC [N]; no test uses more.
+        profile: of the vehicle, for what to change in it.
         speeds: from which the tests start [m/s].
         progress: told how many of the drives are done, and of how many.
 
@@ -105,13 +106,14 @@ def identify(
             progress(next(done), total)
 
     one_more()
-    largest = _largest_force(opener, path, force_limit, step_size)
+    largest = _largest_force(opener, path, profile, force_limit, step_size)
     one_more()
     starter = _Starter(opener, 0.5 * largest, max(speeds))
     tests = _drive_tests(starter, largest, speeds, one_more)
     limits = force_limits(tests)
     traces = tuple(trace for group in tests for trace in group)
-    found = fit([prepare(trace, limits) for trace in traces])
+    drives = [prepare(trace, limits) for trace in traces]
+    found = fit(drives)
     validation = starter.drive(
         _validation(0.9 * min(largest, *limits), max(speeds)), float(np.median(speeds))
     )
@@ -119,6 +121,7 @@ def identify(
     if found is None:
         raise FmuOutputError(f"{path}: {_NOT_A_VEHICLE}; expected more speed with more force")
     model = _rated(found, validation, limits, step_size, horizon)
+    sides = fit_apart(drives, found.delay)
     if model.r_squared < NO_FIT:
         raise FmuOutputError(
             f"{path}: no M and alpha describe it (R² = {model.r_squared:.2f}): its speed does not "
@@ -133,7 +136,12 @@ def identify(
         fit=found,
         tests=traces,
         validation=validation,
-        remarks=(*saturation_remarks(limits), *fit_remarks(found, model, traces, limits)),
+        remarks=(
+            *saturation_remarks(limits),
+            *fit_remarks(found, model, traces, limits),
+            *side_remarks(sides, step_size, profile),
+        ),
+        sides=sides,
     )
 
 
@@ -159,7 +167,13 @@ def _finite(limit: float) -> float | None:
     return float(limit) if np.isfinite(limit) else None
 
 
-def _largest_force(opener: Opener, path: Path, force_limit: float, step_size: float) -> float:
+def _largest_force(
+    opener: Opener,
+    path: Path,
+    profile: VehicleProfile | None,
+    force_limit: float,
+    step_size: float,
+) -> float:
     """The force [N] of the hardest tests: what the limit and a road vehicle's tyres allow."""
     share = 0.05
     while True:
@@ -177,9 +191,11 @@ def _largest_force(opener: Opener, path: Path, force_limit: float, step_size: fl
             )
         share = min(2.0 * share, 1.0)
     if gained < 0.0:
+        axes = [role for role, axis in profile.inputs if isinstance(axis, Axis)] if profile else []
+        turned = gain_line(profile, "inputs", axes[0] if axes else "force", -1.0)
         raise FmuOutputError(
             f"{path}: {force:g} N forwards drive it backwards ({speed[-1]:.2g} m/s after 2 s); "
-            "turn the sign with `gain = -1.0` under [inputs] (or [outputs.speed]) of the profile"
+            f"turn the sign with {turned} (or in [outputs.speed]) of the profile"
         )
     apparent_mass = force * (speed.size - 1 - half) * step_size / gained
     return min(force_limit, HARDEST * apparent_mass)

@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fmus.description.model import Value
 from fmus.errors import FmuError
 from fmus.interfaces.vehicle import Vehicle
 from fmus.isolation import open_vehicle
-from fmus.profile.vehicle_profile import Limits
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from fmus.description.model import Value
-    from fmus.profile.vehicle_profile import VehicleProfile
-
+from fmus.profile.vehicle_profile import Limits, VehicleProfile
 
 Opener = Callable[[float | None], Vehicle]
 """Makes a fresh vehicle whose FMU does steps of the size given [s]; None: as its profile says.
@@ -157,21 +149,46 @@ def try_to_drive(
     fmu_step: float | None = None,
 ) -> Attempt:
     """The same as :func:`drive`, but a failure is returned, with the trace up to it."""
-    log: _DriveLog | None = None
+    return try_to_drive_from((speed,), opener, phases, fmu_step=fmu_step)[0]
+
+
+def try_to_drive_from(
+    speeds: Sequence[float],
+    opener: Opener,
+    phases: Iterable[Phase],
+    *,
+    fmu_step: float | None = None,
+) -> list[Attempt]:
+    """The same as :func:`try_to_drive` from several speeds in turn, until one drive fails.
+
+    All are of one vehicle that starts anew each time: its FMU is unpacked once.
+    """
+    attempts: list[Attempt] = []
     vehicle: Vehicle | None = None
-    error: FmuError | None = None
     try:
         vehicle = opener(fmu_step)
+        for speed in speeds:
+            attempts.append(_attempt(vehicle, phases, speed))
+            if attempts[-1].error is not None:
+                break
+    except FmuError as caught:
+        attempts.append(Attempt(None, caught))
+    finally:
+        if vehicle is not None:
+            vehicle.close()
+    return attempts
+
+
+def _attempt(vehicle: Vehicle, phases: Iterable[Phase], speed: float) -> Attempt:
+    log: _DriveLog | None = None
+    try:
         vehicle.start(speed=speed)
         log = _DriveLog(vehicle)
         for phase in phases:
             _hold(vehicle, phase, log)
     except FmuError as caught:
-        error = caught
-    finally:
-        if vehicle is not None:
-            vehicle.close()
-    return Attempt(log.trace() if log is not None else None, error)
+        return Attempt(log.trace() if log is not None else None, caught)
+    return Attempt(log.trace(), None)
 
 
 def _hold(vehicle: Vehicle, phase: Phase, log: _DriveLog) -> None:

@@ -1,23 +1,18 @@
 """The tests of a check: each function examines traces and returns one finding."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from fmus.checking.consistency import SPEED_UNITS, unit_of
+from fmus.checking.expected import Expected
 from fmus.checking.findings import Finding
-from fmus.checking.fitting import fit, prepare
+from fmus.checking.fitting import Fit, fit, prepare
+from fmus.checking.manoeuvres import Trace
 from fmus.checking.prediction import position_errors
 from fmus.checking.saturation import ResistanceModel, saturation
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from fmus.checking.expected import Expected
-    from fmus.checking.fitting import Fit
-    from fmus.checking.manoeuvres import Trace
+from fmus.checking.scale import GROSS, gross_error
+from fmus.profile.advice import gain_line
 
 MOVES = 0.02  # [m/s] a larger change of speed is a motion
 CREEPS = 0.1  # [m/s] allowed in the wrong direction
@@ -88,7 +83,8 @@ def drives(response: Trace, expected: Expected) -> Finding:
     if gained < -MOVES:
         return Finding(
             name, "fail", f"{text}: it goes the wrong way",
-            f"set `gain = -1.0` in [inputs.{expected.role}] (or in [outputs.speed])",
+            f"set {gain_line(expected.profile, 'inputs', expected.role, -1.0)} "
+            "(or in [outputs.speed])",
         )  # fmt: skip
     return Finding(
         name, "fail", f"{text}: it does not move",
@@ -108,7 +104,7 @@ def brakes(rolling: Trace, expected: Expected) -> Finding:
     if halfway > before + MOVES:
         return Finding(
             name, "fail", f"{text}: braking makes it faster ({halfway:.3g} m/s)",
-            f"set `gain = -1.0` in [inputs.{role}]",
+            f"set {gain_line(expected.profile, 'inputs', role, -1.0)}",
         )  # fmt: skip
     if slowest > before - MOVES:
         return Finding(
@@ -168,6 +164,12 @@ def matches_model(model: Fit | None, response: Trace, expected: Expected) -> Fin
         f"after {seconds:g} s"
     )
     ratio = model.mass / expected.mass
+    lead = _missing_lead(model.mass, response.step_size, expected)
+    for weight in expected.known:
+        gross = gross_error(model.mass, weight, expected.role, _speed_unit(expected))
+        if gross is not None:
+            remedy = gross[1] if lead is None else _lead_remedy(lead)
+            return Finding(name, "fail", f"{text}: {gross[0]}", remedy)
     if abs(ratio * 1000.0 - 1.0) < 0.3:
         return Finding(
             name, "fail", f"{text}: 1000 times too strong, the force seems to be in kN",
@@ -176,16 +178,28 @@ def matches_model(model: Fit | None, response: Trace, expected: Expected) -> Fin
     known = 0.0 if expected.identified is None else 1.5 * expected.identified.position_error
     if abs(ratio - 1.0) <= MASS_TOLERANCE and off <= max(POSITION_TOLERANCE, known):
         return Finding(name, "pass", text)
-    lead = _missing_lead(model.mass, response.step_size, expected)
     if lead is not None:
+        return Finding(name, "warn", text, _lead_remedy(lead))
+    identify = "'giveway fmu identify' writes its own M and alpha into the profile"
+    if not expected.known and not 1.0 / GROSS < ratio < GROSS:
         return Finding(
-            name, "warn", text,
-            f"it takes about {lead:.2g} s to its set-point: write `lead = {lead:.2g}` in "
-            "[inputs.speed_setpoint], and it answers as the controller thinks",
+            name, "ask", f"{text}: does it weigh {model.mass:.3g} kg?",
+            f"if so, {identify}; else a unit is wrong: 'giveway fmu check --mass' with what it "
+            "weighs [kg], or --ego-class, says which",
         )  # fmt: skip
-    return Finding(
-        name, "warn", text, "'giveway fmu identify' writes its own M and alpha into the profile"
+    return Finding(name, "warn", text, identify)
+
+
+def _lead_remedy(lead: float) -> str:
+    return (
+        f"it takes about {lead:.2g} s to its set-point: write `lead = {lead:.2g}` in "
+        "[inputs.speed_setpoint], and it answers as the controller thinks"
     )
+
+
+def _speed_unit(expected: Expected) -> str:
+    """The unit that the profile gives to the speed; empty if the FMU's own counts."""
+    return (expected.profile.outputs.speed.unit or "") if expected.profile else ""
 
 
 def _missing_lead(mass: float, step: float, expected: Expected) -> float | None:

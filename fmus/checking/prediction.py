@@ -1,17 +1,10 @@
 """The errors of the MPC's prediction, which knows M and alpha only, in a drive."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
 from fmus.checking.fitting import STANDSTILL
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fmus.checking.manoeuvres import Trace
+from fmus.checking.manoeuvres import Trace
 
 
 def speed_errors(trace: Trace, mass: float, friction: float) -> NDArray[np.float64]:

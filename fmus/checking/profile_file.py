@@ -1,13 +1,8 @@
 """The identified model in a profile's file, whose comments and order stay as they are."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import tomlkit
 
-if TYPE_CHECKING:
-    from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
+from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
 DIGITS = 10  # significant ones: more than any fit knows
 ROUNDING = 1e-12  # what no fit can tell from 0

@@ -1,20 +1,13 @@
 """What the user should know of an identified model, one line each."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fmus.checking.fitting import Drive, Fit, least_squares, prepare, resistance_rows
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from fmus.checking.manoeuvres import Trace
-    from fmus.profile.vehicle_profile import FittedModel
+from fmus.checking.manoeuvres import Trace
+from fmus.profile.vehicle_profile import FittedModel
 
 POOR_FIT = 0.9  # of R squared, below which a remark says so
 

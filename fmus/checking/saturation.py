@@ -1,23 +1,24 @@
 """The largest forces that a vehicle carries out."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fmus.checking.actuator import mean_force
-from fmus.checking.fitting import STANDSTILL, Fit, fit, least_squares, prepare, resistance_rows
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from fmus.checking.fitting import Drive
-    from fmus.checking.manoeuvres import Trace
+from fmus.checking.fitting import (
+    STANDSTILL,
+    Drive,
+    Fit,
+    fit,
+    least_squares,
+    prepare,
+    resistance_rows,
+)
+from fmus.checking.manoeuvres import Trace
 
 SATURATED = 0.85  # if less of a force than this share arrives, the actuator is at its limit
 _ENOUGH = 20  # steps for four coefficients

@@ -5,15 +5,13 @@ reaches 1e14 m/s at steps of 50 ms and returns OK. First-order methods such as f
 their error is of the size of one step's change.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
-from fmus.checking.manoeuvres import Phase, Trace, try_to_drive
+from fmus.checking.manoeuvres import Opener, Phase, Trace, try_to_drive_from
 from fmus.errors import (
     FmuCrashError,
     FmuError,
@@ -22,11 +20,6 @@ from fmus.errors import (
     FmuProfileError,
     FmuStartError,
 )
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from fmus.checking.manoeuvres import Opener
 
 DIVISORS = (1, 2, 5, 10, 20, 50, 100)  # of the step, tried from coarse to fine
 RELATIVE = 0.05  # of the largest speed or distance of the finer run
@@ -211,16 +204,13 @@ class _StepSizes:
         return max(done) - min(done) > 1 or len(blamed) > 1
 
     def _attempt(self, step: float | None) -> _Drives:
-        traces = []
-        for speed in self._speeds:
-            attempt = try_to_drive(self._opener, manoeuvre(self._force), speed=speed, fmu_step=step)
-            if isinstance(attempt.error, FmuCrashError):
-                raise attempt.error
-            if attempt.trace is not None:
-                traces.append(attempt.trace)
-            if attempt.error is not None:
-                return _Drives(tuple(traces), attempt.error)
-        return _Drives(tuple(traces), None)
+        attempts = try_to_drive_from(
+            self._speeds, self._opener, manoeuvre(self._force), fmu_step=step
+        )
+        error = attempts[-1].error
+        if isinstance(error, FmuCrashError):
+            raise error
+        return _Drives(tuple(a.trace for a in attempts if a.trace is not None), error)
 
 
 def _do_not_converge(step: float) -> str:

@@ -1,20 +1,15 @@
 """Which binary of an FMU runs here, judged by its folder and by its first bytes."""
 
-from __future__ import annotations
-
 import platform
 import struct
 import sys
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from fmus.archive.gate import open_archive, read_start
+from fmus.archive.gate import Archive, open_archive, read_start
+from fmus.description.model import Interface, Model
 from fmus.errors import FmuPlatformError
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from fmus.archive.gate import Archive
-    from fmus.description.model import Interface, Model
 
 SYSTEMS: Final = {"linux": "linux", "win32": "windows", "cygwin": "windows", "darwin": "darwin"}
 SUFFIXES: Final = {"linux": ".so", "windows": ".dll", "darwin": ".dylib"}
@@ -105,12 +100,11 @@ def _no_binary(model: Model, interface: Interface, archive: Archive) -> str:
     misnamed = [name for name in archive.members if name.rpartition("/")[0] in places]
     if misnamed:
         return f"{what}, but {printable(misnamed[0], 100)}; export the model again"
-    if model.platforms:
-        has = printable(", ".join(model.platforms))
-        return f"{what}; the FMU has binaries for: {has}; export it for {here}"
+    has = printable(", ".join(model.platforms)) or "none"
+    what = f"{what}; the FMU has binaries for: {has}"
     if any(name.startswith("sources/") and name.endswith(".c") for name in archive.members):
-        return f"{what}, only C sources; compile them: fmpy compile {model.path}"
-    return f"{what}; the FMU has binaries for: none; export it for {here}"
+        return f"{what}, and C sources; compile them: giveway fmu compile {model.path}"
+    return f"{what}; export it for {here}"
 
 
 def misfit(start: bytes, wanted: Platform) -> str:

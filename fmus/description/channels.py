@@ -1,20 +1,13 @@
 """From the names in a profile to the variables of an FMU, and the start values for them."""
 
-from __future__ import annotations
-
 import re
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from math import isfinite
-from typing import TYPE_CHECKING
 
-from fmus.description.model import Channel
+from fmus.description.model import Channel, Model, Value, Variable
 from fmus.errors import FmuVariableError
 from fmus.text import listed
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from fmus.description.model import Model, Value, Variable
 
 _ELEMENT = re.compile(r"(?P<name>.*)\[(?P<number>[0-9]{1,9})\]")
 

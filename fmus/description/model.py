@@ -1,14 +1,9 @@
 """What an FMU says about itself: its interfaces, its variables, their units."""
 
-from __future__ import annotations
-
 import enum
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
+from pathlib import Path
 
 
 class Kind(enum.StrEnum):

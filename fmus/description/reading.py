@@ -4,17 +4,17 @@ FMPy's reader is not used here: it refuses FMUs that run without a fault, knows
 neither FMI 1's capabilities nor the units of declared types, and does not tell the line of a fault.
 """
 
-from __future__ import annotations
-
 import math
+import os
 import re
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from fmus.archive.gate import DESCRIPTION, ROOT, open_archive
-from fmus.archive.markup import parse
+from fmus.archive.gate import DESCRIPTION, ROOT, Archive, open_archive
+from fmus.archive.markup import Element, parse
 from fmus.description.binaries import platforms_of
-from fmus.description.model import FmuDescription, Interface, Kind, Model, Unit
+from fmus.description.model import FmuDescription, Interface, Kind, Model, Unit, Variable
 from fmus.description.variables import (
     MAX_DESCRIPTION,
     MAX_UNIT,
@@ -26,14 +26,6 @@ from fmus.description.variables import (
 )
 from fmus.errors import FmuInterfaceError
 from fmus.text import LIMIT, clean, printable
-
-if TYPE_CHECKING:
-    import os
-    from collections.abc import Mapping
-
-    from fmus.archive.gate import Archive
-    from fmus.archive.markup import Element
-    from fmus.description.model import Variable
 
 VERSIONS: Final = re.compile(r"(1\.0|2\.0|3\.0)(\.\d+)?")
 TAGS: Final = {Kind.CO_SIMULATION: "CoSimulation", Kind.MODEL_EXCHANGE: "ModelExchange"}

@@ -5,8 +5,6 @@ SI = factor * raw + offset. A name is a product of known symbols in the notation
 ``kN`` is a force, ``kn`` a speed.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import math

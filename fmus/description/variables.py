@@ -1,18 +1,13 @@
 """The variables of a model description: what FMI 1, 2 and 3 each write, in one form."""
 
-from __future__ import annotations
-
 import dataclasses
-from typing import TYPE_CHECKING, Final, TypeVar
+from collections.abc import Callable, Iterator, Mapping
+from typing import Final, TypeVar
 
+from fmus.archive.markup import Element
 from fmus.description.model import INTEGER_TYPES, REAL_TYPES, Variable
 from fmus.errors import FmuFileError
 from fmus.text import clean, printable
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-
-    from fmus.archive.markup import Element
 
 _Number = TypeVar("_Number", float, int)
 

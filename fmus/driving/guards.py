@@ -1,12 +1,8 @@
 """Finding motions that no car has: they show that an FMU is at fault, whatever it returns."""
 
-from __future__ import annotations
-
 from math import isfinite
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from fmus.profile.vehicle_profile import Limits
+from fmus.profile.vehicle_profile import Limits
 
 DRIVEN = 200.0  # [N] a car that does not react to so much is stuck
 
@@ -59,17 +55,19 @@ class Guard:
             "units of position and speed, or raise position_jump in [limits]"
         )
 
-    def drift(self, drift: float, way: float, at: float) -> str:
-        """What is wrong with a position that drifts away from the integrated speed.
+    def disagreement(self, moved: float, way: float, duration: float, at: float) -> str:
+        """What is wrong with a position that is not the integrated speed.
 
         Args:
-            drift: position minus integrated speed, since the start [m].
+            moved: distance by the position [m].
             way: distance by the integrated speed [m].
+            duration: in which they were driven [s]; 0: since the start.
             at: time [s].
         """
         position, speed = self._names["position"], self._names["speed"]
+        lately = f" in {duration:.4g} s" if duration else ""
         return (
-            f"{position} has moved by {way + drift:.4g} m at {at:.10g} s, where {speed} accounts "
+            f"{position} has moved by {moved:.4g} m{lately} at {at:.10g} s, where {speed} accounts "
             f"for {way:.4g} m; check the units of both, or leave out [outputs.position]"
         )
 

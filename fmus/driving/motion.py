@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from math import isfinite, isnan, nan
-from typing import TYPE_CHECKING
 
+from fmus.driving.agreement import Agreement
 from fmus.driving.guards import DRIVEN, Guard
 from fmus.errors import FmuOutputError
+from fmus.profile.preparation import Prepared
+from fmus.profile.wiring import Wiring
 
-if TYPE_CHECKING:
-    from fmus.profile.preparation import Prepared
-    from fmus.profile.wiring import Wiring
-
-
-_SLIP = 0.2  # share of the distance by which the position may differ from the integrated speed
+_STILL = 1e-9  # [m/s] or [m] a smaller change in a step is rounding, and no motion
 _REVERSING = -0.05  # [m/s] beyond what a stop within a step may overshoot
 
 
@@ -47,8 +44,7 @@ class Motion:
         self._trusted = prepared.ours
         self._last_effective = 0.0  # [N] force under which the speed last changed
         self._origin = 0.0  # [m] where the FMU's own position is 0
-        self._distance = 0.0  # [m] driven since the start, by the speed
-        self._drift = 0.0  # [m] by which the position has moved farther
+        self._agreement = Agreement(limits.position_jump)
 
     @property
     def state(self) -> tuple[float, float, float]:
@@ -119,21 +115,18 @@ class Motion:
             FmuOutputError: no car can move like this.
         """
         speed, position = self.speed, self.position
-        way = 0.5 * duration * (before + speed)
-        drift = position - (here + way)
-        self._judge(drift, 0.5 * duration * abs(speed - before), time)
-        if speed != before or isnan(self._last_effective):
+        way, slack = 0.5 * duration * (before + speed), 0.5 * duration * abs(speed - before)
+        self._judge(position - (here + way), slack, time)
+        faster = abs(speed - before) > _STILL
+        if faster or isnan(self._last_effective):
             self._last_effective = force
         if self._position_output is None:  # until the force changes, a car may be cruising
-            changed = speed != before or abs(force - self._last_effective) < DRIVEN
+            changed = faster or abs(force - self._last_effective) < DRIVEN
         else:
-            changed = speed != before or position != here
-        if changed:  # a frozen motion is left to the guard's own test
-            self._distance += abs(way)
-            self._drift += drift
-        if abs(self._drift) > self._jump + _SLIP * self._distance:
-            problem = self._guard.drift(self._drift, self._distance, time)
-            raise FmuOutputError(f"{self._path}: {problem}")
+            changed = faster or abs(position - here) > _STILL
+            lost = self._agreement.lost(position - here, way, slack, duration)
+            if lost is not None:
+                raise FmuOutputError(f"{self._path}: {self._guard.disagreement(*lost, time)}")
         self._note(self._guard.watch(changed, force, speed, duration, time))
         if speed < _REVERSING:
             backwards = f"{self.names['speed']} = {speed:.3g} m/s at {time:.10g} s: it reverses"

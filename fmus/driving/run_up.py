@@ -1,14 +1,9 @@
 """Bringing a vehicle to its initial speed where the FMU has no parameter for it."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from fmus.errors import FmuStartError
+from fmus.interfaces.vehicle import Drivable
+from fmus.profile.advice import gain_line
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from fmus.interfaces.vehicle import Drivable
 
 _NEAR = 0.01  # [m/s] largest error of the speed in the end
 _SETTLED = 0.5  # [s] for which the speed must stay as near
@@ -46,7 +41,7 @@ def run_up(vehicle: Drivable, speed: float) -> float:
         raise FmuStartError(
             f"{vehicle.path}: forces forwards drive it backwards (it is at {vehicle.speed:.4g} m/s "
             f"after {_LIMIT:g} s, and not at its initial speed of {speed:g} m/s); turn the sign "
-            f"with gain = -1.0 in [inputs.{role}], or in [outputs.speed]"
+            f"with {gain_line(profile, 'inputs', role, -1.0, '')}, or in [outputs.speed]"
         )
     if abs(vehicle.speed - first) < _STILL:
         raise FmuStartError(

@@ -1,17 +1,11 @@
 """A vehicle's first state: the FMU's start values, and the check that it starts there."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
+from fmus.description.model import Channel, Value
 from fmus.driving.motion import Motion, names_of
 from fmus.driving.run_up import run_up
 from fmus.errors import FmuOutputError, FmuStartError, FmuStepError
-
-if TYPE_CHECKING:
-    from fmus.description.model import Channel, Value
-    from fmus.interfaces.vehicle import Drivable
-    from fmus.profile.preparation import Prepared
+from fmus.interfaces.vehicle import Drivable
+from fmus.profile.preparation import Prepared
 
 _FIT = 0.02  # [m/s] or [m], and share, by which the first state may differ from the one asked for
 

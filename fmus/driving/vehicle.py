@@ -1,13 +1,14 @@
 """A vehicle whose longitudinal motion is an FMU: a force in; position, speed, acceleration out."""
 
-from __future__ import annotations
-
+import os
 import tempfile
+from collections.abc import Mapping
 from contextlib import ExitStack
 from math import isclose, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn, Self
+from typing import NoReturn, Self
 
+from fmus.description.model import Value
 from fmus.driving.motion import Motion
 from fmus.driving.starting import reach, require_position, start_values
 from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
@@ -16,13 +17,7 @@ from fmus.fmi.status import STATUS_NAMES, WARNING
 from fmus.interfaces.vehicle import Drivable
 from fmus.profile.pace import between, step_to_run_with
 from fmus.profile.preparation import Prepared, prepare, unpack
-
-if TYPE_CHECKING:
-    import os
-    from collections.abc import Mapping
-
-    from fmus.description.model import Value
-    from fmus.profile.vehicle_profile import VehicleProfile
+from fmus.profile.vehicle_profile import VehicleProfile
 
 
 class VehicleFmu(Drivable):
@@ -88,6 +83,7 @@ class VehicleFmu(Drivable):
             solver=prepared.profile.fmu.solver,
             tolerance=prepared.profile.fmu.tolerance,
             rewinds=not prepared.ours,  # keeping the state costs time at every step
+            stop_time=prepared.profile.fmu.stop_time,
         )
         stack.callback(self._instance.close)
         self._resources = stack.pop_all()
@@ -170,7 +166,8 @@ class VehicleFmu(Drivable):
             FmuOutputError: an output is not a number that a car can have.
             FmuStateError: the vehicle is not running.
         """
-        self._require_step(force)
+        if self._refusal or not isfinite(force):
+            self._require_step(force)
         motion, done, stretch = self._motion, self._earlier + self._steps, self._pace.stretch
         if stretch == 1 or done % stretch == 0:
             self._drive(force, done)

@@ -39,6 +39,7 @@ def load(
     solver: Literal["cvode", "rk4"] | None = None,
     tolerance: float | None = None,
     rewinds: bool = True,
+    stop_time: float | None = None,
 ) -> Instance:
     """Load an FMU's library, ready to be started.
 
@@ -51,6 +52,7 @@ def load(
         tolerance: relative: of Model Exchange's solver, or told to a Co-Simulation FMU.
         rewinds: before each step keep the state, so that a discarded step can be done again in
             smaller ones; only with Co-Simulation FMUs that can save their state.
+        stop_time: told to the FMU [s]; None: it has none.
 
     Raises:
         FmuInterfaceError: this version and kind cannot be run.
@@ -64,6 +66,7 @@ def load(
     library = Library(folder / binary, model.path)
     try:
         calls = _CALLS[model.fmi_version](library, model, interface, folder, MessageLog())
+        calls.stop_time = stop_time
         if interface.kind == Kind.MODEL_EXCHANGE:
             from fmus.fmi.model_exchange import ModelExchange  # Co-Simulation needs no numpy
 

@@ -5,20 +5,16 @@ from __future__ import annotations
 import ctypes
 import sys
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_size_t, c_uint32, c_void_p
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from pathlib import Path
+from typing import Any, ClassVar
 
-from fmus.description.model import Kind
+from fmus.description.model import Interface, Kind, Model
+from fmus.fmi.library import Function, Library
+from fmus.fmi.messages import MessageLog
 from fmus.fmi.status import ERROR, WARNING, named
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from pathlib import Path
-
-    from fmus.description.model import Interface, Model
-    from fmus.fmi.library import Function, Library
-    from fmus.fmi.messages import MessageLog
 
 
 class CallFailedError(Exception):
@@ -111,6 +107,8 @@ class Calls(ABC):
         self.folder = folder
         self.messages = messages
         self.component: c_void_p | None = None
+        self.stop_time: float | None = None  # [s] told to the FMU; None: it has none
+        self.event_mode = False  # FMI 3's Co-Simulation: of the instances that are made
         self.prefix = f"fmi{model.fmi_version[0]}"  # of all functions' names
         self.exchanges = interface.kind == Kind.MODEL_EXCHANGE
         self._functions: dict[str, Function] = {}
@@ -195,6 +193,10 @@ class Calls(ABC):
     def update_discrete_states(self) -> EventInfo:
         """One round of the event iteration."""
 
+    def enter_step_mode(self) -> None:
+        """From event mode, in Co-Simulation (FMI 3)."""
+        self.call(self.name("EnterStepMode"))
+
     def enter_continuous_time_mode(self) -> None:
         """From event mode."""
         self.call(self.name("EnterContinuousTimeMode"))
@@ -262,11 +264,18 @@ class Stepper:
     """A step of Co-Simulation.
 
     ``flags[0]`` is not 0 after a step that FMI 3 calls done although it ended early.
+
+    ``event`` is a C value that is true after a step that ended with an event (FMI 3).
+    ``final`` is a C value among the arguments: the FMU's state will not be set back to a time
+    before the beginning of the step (noSetFMUStatePriorToCurrentPoint). Some FMUs keep a step only
+    if that is true, and return OK all the same.
     """
 
     do_step: Function
     arguments: tuple[Any, ...]
+    final: Any  # .value may be changed between two steps
     flags: Any  # indexable
+    event: Any  # .value may be read after a step
     progress: Callable[[], Progress]  # after a step that was not completed
 
 

@@ -2,29 +2,25 @@
 
 An FMU may discard a step; it then says how far it came, and the rest is done from there. If that
 fails, the state before the step is restored and the step is done in halves, quarters, ...
+
+FMI 3 FMUs with events may need the importer to handle them (event mode). They are run without it
+first; if a step fails, a new instance is made with it and brought to where the first one was.
 """
 
-from __future__ import annotations
-
 from contextlib import suppress
-from ctypes import c_double
-from typing import TYPE_CHECKING
+from ctypes import c_double, c_void_p
 
 from fmus.errors import FmuPlatformError
-from fmus.fmi.calls import CallFailedError
-from fmus.fmi.running import Instance
-from fmus.fmi.status import DISCARD, ENDED, FATAL, WARNING
-
-if TYPE_CHECKING:
-    from ctypes import c_void_p
-
-    from fmus.fmi.calls import Calls
-    from fmus.fmi.running import Tick
-    from fmus.fmi.values import Transfer
+from fmus.fmi.calls import CallFailedError, Calls
+from fmus.fmi.running import Instance, Tick
+from fmus.fmi.status import DISCARD, ENDED, ERROR, FATAL, WARNING
+from fmus.fmi.values import Transfer
 
 HALVINGS = 6  # of a step that an FMU discards
 CONTINUATIONS = 100  # of one step from where the FMU has stopped
 NEGLIGIBLE = 1e-9  # share of a step that is taken for nothing
+ROUNDS = 100  # of one event iteration
+REMEMBERED = 100_000  # steps that are done again with event mode
 
 
 class CoSimulation(Instance):
@@ -41,7 +37,11 @@ class CoSimulation(Instance):
         self._rewinds = rewinds and calls.interface.saves_state
         self._start, self._step = c_double(), c_double()
         self._before: c_void_p | None = None  # state before the last step
+        self._before_time = 0.0  # [s] of that state
         calls.function(calls.name("DoStep"))
+        self._past: list[tuple[float, float, bytes]] | None = (
+            None  # steps, as long as it may matter
+        )
 
     def make_tick(self, into: Transfer, out: Transfer) -> Tick:  # noqa: D102 - as in the base
         set_inputs, set_arguments = into.function, into.arguments
@@ -51,8 +51,43 @@ class CoSimulation(Instance):
         do_step, arguments, flags = stepper.do_step, stepper.arguments, stepper.flags
         note_status, complete = self.note_status, self._complete
         save = self._save if self._rewinds else None
+        calls, with_events = self.calls, self._with_events
+        has_events = "hasEventMode" in self.interface.flags and self.model.fmi_version == "3.0"
+        past = self._past = [] if has_events and not calls.event_mode else None
+        inputs = self.inputs
+
+        def event_tick(time: float, size: float) -> int:
+            try:
+                calls.enter_event_mode()
+                status = note_status(set_inputs(*set_arguments))
+                if status > WARNING or (status := self._handle_events()) > WARNING:
+                    return status
+                if save:
+                    save()
+                start.value, step.value = time, size
+                status = do_step(*arguments)
+                if (status or flags[0]) and (status := complete(status, time, size)) > WARNING:
+                    return status
+                if stepper.event.value:
+                    calls.enter_event_mode()
+                    if (status := self._handle_events()) > WARNING:
+                        return status
+            except CallFailedError as error:
+                self.messages.add(ERROR, str(error))
+                return note_status(error.status if error.status > WARNING else ERROR)
+            return note_status(get_outputs(*get_arguments))
 
         def tick(time: float, size: float) -> int:
+            if calls.event_mode:
+                return event_tick(time, size)
+            if past is not None and len(past) <= REMEMBERED:
+                past.append((time, size, bytes(inputs)))
+            status = plain_tick(time, size)
+            if past and status in (DISCARD, ERROR) and len(past) <= REMEMBERED:
+                return with_events(event_tick, status)
+            return status
+
+        def plain_tick(time: float, size: float) -> int:
             status = set_inputs(*set_arguments)
             if status and (status := note_status(status)) > WARNING:
                 return status
@@ -66,7 +101,63 @@ class CoSimulation(Instance):
             status = get_outputs(*get_arguments)
             return note_status(status) if status else 0
 
-        return tick
+        return tick if has_events else plain_tick
+
+    # ---- event mode (FMI 3) ----
+
+    def prepare(self) -> None:  # noqa: D102 - as in Instance
+        if self.calls.event_mode and (status := self._handle_events()) > WARNING:
+            msg = "the event iteration"
+            raise CallFailedError(msg, status)
+
+    def _handle_events(self) -> int:
+        """The event iteration, and back to step mode.
+
+        Raises:
+            CallFailedError: the FMU refuses.
+        """
+        for _ in range(ROUNDS):
+            info = self.calls.update_discrete_states()
+            if info.ended:
+                return ENDED
+            if not info.again:
+                self.calls.enter_step_mode()
+                return 0
+        self.messages.add(ERROR, f"its event iteration has not ended after {ROUNDS} rounds")
+        return ERROR
+
+    def _with_events(self, event_tick: Tick, failed: int) -> int:
+        """Do all steps again with event mode, the last of which has failed without it.
+
+        Args:
+            event_tick: does a step.
+            failed: the status without event mode; it stays if there is no instance with it.
+        """
+        past, self._past = self._past, None
+        component = self.calls.component
+        assert past is not None
+        assert component is not None
+        self._drop_state()
+        self.calls.free()
+        self.calls.event_mode = True
+        self._worst, self._initialised = 0, False
+        try:
+            self._initialise()
+        except CallFailedError as error:
+            self.messages.add(ERROR, f"with event mode: {error}")
+            return self.note_status(max(failed, error.status))
+        # The arguments of all calls hold the first instance's pointer: it becomes the new one's.
+        fresh = self.calls.component
+        assert fresh is not None
+        component.value = fresh.value
+        self.calls.component = component
+        status = 0
+        for time, size, raw in past:
+            self.inputs[:] = memoryview(raw).cast("d")
+            status = event_tick(time, size)
+            if status > WARNING:
+                break
+        return status
 
     def _save(self) -> None:
         """Keep the state before a step, in a new handle: some FMUs do not reuse an old one."""
@@ -81,6 +172,13 @@ class CoSimulation(Instance):
 
     def _complete(self, status: int, time: float, size: float) -> int:
         """Finish a step that the FMU did not complete."""
+        self._before_time = time
+        try:
+            return self._finish(status, time, size)
+        finally:
+            self._stepper.final.value = True
+
+    def _finish(self, status: int, time: float, size: float) -> int:
         status = self._continue(self.note_status(status), time, time + size, size)
         for halving in range(1, HALVINGS + 1):
             if status != DISCARD or self._before is None:
@@ -126,13 +224,18 @@ class CoSimulation(Instance):
         return DISCARD
 
     def _do(self, begin: float, end: float) -> int:
+        # If this part fails, too, the state before the first part may be restored.
+        self._stepper.final.value = self._before is None or begin <= self._before_time
         self._start.value = begin
         self._step.value = end - begin
         return self.note_status(self._stepper.do_step(*self._stepper.arguments))
 
-    def stop(self) -> None:  # noqa: D102
+    def _drop_state(self) -> None:
         before, self._before = self._before, None
         if before is not None and self.calls.component and self._worst != FATAL:
             with suppress(CallFailedError, FmuPlatformError):  # a state that stays does no harm
                 self.calls.free_state(before)
+
+    def stop(self) -> None:  # noqa: D102
+        self._drop_state()
         super().stop()

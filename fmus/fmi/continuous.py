@@ -1,21 +1,14 @@
 """The continuous part of a Model Exchange FMU, as a solver sees it: x' = f(t, x), z = g(t, x)."""
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from ctypes import byref, c_double, c_size_t, c_void_p
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fmus.fmi.calls import CallFailedError
+from fmus.fmi.calls import CallFailedError, Calls
 from fmus.fmi.status import DISCARD, WARNING
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import NDArray
-
-    from fmus.fmi.calls import Calls
 
 SMALLEST = 1e-13  # smallest step, relative to the greater of the time and 1 s
 LONGEST = 0.02  # [s] step with event indicators, as two crossings in one step would be missed

@@ -4,19 +4,19 @@ Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363. FMPy brings the compile
 solver class is not used, because it only prints errors of the FMU and goes on.
 """
 
-from __future__ import annotations
-
 from ctypes import CFUNCTYPE, byref, c_double, c_int, c_int64, c_long, c_void_p
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fmus.fmi.continuous import LONGEST, SMALLEST, IntegrationError, UndefinedError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fmus.fmi.continuous import ContinuousSystem
+from fmus.fmi.continuous import (
+    LONGEST,
+    SMALLEST,
+    ContinuousSystem,
+    IntegrationError,
+    UndefinedError,
+)
 
 # The solver starts again at every step of the co-simulation. Local errors of one sign add up over
 # hundreds of them, so one internal step may use only this share of the tolerance.

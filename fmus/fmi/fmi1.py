@@ -1,10 +1,9 @@
 """FMI 1.0: functions' names begin with the model's identifier; booleans are characters."""
 
-from __future__ import annotations
-
 import ctypes
+from collections.abc import Mapping, Sequence
 from ctypes import Structure, byref, c_byte, c_char_p, c_double, c_int, c_void_p
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from fmus.fmi.calls import (
     Calls,
@@ -17,10 +16,6 @@ from fmus.fmi.calls import (
 )
 from fmus.fmi.messages import formatted_receiver
 from fmus.fmi.status import ERROR, WARNING
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
 
 _LAST_SUCCESSFUL_TIME = c_int(2)  # fmiStatusKind
 _LONGEST_WAIT = c_double(0.0)  # [ms] for a tool to start; 0: without limit
@@ -115,7 +110,8 @@ class Fmi1Calls(Calls):
     def initialise(self, inputs: Sequence[Setting], tolerance: float | None) -> None:  # noqa: D102
         self.configure(inputs)
         if not self.exchanges:
-            self.call(self._initialise, c_double(0.0), c_byte(0), c_double(0.0))  # no stop time
+            stops = c_byte(self.stop_time is not None)
+            self.call(self._initialise, c_double(0.0), stops, c_double(self.stop_time or 0.0))
             return
         self.call(self.name("SetTime"), c_double(0.0))
         info = _EventInfo()
@@ -142,7 +138,10 @@ class Fmi1Calls(Calls):
 
         new_step = c_byte(1)
         arguments = (self.component, start, step, new_step)
-        return Stepper(self.function(self.name("DoStep")), arguments, (0,), progress)
+        final = c_byte(1)  # FMI 1 saves no state, and does not ask
+        return Stepper(
+            self.function(self.name("DoStep")), arguments, final, (0,), c_byte(0), progress
+        )
 
     # ---- Model Exchange ----
 

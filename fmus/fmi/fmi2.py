@@ -1,10 +1,9 @@
 """FMI 2.0."""
 
-from __future__ import annotations
-
 import ctypes
+from collections.abc import Mapping, Sequence
 from ctypes import Structure, byref, c_char_p, c_double, c_int, c_void_p
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 from fmus.fmi.calls import (
     Calls,
@@ -17,10 +16,6 @@ from fmus.fmi.calls import (
 )
 from fmus.fmi.messages import formatted_receiver
 from fmus.fmi.status import DISCARD, WARNING
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
 
 _LAST_SUCCESSFUL_TIME = c_int(2)  # fmi2StatusKind
 _TERMINATED = c_int(3)
@@ -87,8 +82,8 @@ class Fmi2Calls(Calls):
             c_int(tolerance is not None),
             c_double(tolerance or 0.0),
             c_double(0.0),
-            c_int(0),  # no stop time
-            c_double(0.0),
+            c_int(self.stop_time is not None),
+            c_double(self.stop_time or 0.0),
         )
         self.call("fmi2EnterInitializationMode")
         self.configure(inputs)
@@ -113,9 +108,9 @@ class Fmi2Calls(Calls):
                 return Progress(None, bool(ended.value))
             return Progress(reached.value, bool(ended.value))
 
-        rollback_possible = c_int(0)  # noSetFMUStatePriorToCurrentPoint = false
-        arguments = (self.component, start, step, rollback_possible)
-        return Stepper(self.function("fmi2DoStep"), arguments, (0,), progress)
+        final = c_int(1)
+        arguments = (self.component, start, step, final)
+        return Stepper(self.function("fmi2DoStep"), arguments, final, (0,), c_int(0), progress)
 
     # ---- Model Exchange ----
 
@@ -131,5 +126,6 @@ class Fmi2Calls(Calls):
 
     def completed_step(self) -> tuple[bool, bool]:  # noqa: D102
         event, end = c_int(), c_int()
-        self.call("fmi2CompletedIntegratorStep", c_int(0), byref(event), byref(end))
+        final = c_int(1)  # the state is never set back
+        self.call("fmi2CompletedIntegratorStep", final, byref(event), byref(end))
         return bool(event.value), bool(end.value)

@@ -1,9 +1,8 @@
 """FMI 3.0."""
 
-from __future__ import annotations
-
 import ctypes
 import os
+from collections.abc import Mapping, Sequence
 from ctypes import (
     byref,
     c_bool,
@@ -13,13 +12,10 @@ from ctypes import (
     c_size_t,
     c_void_p,
 )
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from fmus.fmi.calls import Calls, CType, EventInfo, Progress, Setting, Stepper
 from fmus.fmi.messages import plain_receiver
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
 
 
 def _types() -> dict[str, CType]:
@@ -66,7 +62,7 @@ class Fmi3Calls(Calls):
         if self.exchanges:
             component = self._instantiate(*start, *environment)
         else:
-            event_mode_used = early_return_allowed = c_bool(False)
+            event_mode_used, early_return_allowed = c_bool(self.event_mode), c_bool(False)
             needed = (None, c_size_t(0))  # no variables between the steps
             component = self._instantiate(
                 *start, event_mode_used, early_return_allowed, *needed, *environment, None
@@ -91,8 +87,8 @@ class Fmi3Calls(Calls):
             c_bool(tolerance is not None),
             c_double(tolerance or 0.0),
             c_double(0.0),
-            c_bool(False),  # no stop time
-            c_double(0.0),
+            c_bool(self.stop_time is not None),
+            c_double(self.stop_time or 0.0),
         )
         self.configure(inputs)
         self.call("fmi3ExitInitializationMode")
@@ -111,9 +107,10 @@ class Fmi3Calls(Calls):
         def progress() -> Progress:
             return Progress(reached.value, flags[0])
 
-        arguments = (self.component, start, step, c_bool(False), *report)
+        final = c_bool(True)
+        arguments = (self.component, start, step, final, *report)
         seen = memoryview(flags).cast("B").cast("H")  # both flags in one look
-        return Stepper(self.function("fmi3DoStep"), arguments, seen, progress)
+        return Stepper(self.function("fmi3DoStep"), arguments, final, seen, event, progress)
 
     # ---- Model Exchange ----
 
@@ -131,5 +128,6 @@ class Fmi3Calls(Calls):
 
     def completed_step(self) -> tuple[bool, bool]:  # noqa: D102
         event, end = c_bool(), c_bool()
-        self.call("fmi3CompletedIntegratorStep", c_bool(False), byref(event), byref(end))
+        final = c_bool(True)  # the state is never set back
+        self.call("fmi3CompletedIntegratorStep", final, byref(event), byref(end))
         return event.value, end.value

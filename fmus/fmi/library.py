@@ -1,18 +1,14 @@
 """An FMU's shared library: loading it, finding its functions, unloading it."""
 
-from __future__ import annotations
-
 import _ctypes
 import ctypes
 import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from fmus.errors import FmuPlatformError
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 Function = Callable[..., int]
 """A C function that takes ready-made ctypes objects as they are and returns an int."""

@@ -5,8 +5,6 @@ are taken from the registers and the stack, as the platform's calling convention
 read only where it is readable: a message like "100% sure" must not crash the process.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import platform
@@ -14,15 +12,12 @@ import re
 import struct
 import sys
 from collections import deque
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from ctypes import CFUNCTYPE, c_double, c_int, c_uint64, c_void_p
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
 
 _LONGEST = 4096  # bytes that are read of a message
 _WIDEST = 200  # characters of a number's field

@@ -5,22 +5,16 @@ first of a state event, a time event, an event that the FMU wants after an integ
 the end of the step; event mode again; and so on (FMI 2.0.4, section 3.2; FMI 3.0.1, section 3).
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from fmus.errors import FmuInterfaceError
 from fmus.fmi import cvode
-from fmus.fmi.calls import CallFailedError
+from fmus.fmi.calls import CallFailedError, Calls
 from fmus.fmi.continuous import ContinuousSystem, IntegrationError, Solver, UndefinedError, locate
 from fmus.fmi.runge_kutta import RungeKutta
-from fmus.fmi.running import Instance
+from fmus.fmi.running import Instance, Tick
 from fmus.fmi.status import ENDED, ERROR, PENDING, WARNING
-
-if TYPE_CHECKING:
-    from fmus.fmi.calls import Calls
-    from fmus.fmi.running import Tick
-    from fmus.fmi.values import Transfer
+from fmus.fmi.values import Transfer
 
 TOLERANCE = 1e-6  # relative
 RESOLUTION = 1e-12  # of times, relative to the greater of the time and 1 s

@@ -1,18 +1,17 @@
 """The classical Runge-Kutta method of order 4, with its step from an estimate of the error."""
 
-from __future__ import annotations
-
 from math import isfinite
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fmus.fmi.continuous import LONGEST, SMALLEST, IntegrationError, UndefinedError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from fmus.fmi.continuous import ContinuousSystem
+from fmus.fmi.continuous import (
+    LONGEST,
+    SMALLEST,
+    ContinuousSystem,
+    IntegrationError,
+    UndefinedError,
+)
 
 FIRST_STEP = 1e-5  # [s] short: another event may follow soon
 SAFETY, LEAST, MOST = 0.9, 0.1, 4.0  # of the next step's length: Hairer, Norsett, Wanner, II.4

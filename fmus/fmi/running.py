@@ -1,23 +1,14 @@
 """The life of an instance, which is the same for every FMI version and kind."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING
 
+from fmus.description.model import Channel, Value
 from fmus.errors import FmuStartError
-from fmus.fmi.calls import CallFailedError
+from fmus.fmi.calls import CallFailedError, Calls, Setting
 from fmus.fmi.status import ERROR, FATAL, PENDING, WARNING, named
 from fmus.fmi.values import Transfer, settings
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from fmus.description.model import Channel, Value
-    from fmus.fmi.calls import Calls
-
 
 Tick = Callable[[float, float], int]
 """One step: (start of the step [s], step [s]) -> status."""
@@ -48,6 +39,8 @@ class Instance(ABC):
         self.messages = calls.messages
         self.inputs = self.outputs = memoryview(bytearray()).cast("d")
         self.tick: Tick = _not_started
+        self._before_start: list[Setting] = []
+        self._at_start: list[Setting] = []  # of inputs
         self._initialised = False
         self._worst = 0  # highest status since the instance was made
         self._untouchable = False  # after a fatal error
@@ -67,12 +60,10 @@ class Instance(ABC):
         self.messages.take()
         ready = settings(self.calls, values)
         of_inputs = {c.variable.name for c in values if c.variable.causality == "input"}
+        self._before_start = [one for one in ready if one.name not in of_inputs]
+        self._at_start = [one for one in ready if one.name in of_inputs]
         try:
-            self.calls.instantiate()
-            self.calls.configure([one for one in ready if one.name not in of_inputs])
-            self.calls.initialise([one for one in ready if one.name in of_inputs], self.tolerance)
-            self._initialised = True
-            self.prepare()
+            self._initialise()
             self._link(inputs, outputs, values)
         except CallFailedError as error:
             self._worst = max(self._worst, error.status)
@@ -84,6 +75,14 @@ class Instance(ABC):
         except Exception:
             self.stop()
             raise
+
+    def _initialise(self) -> None:
+        """Make an instance and bring it to time 0."""
+        self.calls.instantiate()
+        self.calls.configure(self._before_start)
+        self.calls.initialise(self._at_start, self.tolerance)
+        self._initialised = True
+        self.prepare()
 
     def _link(
         self,

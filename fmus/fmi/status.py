@@ -1,7 +1,5 @@
 """The statuses that functions of FMI return."""
 
-from __future__ import annotations
-
 from typing import Final
 
 WARNING: Final = 1  # the last FMI status with which a call has done what it should

@@ -1,13 +1,8 @@
 """What FMPy's validation says of an FMU."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def findings(path: Path) -> list[str]:

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_bool, c_char_p, c_double, c_float, sizeof
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from fmus.description.model import Channel, Value, Variable
 from fmus.errors import FmuStartError, FmuVariableError
-from fmus.fmi.calls import CType, Setting
+from fmus.fmi.calls import Calls, CType, Setting
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from fmus.description.model import Channel, Value, Variable
-    from fmus.fmi.calls import Calls
 
 # ---- start values ----
 

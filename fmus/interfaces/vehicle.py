@@ -1,18 +1,13 @@
 """What any vehicle offers, wherever its FMU runs."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from math import isfinite
-from typing import TYPE_CHECKING, Self
+from pathlib import Path
+from types import TracebackType
+from typing import Self
 
 from fmus.errors import FmuStateError, FmuStepError
-
-if TYPE_CHECKING:
-    from pathlib import Path
-    from types import TracebackType
-
-    from fmus.profile.preparation import Prepared
+from fmus.profile.preparation import Prepared
 
 
 class Vehicle(ABC):

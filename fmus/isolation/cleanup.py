@@ -1,7 +1,5 @@
 """Removing what an FMU leaves behind: processes and folders."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal

@@ -1,7 +1,5 @@
 """How an FMU's process ended, in numbers and in words."""
 
-from __future__ import annotations
-
 import json
 import signal
 from dataclasses import asdict, dataclass

@@ -1,15 +1,14 @@
 """A vehicle FMU in a process of its own: whatever the FMU does, this process goes on."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 import weakref
+from collections.abc import Mapping
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fmus import errors
+from fmus.description.model import Value
 from fmus.errors import (
     FmuCrashError,
     FmuError,
@@ -23,13 +22,8 @@ from fmus.isolation.cleanup import remove
 from fmus.isolation.process_host import ProcessHost, make_process_host
 from fmus.isolation.wire import LOAD, QUIT, START, STEP, Client, GarbledError, Text
 from fmus.profile.preparation import prepare, unpack
+from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fmus.description.model import Value
-    from fmus.profile.vehicle_profile import VehicleProfile
 
 _END_TIMEOUT = 5.0  # [s] for an FMU to end by itself
 _END_PATIENCE = 1.0  # [s] between the end of the connection and that of the process

@@ -3,14 +3,13 @@
 The watchdog imports what they need while the vehicle's own process goes on with other things.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import socket
 import subprocess
 from contextlib import suppress
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 
 from fmus.isolation.cleanup import kill_marked
 from fmus.isolation.exit_report import ExitReport, decode_report
@@ -22,9 +21,6 @@ from fmus.isolation.spawning import (
     spawn,
 )
 from fmus.isolation.wire import END_WORKER, MESSAGE, START_WORKER
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 _UNKNOWN_END: Final = ExitReport(None, killed=False, oom=False, printed="")
 

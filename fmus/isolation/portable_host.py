@@ -1,21 +1,17 @@
 """The process host without a watchdog, for systems other than Linux."""
 
-from __future__ import annotations
-
 import os
 import secrets
 import socket
 import subprocess
 import threading
 from contextlib import suppress
+from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from fmus.isolation.exit_report import ExitReport, PrintedTail
 from fmus.isolation.spawning import IMPORT_TIMEOUT, kill_group, no_process, spawn
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 _READ_TIMEOUT: Final = 1.0  # [s] for the last output: a process left behind may hold the pipe open
 

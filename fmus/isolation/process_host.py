@@ -1,22 +1,17 @@
 """Starting and ending the FMU's processes, as seen from the vehicle."""
 
-from __future__ import annotations
-
 import pickle
+import socket
 import sys
-from typing import TYPE_CHECKING, Protocol
+from pathlib import Path
+from typing import Protocol
 
 from fmus.isolation.cleanup import scratch_of
+from fmus.isolation.exit_report import ExitReport
 from fmus.isolation.linux_host import LinuxHost
 from fmus.isolation.portable_host import PortableHost
 from fmus.isolation.worker import Order
-
-if TYPE_CHECKING:
-    import socket
-    from pathlib import Path
-
-    from fmus.isolation.exit_report import ExitReport
-    from fmus.profile.preparation import Prepared
+from fmus.profile.preparation import Prepared
 
 
 class ProcessHost(Protocol):

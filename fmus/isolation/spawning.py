@@ -1,22 +1,18 @@
 """Starting Python interpreters that run a module of this package, and killing them."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
 import subprocess
 import sys
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from fmus.errors import FmuCrashError
 from fmus.isolation.cleanup import scratch_of
 from fmus.isolation.exit_report import PrintedTail
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 IMPORT_TIMEOUT: Final = 120.0  # [s] on the busiest machine
 END_TIMEOUT: Final = 10.0  # [s] for a killed process to end; only a failing system takes longer

@@ -8,8 +8,6 @@ however it hid. The watchdog, not the vehicle's process, is the FMU's parent.
 When the vehicle's process has ended, the watchdog removes the temporary folder and ends too.
 """
 
-from __future__ import annotations
-
 import ctypes
 import gc
 import os

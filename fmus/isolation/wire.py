@@ -6,8 +6,6 @@ is unpickled, every head must carry the number of its request, and the text that
 of bounded size.
 """
 
-from __future__ import annotations
-
 import json
 import socket
 import struct

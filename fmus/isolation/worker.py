@@ -1,7 +1,5 @@
 """The FMU's own process: it runs one vehicle for one episode, as requested through a socket."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 import pickle
@@ -13,7 +11,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from time import sleep
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from fmus.description.model import Kind
 from fmus.driving.vehicle import VehicleFmu
@@ -30,11 +28,8 @@ from fmus.isolation.wire import (
     receive,
     reply,
 )
+from fmus.profile.preparation import Prepared
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from fmus.profile.preparation import Prepared
-
 
 _WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: JSON stays below its limit
 

@@ -8,14 +8,11 @@ force gets what makes this model's car move the same way; M and alpha are the pr
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fmus.profile.vehicle_profile import VehicleProfile
-    from fmus.profile.wiring import Wire
+from fmus.profile.vehicle_profile import VehicleProfile
+from fmus.profile.wiring import Wire
 
 
 class Command(ABC):
@@ -49,13 +46,16 @@ class ForceCommand(Command):
 
 @dataclass(frozen=True)
 class SplitForceCommand(Command):
-    """max(u, 0) for the drive, max(-u, 0) for the brake."""
+    """max(u, 0) for the drive, max(-u, 0) for the brake; at a standstill it is let go."""
 
     drive: Wire
     brake: Wire
+    block_reverse: bool
 
-    def apply(self, force: float, _speed: float, inputs: memoryview[float], /) -> None:
+    def apply(self, force: float, speed: float, inputs: memoryview[float], /) -> None:
         """As for :class:`Command`."""
+        if self.block_reverse and force < 0.0 and speed <= 0.0:
+            force = 0.0
         inputs[0] = self.drive.to_raw(max(force, 0.0))
         inputs[1] = self.brake.to_raw(max(-force, 0.0))
 
@@ -123,7 +123,7 @@ def make_command(profile: VehicleProfile, wires: Sequence[Wire], step_size: floa
         wire = wires[0]
         return ForceCommand(wire.scale, wire.shift, inputs.block_reverse)
     if inputs.drive_force is not None:
-        return SplitForceCommand(wires[0], wires[1])
+        return SplitForceCommand(wires[0], wires[1], inputs.block_reverse)
     if inputs.acceleration is not None:
         return AccelerationCommand(wires[0], M, alpha, inputs.block_reverse)
     if inputs.throttle is not None and inputs.brake is not None:

@@ -1,17 +1,12 @@
 """A draft of a vehicle profile: what is certain, what is open, and the file with both."""
 
-from __future__ import annotations
-
 import re
+from collections.abc import Container
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
+from fmus.description.model import Model
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from collections.abc import Container
-
-    from fmus.description.model import Model
 
 Text = bool | int | float | str
 

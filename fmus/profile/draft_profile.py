@@ -4,34 +4,28 @@ What is certain is written as a setting; what is open is written as a question, 
 with ``# ?``. A draft without questions is a profile that runs.
 """
 
-from __future__ import annotations
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Final
 
-from typing import TYPE_CHECKING, Final
-
-from fmus.description.model import Kind
+from fmus.description.model import Kind, Model, Variable
 from fmus.errors import FmuProfileError
 from fmus.profile.draft import Draft, Entry, Line, toml_value
-from fmus.profile.matching import ROLES, guesses, unambiguous
+from fmus.profile.matching import ROLES, Guess, guesses, unambiguous
 from fmus.profile.pace import divides
 from fmus.profile.questions import (
     axis_question,
+    braking_question,
     channel_name,
     contradiction,
+    idle_brake,
     numbers,
+    signed_question,
     unit_question,
 )
-from fmus.profile.vehicle_profile import make_profile
+from fmus.profile.vehicle_profile import VehicleProfile, make_profile
 from fmus.text import listed, printable
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-    from pathlib import Path
-
-    from fmus.description.model import Model, Variable
-    from fmus.profile.matching import Guess
-    from fmus.profile.vehicle_profile import VehicleProfile
-
-PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}  # [N] of a car of 1000 kg
 CONTROL_STEP: Final = 0.05  # [s] the usual one
 NAMED: Final = 3  # doubts in an error
 
@@ -101,6 +95,9 @@ def _inputs(model: Model, inputs: Sequence[Variable]) -> tuple[list[Entry], set[
     way = ways[0]
     rivals = [other for other in ways[1:] if _merit(ranked, other) == _merit(ranked, way)]
     entries = [_axis("inputs", role, ranked[role]) for role in way]
+    other = idle_brake(ranked, way)
+    if other:
+        entries = [_open(entry, entry.doubt or other) for entry in entries]
     if rivals:
         doubt = _choice(ranked, (way, *rivals))
         entries = [_open(entry, doubt) for entry in entries]
@@ -147,6 +144,10 @@ def _without_inputs(model: Model) -> tuple[list[Entry], set[str]]:
 
 
 def _no_input(model: Model, ranked: dict[str, list[Guess]], inputs: Sequence[Variable]) -> Entry:
+    signed = signed_question(ranked, inputs)
+    if signed is not None:
+        lines, doubt = signed
+        return Entry("inputs.force", lines, "", doubt, sure=False)
     for one, other in (("throttle", "brake"), ("drive_force", "brake_force")):
         for present, missing in ((one, other), (other, one)):
             if ranked[present] and not ranked[missing]:
@@ -259,12 +260,10 @@ def _axis(table: str, role: str, ranked: list[Guess], *, alternative: bool = Fal
         doubt = doubt or question
     else:
         lines[0] = Line("variable", name, f"{variable.unit}: {variable.description}".rstrip(": "))
-    if pedal:
-        comment = "N at the wheels, fully pressed; giveway fmu identify measures it"
-        lines.append(Line("full_force", PEDAL_FORCE[role], comment, sure=False))
-        force = f"full_force = {PEDAL_FORCE[role]:g} or what it is [N]"
-        strength = f"the FMU does not say how strong it is; write {force}"
-        doubt = f"{doubt}; {strength}" if doubt else strength
+    if table == "inputs":
+        more, question = braking_question(role, variable)
+        lines += more
+        doubt = "; ".join(filter(None, (doubt, question)))
     if alternative:
         return Entry(place, tuple(lines), "or else:", "", sure=False)
     return Entry(place, tuple(lines), "", doubt, sure)

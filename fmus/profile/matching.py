@@ -4,19 +4,13 @@ A wrong guess could drive a car by its steering angle. So where two variables fi
 unit contradicts a name, the draft asks a question.
 """
 
-from __future__ import annotations
-
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from fmus.description import units
-from fmus.description.model import Channel
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from fmus.description.model import Dimension, Model, Variable
+from fmus.description.model import Channel, Dimension, Model, Variable
 
 
 @dataclass(frozen=True)
@@ -157,6 +151,7 @@ ROLES: Final = {
     ),
 }
 GENERIC: Final = (["u"], ["x"], ["s"], ["a"], ["v"], ["f"])  # meaningless without their unit
+INTEGRALS: Final = {"speed": "position", "measured_acceleration": "speed"}
 FORCES: Final = frozenset({"force", "drive_force", "brake_force"})
 
 
@@ -220,7 +215,7 @@ def _guess(model: Model, role: str, variable: Variable) -> Guess | None:
     unit = model.unit_of(variable)
     found = units.to_si(unit).dimension if unit is not None else None
     fits = None if found is None else found == wanted.dimension
-    name_score = _name_score(wanted, variable.name)
+    name_score = _name_score(role, variable.name)
     if name_score is None:
         return None
     if name_score == 0 and not (fits and wanted.dimension != units.NONE and wanted.words):
@@ -230,11 +225,16 @@ def _guess(model: Model, role: str, variable: Variable) -> Guess | None:
     return Guess(Channel(variable), name_score, fits, found)
 
 
-def _name_score(role: Role, name: str) -> float | None:
+def _name_score(of_role: str, name: str) -> float | None:
     """How well a name fits a role; None: it excludes the role."""
+    derivative = re.fullmatch(r"der\((.+)\)", name)
+    if derivative is not None:  # Modelica's name of it: der(vehicle.s)
+        inner = _name_score(INTEGRALS[of_role], derivative[1]) if of_role in INTEGRALS else None
+        return inner - 1.0 if inner else None  # a variable of its own is the better one
+    role = ROLES[of_role]
     *parents, last = _parts(name)
-    if name.startswith("der(") or any(OTHER_PARTS & set(_words(parent)) for parent in parents):
-        return None  # a derivative of another variable, or something of a part of the vehicle
+    if any(OTHER_PARTS & set(_words(parent)) for parent in parents):
+        return None  # something of a part of the vehicle
     words = _words(last)
     plain = [word for word in words if word not in FILLERS]
     shallow = 0.0 if parents else 0.5

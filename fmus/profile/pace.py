@@ -1,7 +1,5 @@
 """How the controller's steps and an FMU's own steps fit together."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from fmus.errors import FmuProfileError

@@ -4,29 +4,23 @@ Faults of a file or a profile are reported here, before native code is loaded. T
 handed to another process.
 """
 
-from __future__ import annotations
-
+import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, isfinite, isnan
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fmus.archive.gate import extract, open_archive
 from fmus.description.binaries import binary_of
+from fmus.description.model import Interface, Kind, Model, Value
 from fmus.description.reading import read_model
 from fmus.errors import FmuProfileError, FmuVariableError
 from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
 from fmus.profile.commands import Command, make_command
 from fmus.profile.draft_profile import draft_profile, require_confident
 from fmus.profile.pace import Pace, divides, make_pace
+from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.profile.wiring import Wiring, wire
-
-if TYPE_CHECKING:
-    import os
-    from collections.abc import Mapping
-
-    from fmus.description.model import Interface, Model, Value
-    from fmus.profile.vehicle_profile import VehicleProfile
 
 
 @dataclass(frozen=True)
@@ -104,7 +98,7 @@ def prepare(
         profile=profile,
         wiring=wiring,
         command=make_command(profile, wiring.inputs, step_size),
-        pace=_pace(path, profile.fmu.step, wiring.interface, step_size),
+        pace=_pace(path, profile.fmu.step, wiring.interface, model.default_step, step_size),
         bounds=_bounds(wiring),
         step_size=step_size,
         binary=binary_of(model, wiring.interface),
@@ -142,7 +136,14 @@ def unpack(prepared: Prepared, folder: Path) -> None:
     (folder / "resources").mkdir(exist_ok=True)  # its path is given to the FMU even if it is empty
 
 
-def _pace(path: Path, wanted: float | None, interface: Interface, step_size: float) -> Pace:
+def _pace(
+    path: Path,
+    wanted: float | None,
+    interface: Interface,
+    default: float | None,
+    step_size: float,
+) -> Pace:
+    """The pace of the profile's step, else of the one that the FMU can do."""
     fixed = interface.fixed_internal_step
     if wanted is None and fixed is not None and not divides(fixed, step_size):
         wanted = fixed
@@ -151,6 +152,16 @@ def _pace(path: Path, wanted: float | None, interface: Interface, step_size: flo
                 f"{path}: the FMU has a fixed step of {fixed:g} s, which does not fit the control "
                 f"step of {step_size:g} s; expected a whole part or multiple of it: change "
                 "--time-step, or export the model with another step"
+            )
+    one_length = interface.kind is Kind.CO_SIMULATION and not interface.variable_step
+    if wanted is None and fixed is None and one_length and default is not None:
+        wanted = default
+        if not (divides(default, step_size) or divides(step_size, default)):
+            raise FmuProfileError(
+                f"{path}: the FMU does steps of one length only, and that of its default "
+                f"experiment, {default:g} s, does not fit the control step of {step_size:g} s; "
+                f"expected a whole part or multiple of it: run with --time-step {default:g}, or "
+                "write the length that it does as step in [fmu] of the profile"
             )
     try:
         return make_pace(step_size, wanted)

@@ -1,23 +1,22 @@
 """The questions of a draft: what is open about a variable, and the line that answers it."""
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping, Sequence
+from typing import Final
 
 from fmus.description import units
-from fmus.description.model import Channel
+from fmus.description.model import Channel, Dimension, Model, Variable
 from fmus.profile.draft import Line
-from fmus.profile.matching import FORCES, OTHER_PARTS, ROLES, words_of
+from fmus.profile.matching import FORCES, OTHER_PARTS, ROLES, Guess, words_of
 from fmus.text import printable
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from fmus.description.model import Dimension, Model, Variable
-    from fmus.profile.matching import Guess
-
-
+PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}  # [N] of a car of 1000 kg
+DRIVES_ONLY: Final = frozenset(["drive", "driving", "propulsion", "propulsive", "accelerating"])
+MISSING: Final = {  # what an FMU needs besides
+    "drive_force": "brake_force", "brake_force": "drive_force",
+    "throttle": "brake", "brake": "throttle",
+}  # fmt: skip
+LEAD: Final = 0.5  # [s] of a speed controller, where nothing is known
 POWERED: Final = frozenset(["wheel", "wheels", "engine", "motor", "rear", "front"])  # they drive
 
 
@@ -25,7 +24,7 @@ def unit_question(variable: Variable, wanted: Dimension, *, pedal: bool) -> tupl
     """The question about a variable without a unit, or with an unknown one."""
     common = units.COMMON[wanted]
     name = printable(variable.name, 60)
-    told = _unit_in(variable.name, wanted)
+    told = _unit_in(variable.name, wanted) or _unit_described(variable.description, wanted)
     guess = told or common.split(",")[0]
     if pedal and (variable.maximum or 0.0) > 1.0:
         told = guess = "%"
@@ -45,6 +44,13 @@ def _unit_in(name: str, wanted: Dimension) -> str:
         return ""
     usual = units.COMMON[wanted].split(", ")
     return next((u for u in usual if units.named(u).factor == unit.factor), last)
+
+
+def _unit_described(description: str, wanted: Dimension) -> str:
+    """The unit that a description gives: km/h for ``speed [km/h]`` or ``speed in km/h``."""
+    found = re.findall(r"\[([^\]]+)\]|\(([^)]+)\)|\bin ([^\s,;]+)", description)
+    words = (word.strip().rstrip(".") for match in found for word in match if word.strip())
+    return next((word for word in words if units.named(word).dimension == wanted), "")
 
 
 def axis_question(model: Model, inputs: Sequence[Variable]) -> tuple[str, Line, str] | None:
@@ -86,6 +92,91 @@ def contradiction(guess: Guess, variable: Variable, role: str) -> tuple[Line, st
     usual = units.COMMON.get(wanted, "1").split(",")[0]
     line = Line("unit", "?", f"{unit} is {units.quantity(guess.found)}", sure=False)
     return line, f'{what}, not {units.quantity(wanted)}; add the true unit: unit = "{usual}"'
+
+
+# ---- what decides about braking ----
+
+
+def braking_question(role: str, variable: Variable) -> tuple[list[Line], str]:
+    """What an FMU does not say of an input, and how hard a car brakes depends on; with its lines.
+
+    Returns:
+        the lines and the question; none and an empty one if nothing is open.
+    """
+    name = printable(variable.name, 60)
+    if role in PEDAL_FORCE:
+        strength = PEDAL_FORCE[role]
+        comment = "N at the wheels, fully pressed; giveway fmu identify measures it"
+        line = Line("full_force", strength, comment, sure=False)
+        force = f"full_force = {strength:g} or what it is [N]"
+        question = f"the FMU does not say how strong it is; write {force}"
+        backwards, sign = _brakes_by_negative(role, variable)
+        return [line, *backwards], "; ".join(filter(None, (question, sign)))
+    if role == "speed_setpoint":
+        line = Line("lead", LEAD, "s, the time constant of its own speed controller", sure=False)
+        question = (
+            f"the FMU does not say how fast it follows '{name}', and so how hard it brakes; write "
+            f"lead = {LEAD:g} or what it is [s]"
+        )
+        return [line], question
+    least = variable.minimum
+    if role in {"force", "acceleration"} and least is not None and least >= 0.0:
+        return [], (
+            f"'{name}' is never negative (min = {least:g}): what brakes? Name that input; see "
+            "'driven by' in docs/vehicles.md"
+        )
+    if role == "force" and DRIVES_ONLY & set(words_of(variable.name)):
+        return [], f"'{name}' is named after a drive: does it brake, too, when it is negative?"
+    return _brakes_by_negative(role, variable)
+
+
+def _brakes_by_negative(role: str, variable: Variable) -> tuple[list[Line], str]:
+    if role not in {"brake", "brake_force"} or variable.maximum is None or variable.maximum > 0.0:
+        return [], ""
+    name, line = printable(variable.name, 60), Line("gain", -1.0, "it counts negative", sure=False)
+    return [line], f"'{name}' is never positive (max = {variable.maximum:g}): add gain = -1.0"
+
+
+def idle_brake(ranked: Mapping[str, Sequence[Guess]], way: Sequence[str]) -> str:
+    """The question about a brake that the way to drive leaves alone; empty if there is none."""
+    used = [ranked[role][0].channel.variable.name for role in way]
+    if len(way) > 1:
+        return ""
+    for role in ("brake_force", "brake"):
+        for guess in ranked[role]:
+            brake = guess.channel.variable.name
+            if brake not in used and guess.fits is not False:
+                return (
+                    f"'{printable(brake, 60)}' is an input, too: does '{printable(used[0], 60)}' "
+                    "alone brake? Then take the lines; else name what drives and what brakes"
+                )
+    return ""
+
+
+def signed_question(
+    ranked: Mapping[str, Sequence[Guess]], inputs: Sequence[Variable]
+) -> tuple[tuple[Line, ...], str] | None:
+    """The question about the only input, named after a drive or a brake: is it both, by its sign?
+
+    Returns:
+        the lines of [inputs.force] and the question; None: the only input is neither.
+    """
+    if len(numbers(inputs)) != 1:
+        return None
+    for role, sign in (("brake_force", -1), ("brake", -1), ("drive_force", 1), ("throttle", 1)):
+        if not ranked[role] or (role != "brake_force" and ranked[role][0].fits is False):
+            continue
+        channel = ranked[role][0].channel
+        name, other = printable(channel.name, 60), MISSING[role]
+        ask = f"'{name}' is a {role}, but no input is a {other}: is it both, by its sign?"
+        variable = Line("variable", channel_name(channel), channel.variable.unit, sure=False)
+        if role in FORCES:
+            gain = Line("gain", float(sign), "positive forwards", sure=False)
+            return (variable, gain), f"{ask} Then write gain = {sign:.1f}"
+        gain = Line("gain", "?", f"{'-' * (sign < 0)}N at 1", sure=False)
+        force = f"{'minus ' * (sign < 0)}the force at 1, which is 100 % [N]"
+        return (variable, gain), f"{ask} Then write gain = {force}"
+    return None
 
 
 def channel_name(channel: Channel) -> str:

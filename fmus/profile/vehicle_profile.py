@@ -9,16 +9,14 @@ from __future__ import annotations
 
 import tomllib
 from math import isfinite
-from typing import TYPE_CHECKING, Any, Literal
+from pathlib import Path
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from fmus.description.model import Value  # noqa: TC001  # pydantic reads it at run time
+from fmus.description.model import Value  # pydantic reads it at run time
 from fmus.errors import FmuProfileError
 from fmus.text import printable
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 class Table(BaseModel):
@@ -119,6 +117,7 @@ class Fmu(Table):
 
     kind: Literal["co-simulation", "model-exchange"] | None = None  # None: the former if it can
     step: float | None = Field(None, gt=0, le=10)  # [s] the FMU's own; None: the control step
+    stop_time: float | None = Field(None, gt=0, le=1e9)  # [s] told to the FMU; None: no stop time
     solver: Literal["cvode", "rk4"] | None = None  # of Model Exchange; None: cvode where it runs
     tolerance: float | None = Field(None, gt=0, le=0.1)  # relative, of Model Exchange
     self_check: bool = True  # compare one step with two half steps before the run

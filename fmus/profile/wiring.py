@@ -1,20 +1,23 @@
 """Fitting a profile to an FMU: each role gets a channel and its conversion to SI units."""
 
-from __future__ import annotations
-
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from fmus.description import units
 from fmus.description.channels import find_channel, known_names, start_channels
-from fmus.description.model import NUMERIC_TYPES, Channel, Kind, Unit
+from fmus.description.model import (
+    NUMERIC_TYPES,
+    Channel,
+    Dimension,
+    Interface,
+    Kind,
+    Model,
+    Unit,
+    Value,
+    Variable,
+)
 from fmus.errors import FmuInterfaceError, FmuProfileError, FmuVariableError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from fmus.description.model import Dimension, Interface, Model, Value, Variable
-    from fmus.profile.vehicle_profile import Axis, Inputs, VehicleProfile
+from fmus.profile.vehicle_profile import Axis, Inputs, VehicleProfile
 
 _QUANTITIES = {  # dimension and the unit to suggest, by role
     "force": (units.FORCE, "N"),

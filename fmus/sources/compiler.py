@@ -1,6 +1,12 @@
-"""One pinned cross-compiler for all platforms: the ``ziglang`` of the extra ``giveway[build]``."""
+"""One pinned cross-compiler for all platforms: the ``ziglang`` of the extra ``giveway[build]``.
+
+The FMUs that we ship need that very compiler; to compile somebody else's, any C compiler will do.
+"""
 
 import importlib.util
+import os
+import shlex
+import shutil
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -8,7 +14,9 @@ from pathlib import Path
 from typing import Final
 
 from fmus.archive.packing import without_timestamp
+from fmus.description.binaries import this_platform
 from fmus.errors import FmuBuildError
+from fmus.text import printable
 
 ZIG_VERSION: Final = "0.16.0"
 WINDOWS_RUNTIME: Final = "windows_runtime.c"
@@ -66,7 +74,7 @@ def compile_library(
     objects = []
     for source in (*sources, *target.extra_sources):
         objects.append(f"{Path(source).stem}.{target.folder}.o")
-        options = (*COMPILE, *flags, "-I", str(_fmi_headers()))
+        options = (*COMPILE, *flags, "-I", str(fmi_headers()))
         _zig(folder, "cc", "-target", target.zig, *options, "-c", source, "-o", objects[-1])
     name = output + target.suffix
     link = ["-target", target.zig, "-shared", "-s", *objects, *target.link, "-o", name]
@@ -97,7 +105,7 @@ def require_compiler() -> None:
         )
 
 
-def _fmi_headers() -> Path:
+def fmi_headers() -> Path:
     """FMPy's copy of the standard's C headers; found without importing FMPy."""
     spec = importlib.util.find_spec("fmpy")
     folder = Path(spec.origin).parent / "c-code" if spec and spec.origin else None
@@ -112,3 +120,85 @@ def _zig(folder: Path, *arguments: str) -> None:
     if done.returncode != 0:
         reason = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr)
         raise FmuBuildError(f"zig {' '.join(arguments)}: {reason.strip()}")
+
+
+# ---- any compiler, for FMUs that are not ours ----
+
+FOREIGN: Final = ("-O2", "-g0", "-fPIC", "-w", "-ffp-contract=off")
+LONGEST: Final = 600.0  # [s] of one file
+
+
+@dataclass(frozen=True)
+class Compiler:
+    """A C and C++ compiler for this machine.
+
+    Attributes:
+        name: for messages.
+        c: the command for C.
+        cpp: the command for C++.
+    """
+
+    name: str
+    c: tuple[str, ...]
+    cpp: tuple[str, ...]
+
+    def library(
+        self, folder: Path, sources: tuple[str, ...], flags: tuple[str, ...], output: str
+    ) -> bytes:
+        """Compile C and C++ sources in ``folder`` and return the shared library's bytes.
+
+        Raises:
+            FmuBuildError: the compiler refuses; the message has its first error.
+        """
+        objects, linker = [], self.c
+        for number, source in enumerate(sources):
+            command = self.c if source.endswith(".c") else self.cpp
+            linker = self.cpp if command is self.cpp else linker
+            standard = ("-std=gnu11",) if source.endswith(".c") else ()
+            objects.append(f"source{number}.o")
+            self._run(
+                folder, *command, *FOREIGN, *standard, *flags, "-c", source, "-o", objects[-1]
+            )
+        libraries = () if sys.platform == "win32" else ("-lm", "-lpthread")
+        self._run(folder, *linker, "-shared", *objects, "-o", output, *libraries)
+        return (folder / output).read_bytes()
+
+    def _run(self, folder: Path, *command: str) -> None:
+        try:
+            done = subprocess.run(
+                command, cwd=folder, capture_output=True, text=True, errors="replace",
+                timeout=LONGEST, check=False,
+            )  # fmt: skip
+        except subprocess.TimeoutExpired:
+            raise FmuBuildError(f"{self.name}: no answer within {LONGEST:g} s") from None
+        except OSError as error:
+            reason = error.strerror or "cannot be started"
+            raise FmuBuildError(f"{self.name}: {reason}; see the variable CC") from None
+        if done.returncode != 0:
+            lines = done.stderr.splitlines() or ["without a message"]
+            reason = next((line for line in lines if "error" in line), lines[0])
+            raise FmuBuildError(f"its sources do not compile: {printable(reason, 300)}")
+
+
+def find_compiler() -> Compiler:
+    """The compiler named by CC, else ziglang, else the system's.
+
+    Raises:
+        FmuBuildError: there is none.
+    """
+    named = shlex.split(os.environ.get("CC", ""))
+    if named:
+        plus = shlex.split(os.environ.get("CXX", "")) or named
+        return Compiler(named[0], tuple(named), tuple(plus))
+    if importlib.util.find_spec("ziglang") is not None:
+        zig = (sys.executable, "-m", "ziglang")
+        known = [target.zig for target in TARGETS if target.folder == str(this_platform())]
+        options = ("-target", *known, "-mcpu=baseline") if known else ()
+        return Compiler("ziglang", (*zig, "cc", *options), (*zig, "c++", *options))
+    for c, plus_plus in (("cc", "c++"), ("gcc", "g++"), ("clang", "clang++")):
+        found = shutil.which(c)
+        if found:
+            return Compiler(c, (found,), (shutil.which(plus_plus) or found,))
+    raise FmuBuildError(
+        "no C compiler here: 'pip install ziglang', or install one and name it in the variable CC"
+    )

@@ -1,12 +1,12 @@
 """The model description of the controller FMU, for both versions of FMI."""
 
-from __future__ import annotations
-
 import dataclasses
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 from xml.sax.saxutils import quoteattr
 
+from fmus.profile.bundled import FmiVersion
 from fmus.sources.parameters import (
     CONTROLLER,
     FAR_AWAY,
@@ -15,11 +15,6 @@ from fmus.sources.parameters import (
     REALS,
     ControllerParameters,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from fmus.profile.bundled import FmiVersion
 
 _FIRST_PARAMETER: Final = 10  # value references: PARAMETER_M ...
 _OBSTACLE: Final = 100  # ... and OBSTACLE of instance.h

@@ -1,19 +1,15 @@
 """Exporting the controller as an FMU: the shipped FMU with other start values."""
 
-from __future__ import annotations
-
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 from xml.etree import ElementTree
 
 from fmus.archive.packing import write_archive
 from fmus.errors import FmuBuildError, FmuFileError
+from fmus.profile.bundled import FmiVersion
 from fmus.sources.controller_description import model_description
 from fmus.sources.parameters import CONTROLLER_FILES, ControllerParameters, token_of
-
-if TYPE_CHECKING:
-    from fmus.profile.bundled import FmiVersion
 
 _DESCRIPTION: Final = "modelDescription.xml"
 

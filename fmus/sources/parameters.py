@@ -1,18 +1,14 @@
 """The start values of an exported controller, and how its binary learns them."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import struct
 from base64 import urlsafe_b64encode
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from fmus.errors import FmuVariableError
-
-if TYPE_CHECKING:
-    from fmus.profile.bundled import FmiVersion
+from fmus.profile.bundled import FmiVersion
 
 CONTROLLER: Final = "LongitudinalController"
 CONTROLLER_FILES: Final[dict[FmiVersion, str]] = {

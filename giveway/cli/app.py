@@ -1,7 +1,5 @@
 """The commands and their help; what they do stands in the module of each."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated
@@ -38,11 +36,26 @@ def build_app(arguments: Sequence[str]) -> typer.Typer:
     add_validation(app)
     app.command("scenarios")(_scenarios)
     app.command("doctor")(_doctor)
+    app.command("recover")(_recover)
     app.command("config")(_with_flags(_config, command))
     app.add_typer(build_fmu(), name="fmu")
     app.add_typer(build_export(lambda f: _with_flags(f, command, "export")), name="export")
     app.add_typer(_build_plot(), name="plot")
     return app
+
+
+def invoke(words: list[str]) -> int:
+    """Run the command that ``words`` name, and return its exit code.
+
+    Not by calling the application, which would turn a Ctrl-C into an exit code without a line.
+    """
+    command = typer.main.get_command(build_app(words))
+    try:
+        with command.make_context("giveway", words) as context:
+            command.invoke(context)
+    except typer.Exit as end:
+        return end.exit_code
+    return 0
 
 
 def _with_flags(
@@ -106,8 +119,12 @@ def _run(
     from giveway.processes.child import take_journal_folder
 
     journal = take_journal_folder()
-    if isolate and journal is None:
-        raise typer.Exit(run_isolated())
+    if journal is None:
+        from giveway.cli.fmu_gate import require_archives
+
+        require_archives(config, settings)
+        if isolate:
+            raise typer.Exit(run_isolated())
     from giveway.cli.run import Outputs, run_command
 
     outputs = Outputs(out, force=force, parquet=parquet, pictures=pictures, quiet=quiet)
@@ -136,6 +153,21 @@ def _doctor(
     from giveway.cli.doctor import doctor_command
 
     raise typer.Exit(doctor_command(scenario))
+
+
+def _recover(
+    journal: Annotated[
+        Path | None, typer.Argument(help="Folder of the journal (default: list them).")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Results folder (default: the run's own).")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the results there.")] = False,
+) -> None:
+    """Write the rows of a run that was killed (SIGKILL, a crash of the machine) as its results."""
+    from giveway.cli.recover import recover_command
+
+    raise typer.Exit(recover_command(journal, out, force=force))
 
 
 def _scenarios() -> None:

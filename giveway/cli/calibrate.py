@@ -1,9 +1,8 @@
 """``giveway calibrate``: parameters fitted to recorded trajectories, judged on held-out clips."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.markup import escape
@@ -14,18 +13,15 @@ from giveway.cli.progress import counting
 from giveway.config.presets import SUFFIX, parameters_of, preset_text
 from giveway.errors import ConfigError, ResultsError
 from giveway.precompile import compile_kernels_once
-from giveway.validation import Calibration, calibrate, read_clips
+from giveway.validation import Calibration, calibrate, dataset_of, read_clips
+from giveway.validation.calibrating import Fit
 from giveway.validation.fitting import FACTOR
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from giveway.validation.calibrating import Fit
 
 
 def calibrate_command(
-    dataset: Path,
+    clips_in: Path,
     *,
+    dataset: str | None,
     parameters: str,
     out: Path,
     start: str,
@@ -49,7 +45,7 @@ def calibrate_command(
             f"{out}: exists; replace it with --force or name another file with --out"
         )
     names = [name.strip() for name in parameters.split(",")]
-    clips = read_clips(dataset)
+    clips = read_clips(clips_in, dataset_of(dataset))
     first = parameters_of(start)
     compile_kernels_once(console)
     with counting(console, "Fitting") as count:
@@ -63,7 +59,12 @@ def calibrate_command(
             evaluations=evaluations,
             progress=lambda done, of, best: count(done, of, f"error {best:.4f} m"),
         )
-    settings = {"start": start, "seed": seed, "own_pace": own_pace}
+    settings = {
+        "dataset": clips[0].dataset.name,
+        "start": start,
+        "seed": seed,
+        "own_pace": own_pace,
+    }
     text = preset_text(out.stem, found.parameters, _provenance(found, settings))
     with writing(out, "name another file with --out"):
         out.write_text(text, encoding="utf-8", newline="\n")
@@ -85,9 +86,20 @@ def _provenance(found: Calibration, settings: dict[str, Any]) -> dict[str, Any]:
         "held_out_improves": found.test.improves,
         "touching_before": found.touching[0],
         "touching_after": found.touching[1],
+        **_apart(found),
         "at_bound": list(found.at_bound),
         "evaluations": found.evaluations,
         "converged": found.converged,
+    }
+
+
+def _apart(found: Calibration) -> dict[str, float]:
+    """The smallest distances between people [m], as far as any two meet."""
+    names = (f"closest_people_{when}" for when in ("data", "before", "after"))
+    return {
+        name: round(value, 3)
+        for name, value in zip(names, found.apart, strict=True)
+        if math.isfinite(value)
     }
 
 
@@ -122,7 +134,7 @@ def _print(console: Console, found: Calibration) -> None:
             )
     console.print(errors)
     for remark in _remarks(found):
-        console.print(remark, highlight=False)
+        console.print(remark, markup=False, highlight=False)
 
 
 def _gap(fit: Fit) -> str:
@@ -146,6 +158,11 @@ def _remarks(found: Calibration) -> list[str]:
         said.append("The held-out error does NOT improve: this fit is of the training clips only.")
     before, after = found.touching
     said.append(f"Pedestrians that touch the vehicle in replays of all clips: {before} -> {after}.")
+    data, at_start, now = found.apart
+    said.append(
+        f"The closest two people, centre to centre: {at_start:.2f} -> {now:.2f} m; "
+        f"{data:.2f} m in the data."
+    )
     if found.at_bound:
         said.append(
             f"At the end of its range (a factor of {FACTOR:g}): {', '.join(found.at_bound)}: the "

@@ -1,7 +1,5 @@
 """``giveway fmu ...`` and ``giveway export ...``: the commands and their help."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -26,6 +24,7 @@ def build_fmu() -> typer.Typer:
     app.command("inspect")(_inspect)
     app.command("check")(_check)
     app.command("identify")(_identify)
+    app.command("compile")(_compile)
     return app
 
 
@@ -65,7 +64,13 @@ def _check(
     out: Annotated[
         Path | None, typer.Option(help="Folder for the picture (default results/FMU_check).")
     ] = None,
-    mass: Annotated[float, typer.Option(help="M of the controller in kg.", min=1e-3)] = 1000.0,
+    mass: Annotated[
+        float | None,
+        typer.Option(help="What the vehicle weighs, M of the controller, in kg.", min=1e-3),
+    ] = None,
+    ego_class: Annotated[
+        str | None, typer.Option(help="SUMO's vehicle class, where its mass is not known.")
+    ] = None,
     friction: Annotated[float, typer.Option(help="alpha of it in N.s/m.", min=0.0)] = 100.0,
     force_limit: _Limit = 8000.0,
     speed: Annotated[float, typer.Option(help="Rolling start in m/s.", min=0.0)] = 4.0,
@@ -79,6 +84,7 @@ def _check(
         step=step,
         out=out or Path("results") / f"{fmu.stem}_check",
         mass=mass,
+        ego_class=ego_class,
         friction=friction,
         force_limit=force_limit,
         speed=speed,
@@ -126,6 +132,20 @@ def _identify(
         force=force,
     )
     raise typer.Exit(code)
+
+
+def _compile(
+    fmu: _Fmu,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="FMU to write (default FMU_PLATFORM.fmu, here)."),
+    ] = None,
+    force: _Force = False,
+) -> None:
+    """Compile an FMU's C sources for this platform, into a copy of it."""
+    from giveway.cli.fmu_compile import compile_command
+
+    raise typer.Exit(compile_command(fmu, out, force=force))
 
 
 def _controller(

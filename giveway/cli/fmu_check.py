@@ -1,29 +1,25 @@
 """``giveway fmu check``: a vehicle FMU's dry run as a table, and as a picture."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from pathlib import Path
 
 from rich.console import Console
 
 from fmus import FmuError
-from fmus.checking import Finding, check, opener_of, without_guards
+from fmus.checking import CheckReport, Finding, check, opener_of, without_guards
+from fmus.checking.scale import CLASS_MASSES
 from fmus.checking.self_check import plain
 from fmus.profile.bundled import is_bundled
 from fmus.profile.preparation import choose_profile, prepare
-from fmus.profile.vehicle_profile import Axis
+from fmus.profile.vehicle_profile import Axis, VehicleProfile
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
 from giveway.cli.printing import findings_table, print_place
+from giveway.errors import ConfigError
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from fmus.checking import CheckReport
-    from fmus.profile.vehicle_profile import VehicleProfile
-
-_STYLES = {"pass": "green", "skip": "cyan", "warn": "yellow", "fail": "bold red"}
+_STYLES = {
+    "pass": "green", "skip": "cyan", "warn": "yellow", "ask": "bold magenta", "fail": "bold red",
+}  # fmt: skip
 
 
 def check_command(
@@ -32,7 +28,8 @@ def check_command(
     *,
     step: float = 0.05,
     out: Path | None = None,
-    mass: float = 1000.0,
+    mass: float | None = None,
+    ego_class: str | None = None,
     friction: float = 100.0,
     force_limit: float = 8000.0,
     speed: float = 4.0,
@@ -44,7 +41,9 @@ def check_command(
         profile: its profile; None: drafted from its names and units.
         step: of the controller [s].
         out: folder of the picture; None: none is drawn.
-        mass: M of the controller's model [kg]; that of a profile's [model] comes first.
+        mass: M of the controller's model [kg]; that of a profile's [model] comes first. None:
+            1000 kg for the controller, and nothing is known of the vehicle.
+        ego_class: SUMO's vehicle class, which tells roughly what it weighs.
         friction: alpha of it [N.s/m]; likewise.
         force_limit: u_max [N].
         speed: of the rolling start [m/s].
@@ -58,7 +57,12 @@ def check_command(
     """
     require_fmu(path)
     require_number("--step", step, 0.0, 1.0, "s")
-    require_number("--mass", mass, 0.0, 1e6, "kg")
+    if mass is not None:
+        require_number("--mass", mass, 0.0, 1e6, "kg")
+    if ego_class is not None and ego_class not in CLASS_MASSES:
+        raise ConfigError(
+            f"--ego-class {printable(ego_class, 40)}: expected one of {', '.join(CLASS_MASSES)}"
+        )
     require_number("--friction", friction, -1e-300, 1e6, "N.s/m")
     require_number("--force-limit", force_limit, 0.0, 1e6, "N")
     require_number("--speed", speed, -1e-300, 70.0, "m/s")
@@ -66,17 +70,18 @@ def check_command(
     console = Console()
     try:
         chosen = choose_profile(path, given)
-        prepare(path, step_size=step, profile=chosen)
+        fmu_step = prepare(path, step_size=step, profile=chosen).pace.step
     except FmuError as error:
         return _conclude(console, path, [Finding("fits", "fail", plain(error))])
     with console.status("Driving ...") as status:
         report = check(
             opener_of(path, step_size=step, profile=chosen),
             step_size=step,
-            fmu_step=chosen.fmu.step,
+            fmu_step=fmu_step,
             unguarded=opener_of(path, step_size=step, profile=without_guards(chosen)),
             profile=chosen,
             mass=mass,
+            vehicle_class=ego_class,
             friction=friction,
             force_limit=force_limit,
             start_speed=speed,
@@ -115,13 +120,16 @@ def _conclude(console: Console, path: Path, findings: Sequence[Finding]) -> int:
     console.print(findings_table(f"Check of {printable(path.name, 60)}", _STYLES, rows))
     failed = sum(finding.verdict == "fail" for finding in findings)
     warned = sum(finding.verdict == "warn" for finding in findings)
-    console.print(_verdict(failed, warned), highlight=False)
+    asked = sum(finding.verdict == "ask" for finding in findings)
+    console.print(_verdict(failed, warned, asked), highlight=False)
     return 1 if failed else 0
 
 
-def _verdict(failed: int, warned: int) -> str:
+def _verdict(failed: int, warned: int, asked: int) -> str:
     if failed:
         return f"{failed} test{'s' * (failed > 1)} failed: a run with this FMU would be wrong."
+    if asked:
+        return f"Passed, but for {asked} question{'s' * (asked > 1)} that only you can answer."
     if warned:
         return f"Passed, with {warned} warning{'s' * (warned > 1)}."
     return "Passed."

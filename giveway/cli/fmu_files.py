@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fmus import FmuError
-from fmus.profile.vehicle_profile import read_profile
+from fmus.profile.vehicle_profile import VehicleProfile, read_profile
 from giveway.cli.printing import writing
 from giveway.errors import ConfigError
 from giveway.figures import save_figure
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matplotlib.figure import Figure
-
-    from fmus.profile.vehicle_profile import VehicleProfile
 
 
 def require_fmu(path: Path) -> None:

@@ -1,9 +1,8 @@
 """``giveway fmu identify``: M and alpha of a vehicle FMU, into its profile."""
 
-from __future__ import annotations
-
 import tomllib
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from pathlib import Path
 
 from rich.console import Console
 from rich.markup import escape
@@ -12,21 +11,15 @@ from rich.table import Table
 from rich.text import Text
 
 from fmus import FmuError
-from fmus.checking import identify, opener_of, require_converged
+from fmus.checking import Identification, identify, opener_of, require_converged
 from fmus.checking.identification import SPEEDS
 from fmus.checking.profile_file import profile_text, with_model
 from fmus.profile.preparation import choose_profile, prepare
+from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
 from giveway.cli.printing import print_place, writing
 from giveway.errors import ConfigError, VehicleError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from fmus.checking import Identification
-    from fmus.profile.vehicle_profile import VehicleProfile
 
 
 def identify_command(
@@ -73,8 +66,8 @@ def identify_command(
     console = Console()
     try:
         chosen = choose_profile(path, given)
-        prepare(path, step_size=step, profile=chosen)
-        found = _identified(console, path, chosen, step, horizon, force_limit, speeds)
+        fmu_step = prepare(path, step_size=step, profile=chosen).pace.step
+        found = _identified(console, path, chosen, step, fmu_step, horizon, force_limit, speeds)
     except FmuError as error:
         raise VehicleError(str(error)) from error
     console.print(_summary(path, found))
@@ -102,6 +95,7 @@ def _identified(
     path: Path,
     profile: VehicleProfile,
     step: float,
+    fmu_step: float,
     horizon: int,
     force_limit: float,
     speeds: Sequence[float],
@@ -110,13 +104,14 @@ def _identified(
     columns = (TextColumn("Step tests"), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, console=console, transient=True) as progress:
         task = progress.add_task("")
-        require_converged(opener, profile.fmu.step or step, path=path, force=0.5 * force_limit)
+        require_converged(opener, fmu_step, path=path, force=0.5 * force_limit)
         return identify(
             opener,
             path=path,
             step_size=step,
             horizon=horizon,
             force_limit=force_limit,
+            profile=profile,
             speeds=speeds,
             progress=lambda done, total: progress.update(task, completed=done, total=total),
         )
@@ -136,6 +131,11 @@ def _summary(path: Path, found: Identification) -> Table:
         ("alpha", f"{model.friction:.6g}", f"N.s/m ± {_small(friction)} (95 %)"),
         ("Actuator lag", f"{model.lag:.3g}", "s"),
         ("Dead time", f"{model.delay:.3g}", "s"),
+        *(
+            (f"{name} alone", f"{side.mass:.4g}", f"kg, {side.lag:.2g} s lag, {side.delay:.2g} s")
+            for name, side in (("Drive", found.sides.drive), ("Brake", found.sides.brake))
+            if side is not None
+        ),
         ("Largest force of the tests", f"{found.largest_force:.0f}", "N"),
         ("Drive force that arrives", _limit(found.drive_limit), "N"),
         ("Brake force that arrives", _limit(found.brake_limit), "N"),

@@ -3,9 +3,9 @@
 Nothing of the FMU is unpacked, loaded or run.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Final
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Final
 
 from rich.console import Console
 from rich.table import Table
@@ -14,21 +14,15 @@ from rich.text import Text
 from fmus import FmuError
 from fmus.archive.gate import open_archive
 from fmus.description.binaries import binary_of, this_platform
-from fmus.description.model import Unit
+from fmus.description.model import Interface, Model, Unit, Variable
 from fmus.description.reading import model_of
 from fmus.description.units import quantity, to_si
 from fmus.errors import FmuPlatformError
 from fmus.fmi.validation import findings
+from fmus.profile.draft import Draft
 from fmus.profile.draft_profile import draft_profile
 from fmus.text import printable
 from giveway.cli.exit import fail
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from pathlib import Path
-
-    from fmus.description.model import Interface, Model, Variable
-    from fmus.profile.draft import Draft
 
 SHOWN: Final = 12  # rows of a list
 SHOWN_FINDINGS: Final = 4

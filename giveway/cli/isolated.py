@@ -1,17 +1,14 @@
 """``giveway run`` as a supervisor: the run is a child process, whose crash loses no row."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+import sys
+from collections.abc import Callable
+from pathlib import Path
 
 from giveway.cli.exit import INTERRUPTED, fail
-from giveway.errors import GivewayError
+from giveway.errors import CrashError, GivewayError
 from giveway.processes.child import Supervised
+from giveway.processes.interrupts import who_ended
 from giveway.processes.supervisor import journal_folder, own_command, supervise
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
 
 
 def run_isolated() -> int:
@@ -21,10 +18,18 @@ def run_isolated() -> int:
         The exit code: the child's own, or 1 after a crash, whose report goes to stderr.
 
     Raises:
-        GivewayError: the rows of a crashed run cannot be written.
+        GivewayError: the run's process cannot be started, or the rows of a crashed run not be
+            written.
     """
     with journal_folder() as journal:
-        verdict = supervise(own_command(), journal)
+        try:
+            verdict = supervise(own_command(), journal)
+        except OSError as error:
+            raise CrashError(
+                f"{error.filename or sys.executable}: the run's process cannot be started "
+                f"({error.strerror}); free memory or disk, raise the limit of processes "
+                "(ulimit -u), or run with --no-isolate"
+            ) from error
         if not verdict.crashed:
             return verdict.code
         from giveway.recovery import recover
@@ -46,8 +51,8 @@ def supervised(journal: Path | None, command: Callable[[], int]) -> None:
         try:
             child.listen()
             code = command()
-        except KeyboardInterrupt:  # typer would print nothing
-            code = fail("interrupted before the run began", INTERRUPTED)
+        except KeyboardInterrupt as error:
+            code = fail(f"{who_ended(error)} before the run began", INTERRUPTED)
         except GivewayError as error:
             code = fail(str(error), error.exit_code)
         raise SystemExit(code)  # inside: a failed run that crashes while it ends is no success

@@ -1,9 +1,7 @@
 """``giveway plot``."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from rich.console import Console
 
@@ -13,9 +11,6 @@ from giveway.errors import ConfigError
 from giveway.figures import save_figure
 from giveway.geometry.bodies import VehicleShape
 from giveway.results.pictures import influence_picture
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 _SUFFIXES = (".png", ".svg", ".pdf")
 

@@ -1,38 +1,63 @@
 """The program ``giveway``: it builds and runs one command, whose end becomes an exit code."""
 
-from __future__ import annotations
-
 import io
+import os
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
-from giveway.cli.exit import INTERRUPTED, fail
+from giveway._environment import out_of_memory
+from giveway.cli.exit import fail
 from giveway.errors import GivewayError
+from giveway.processes.interrupts import RaisedSignals, exit_code_of, who_ended
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+_NO_THREAD = "can't start new thread"  # Python's words, which no class of its own carries
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit with its code."""
-    from giveway.cli.app import build_app
+    words = (sys.argv[1:] if arguments is None else list(arguments)) or ["--help"]
+    try:
+        with RaisedSignals():
+            code = _run(words)
+    except GivewayError as error:
+        code = fail(str(error), error.exit_code)
+    except KeyboardInterrupt as error:
+        code = fail(who_ended(error), exit_code_of(error))
+    except BrokenPipeError:  # the reader of our output has ended
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left goes nowhere
+        code = 1
+    except (MemoryError, OSError, ImportError) as error:
+        if out_of_memory(error):
+            code = fail("out of memory; free memory, or raise the limit (ulimit -v)", 1)
+        elif isinstance(error, OSError):
+            code = fail(_named(error), 1)
+        else:
+            raise
+    except Exception as error:
+        if hasattr(error, "format_message"):
+            code = fail(f"{error.format_message()} See giveway --help.", 2)  # a usage error
+        elif str(error) == _NO_THREAD:
+            code = fail(
+                "the system gives no more threads; end other processes, or raise the limit "
+                "(ulimit -u)",
+                1,
+            )
+        else:
+            raise  # a fault of giveway: the traceback is wanted
+    sys.exit(code)
 
+
+def _named(error: OSError) -> str:
+    """An error of the system, with the file that it is about, or else our output."""
+    where = "output" if error.filename is None else error.filename
+    return f"{where}: {error.strerror or error}"
+
+
+def _run(words: list[str]) -> int:
+    """Run the command; its exit code."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a terminal may lack our characters
-    words = (sys.argv[1:] if arguments is None else list(arguments)) or ["--help"]
-    try:
-        code = build_app(words)(args=words, standalone_mode=False)
-    except GivewayError as error:
-        code = fail(str(error), error.exit_code)
-    except KeyboardInterrupt:
-        code = fail("interrupted", INTERRUPTED)
-    except BrokenPipeError:
-        code = 1  # the reader of our output has ended
-    except OSError as error:
-        code = fail(f"output: {error.strerror or error}", 1)
-    except Exception as error:
-        if not hasattr(error, "format_message"):
-            raise  # a fault of giveway: the traceback is wanted
-        code = fail(f"{error.format_message()} See giveway --help.", 2)  # a usage error
-    sys.exit(code if isinstance(code, int) else 0)
+    from giveway.cli.app import invoke
+
+    return invoke(words)

@@ -1,11 +1,9 @@
 """``giveway replay``: from a results folder to a page that plays the run."""
 
-from __future__ import annotations
-
 import contextlib
 import sys
 import webbrowser
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from rich.console import Console
 
@@ -13,9 +11,6 @@ from giveway.cli.printing import print_place
 from giveway.replays.page import write_replay
 from giveway.replays.rerun import Predicted, predicted_again
 from giveway.replays.run_folder import PREDICTIONS, RunFolder
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 _AGAIN = "Making the run once more for its predictions (--no-rerun skips this) ..."
 

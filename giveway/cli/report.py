@@ -1,16 +1,12 @@
 """``giveway report``: figures, replays and the HTML report of a study."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+import sys
+from pathlib import Path
 
 from rich.console import Console
 
 from giveway.cli.printing import print_place
 from giveway.studies.folder import StudyFolder
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def report_command(study: Path, *, replays: bool, quiet: bool) -> int:
@@ -32,10 +28,17 @@ def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> 
     """Write figures, replays and report, and the tables unless those of all runs exist."""
     from giveway.precompile import compile_kernels_once
     from giveway.reports.with_replays import write_report_of
-    from giveway.studies.output import write_tables
+    from giveway.studies.contents import broken_tables, intact_tables
+    from giveway.studies.output import TABLES, write_tables
+    from giveway.studies.sealing import put_aside
 
     compile_kernels_once(console)
-    if not (study.complete and (study.path / "comparison.csv").is_file()):
+    for file in broken_tables(study.path):
+        there = put_aside(file, study.path)
+        sys.stderr.write(
+            f"note: {file}: is not what giveway wrote; put aside in {there}, it is made again\n"
+        )
+    if not study.complete or {f"{name}.csv" for name in TABLES} - intact_tables(study.path):
         write_tables(study, whole=True)
     with console.status("Drawing ...") as status:
         page = write_report_of(study, replays=replays, tell=status.update)

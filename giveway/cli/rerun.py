@@ -1,23 +1,17 @@
 """``giveway rerun``: one run of a study once more, as ``giveway run`` would make it."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from rich.console import Console
 from rich.markup import escape
 
-from giveway.cli.exit import INTERRUPTED, fail
 from giveway.cli.progress import run_progress
-from giveway.cli.run import Outputs, show
+from giveway.cli.run import Outputs, interrupted, show
 from giveway.precompile import compile_kernels_once
 from giveway.records.progress import Ending
 from giveway.results.folder import check_folder
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run, rerun
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def rerun_command(
@@ -53,7 +47,7 @@ def rerun_command(
             journal=journal,
         )
     if result.ending is Ending.INTERRUPTED:
-        return fail(f"interrupted; rows up to then are in {out}", INTERRUPTED)
+        return interrupted(result, out)
     show(console, result, out)
     record = folder.record(run)
     if record is not None and record.failed:

@@ -92,9 +92,15 @@ def run_command(
                 error.args = (f"{error}; rows up to then are in {folder}",)
             raise
     if result.ending is Ending.INTERRUPTED:
-        return fail(f"interrupted; rows up to then are in {folder}", INTERRUPTED)
+        return interrupted(result, folder)
     show(console, result, folder)
     return 0
+
+
+def interrupted(result: RunResult, folder: Path) -> int:
+    """Say what has been kept of a run that the user has ended; the exit code."""
+    kept = f"rows up to then are in {folder}" if len(result.time) else "there are no rows yet"
+    return fail(f"interrupted; {kept}", INTERRUPTED)
 
 
 def default_folder(config: RunConfig, scenario: str) -> Path:
@@ -115,4 +121,6 @@ def show(console: Console, result: RunResult, folder: Path) -> None:
     for remark in result.remarks:
         console.print(f"[yellow]note[/yellow] {escape(remark)}", highlight=False)
     files = ", ".join(sorted(path.name for path in folder.iterdir()))
-    console.print(f"Results in [bold]{folder}[/bold]: {files}", highlight=False)
+    console.print(
+        f"Results in [bold]{escape(str(folder))}[/bold]: {escape(files)}", highlight=False
+    )

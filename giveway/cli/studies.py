@@ -1,7 +1,5 @@
 """``giveway study``, ``rerun``, ``report``, ``replay``: the commands and their help."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
@@ -15,12 +15,7 @@ from giveway.cli.study_summary import print_plan, print_summary
 from giveway.precompile import compile_kernels_once
 from giveway.studies.definition import changed, find_study, read_definition
 from giveway.studies.plan import plan
-from giveway.studies.study import estimate, processors, run_study
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from giveway.studies.study import StudyOptions, StudyProgress
+from giveway.studies.study import StudyOptions, StudyProgress, estimate, processors, run_study
 
 _REFRESH = 0.2  # [s] of wall clock between two redraws
 _LINE = 30.0  # [s] between two lines where there is no terminal

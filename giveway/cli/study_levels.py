@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rich import box
@@ -9,15 +10,11 @@ from rich.console import Group
 from rich.markup import escape
 from rich.table import Table
 
-from giveway.reports.levels import BETTER, WORSE, level_table
+from giveway.reports.levels import BETTER, WORSE, LevelTable, Mean, level_table
+from giveway.studies.folder import StudyFolder
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from rich.console import Console
-
-    from giveway.reports.levels import LevelTable, Mean
-    from giveway.studies.folder import StudyFolder
 
 _GAP = 3  # between two columns: padding on both sides, and the box's own blank
 _COLOURS = {"better": "green", "worse": "red"}

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich import box
@@ -14,17 +16,13 @@ from giveway.cli.study_levels import print_levels
 from giveway.reports.labels import level_label
 from giveway.reports.wording import counted
 from giveway.studies.contexts import other_factors
+from giveway.studies.folder import StudyFolder
+from giveway.studies.plan import Plan
 from giveway.studies.statistics import metric, precise_enough
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
-
     import pandas as pd
     from rich.console import Console
-
-    from giveway.studies.folder import StudyFolder
-    from giveway.studies.plan import Plan
 
 _SHOWN = (
     ("completion_time", "general"),
@@ -106,7 +104,8 @@ def print_summary(
         console.print(
             f"[yellow]{len(failures):,} of {counted(there, 'run')} {verb} no result[/yellow] "
             f"({where}), see failures.csv; the first, "
-            f"{escape(str(first['run']))}: {escape(str(first['cause']))}",
+            f"{escape(str(first['run']))}: {escape(str(first['cause']))}; --resume --retry-failed "
+            "makes them again",
             highlight=False,
         )
 

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
+from rich.text import Text
 
 if TYPE_CHECKING:
     from giveway.results.run_result import EgoResult, RunResult
@@ -19,7 +20,9 @@ _SHOWN = (
     ("Smallest gap in front", "minimum_gap", "m"),
     ("Smallest clearance", "minimum_clearance", "m"),
     ("Pedestrians touched", "overlaps", ""),
+    ("Background vehicles touched", "vehicle_contacts", ""),
     ("Smallest time to collision", "minimum_ttc", "s"),
+    ("while the ego moved", "minimum_ttc_moving", "s"),
     ("Smallest post-encroachment time", "minimum_pet", "s"),
     ("Steps below the safe distance", "share_below_safe_distance", "%"),
     ("Steps in which the MPC acted", "mpc_feasibility_rate", "%"),
@@ -37,10 +40,12 @@ _COUNTED = (
 
 def summary_table(result: RunResult) -> Table:
     """The summary's most asked-for numbers, with units; a dash where there is none."""
-    table = Table(title=_title(result), show_header=len(result.egos) > 1, title_justify="left")
+    table = Table(
+        title=Text(_title(result)), show_header=len(result.egos) > 1, title_justify="left"
+    )
     table.add_column()
     for ego in result.egos:
-        table.add_column(ego.id, justify="right")
+        table.add_column(Text(ego.id), justify="right")
     if not result.egos:
         table.add_column(justify="right")
     table.add_column()

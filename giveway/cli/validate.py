@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,24 +12,21 @@ from rich.table import Table
 
 from giveway.cli.printing import print_place
 from giveway.cli.progress import counting
-from giveway.config.presets import parameters_of
+from giveway.config.presets import parameters_of, require_steady_preset
 from giveway.precompile import compile_kernels_once
 from giveway.results.folder import check_folder
-from giveway.validation import read_clips, validate
-from giveway.validation.contacts import ORDER
+from giveway.validation import Validation, dataset_of, read_clips, validate
+from giveway.validation.contacts import DATA, ORDER
 from giveway.validation.evaluation import EVERYWHERE, NEAR
 from giveway.validation.output import FILES, write_validation
+from giveway.validation.predictors import VCI
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     import pandas as pd
-
-    from giveway.validation import Validation
 
 
 def validate_command(
-    dataset: Path, *, preset: str, out: Path | None, force: bool, quiet: bool
+    clips_in: Path, *, dataset: str | None, preset: str, out: Path | None, force: bool, quiet: bool
 ) -> None:
     """Read the clips, predict, print the tables, write the folder.
 
@@ -36,10 +34,13 @@ def validate_command(
         GivewayError: one line that says what to do.
     """
     console = Console(quiet=quiet)
+    described = dataset_of(dataset)
     parameters = parameters_of(preset)
     folder = out or Path("results") / f"validation_{Path(preset).stem}"
     check_folder(folder, force=force, ours=FILES, writer="giveway validate")
-    clips = read_clips(dataset)
+    clips = read_clips(clips_in, described)
+    step = 1.0 / described.frame_rate
+    require_steady_preset(preset, step, "--preset")
     compile_kernels_once(console)
     with counting(console, "Predicting") as count:
         found = validate(clips, parameters, progress=lambda done, of: count(done, of, ""))
@@ -52,6 +53,7 @@ def validate_command(
 def _print(console: Console, found: Validation, preset: str) -> None:
     with_vehicle = sum(clip.poses.shape[1] > 0 for clip in found.clips)
     console.print(
+        f"{escape(found.clips[0].dataset.name)}: "
         f"{len(found.clips)} clips, {with_vehicle} with a vehicle, {found.pedestrians} "
         f"pedestrians, {len(found.cut)} windows; parameters {escape(preset)}",
         highlight=False,
@@ -65,6 +67,11 @@ def _print(console: Console, found: Validation, preset: str) -> None:
         console.print(_contacts(found.contacts))
     else:
         console.print("No clip has a vehicle: nobody to touch.", highlight=False)
+    console.print(
+        f"The closest two people, centre to centre: {found.apart[DATA]:.2f} m in the data, "
+        f"{found.apart[VCI]:.2f} m by the model.",
+        highlight=False,
+    )
 
 
 def _errors(rows: pd.DataFrame, title: str) -> Table:

@@ -1,14 +1,14 @@
 """``giveway validate``, ``calibrate``: the commands and their help."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+_Clips = Annotated[Path, typer.Argument(help="A data set's folder, or any part of it with clips.")]
 _Dataset = Annotated[
-    Path, typer.Argument(help="The CITR dataset's folder, or any part of it with clips.")
+    str | None,
+    typer.Option(help="Which one it is: citr, dut, or its description (TOML); docs/validation.md."),
 ]
 _PARAMETERS = (
     "destination_gain,repulsion_strength,navigation_strength,vehicle_strength,vehicle_lookahead"
@@ -22,7 +22,8 @@ def add_validation(app: typer.Typer) -> None:
 
 
 def _validate(
-    dataset: _Dataset,
+    clips: _Clips,
+    dataset: _Dataset = None,
     preset: Annotated[str, typer.Option(help="SIM, TABLE2 or a preset file (TOML).")] = "SIM",
     out: Annotated[
         Path | None, typer.Option(help="Folder (default results/validation_PRESET).")
@@ -35,12 +36,13 @@ def _validate(
     """Hold the pedestrian model against recorded trajectories: ADE, FDE, contacts."""
     from giveway.cli.validate import validate_command
 
-    validate_command(dataset, preset=preset, out=out, force=force, quiet=quiet)
+    validate_command(clips, dataset=dataset, preset=preset, out=out, force=force, quiet=quiet)
 
 
 def _calibrate(
-    dataset: _Dataset,
+    clips: _Clips,
     out: Annotated[Path, typer.Option(help="Preset file (TOML) to write.")],
+    dataset: _Dataset = None,
     parameters: Annotated[
         str, typer.Option(help="What is fitted, comma-separated; see docs/validation.md.")
     ] = _PARAMETERS,
@@ -62,7 +64,8 @@ def _calibrate(
     from giveway.cli.calibrate import calibrate_command
 
     calibrate_command(
-        dataset,
+        clips,
+        dataset=dataset,
         parameters=parameters,
         out=out,
         start=start,

@@ -1,10 +1,16 @@
 """The tables of the configuration about who drives: controllers, safety, perception."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from giveway.config.option import Preset, Section, option
+
+MILLIMETRE = 0.001
+"""[m] No gap between bodies is meant to be smaller."""
+
+GAP = "a gap between bodies is between a millimetre and what a street holds"
+TYRES = "tyres hold 10 m/s^2; below 0.1 m/s^2 nobody notices"
+FORCE = "a newton moves no vehicle, 1000 kN no road holds"
+BUFFER = "it is a stretch of road that a vehicle drives within its sight"
 
 CORRIDOR_MARGIN = 0.25
 """[m] The corridor of a vehicle is wider than its body by this much on each side."""
@@ -13,9 +19,23 @@ CORRIDOR_MARGIN = 0.25
 class RegulationConfig(Section):
     """What both controllers aim at, and who counts as being in front."""
 
-    reference_speed: float = option(4.0, "m/s", "desired speed v_r", gt=0, le=60)
+    reference_speed: float = option(
+        4.0,
+        "m/s",
+        "desired speed v_r",
+        gt=0,
+        le=60,
+        least=0.1,
+        because="slower than that nobody says whether it drives; no car is faster",
+    )
     safe_distance: float = option(
-        8.0, "m", "distance d_safe to keep to who is in front", ge=0, le=1e4
+        8.0,
+        "m",
+        "distance d_safe to keep to who is in front",
+        ge=0,
+        le=500,
+        least=MILLIMETRE,
+        because="a gap is a millimetre at least, and nobody is seen half a kilometre ahead",
     )
     corridor_half_width: float | None = option(
         None,
@@ -24,6 +44,8 @@ class RegulationConfig(Section):
         f"{CORRIDOR_MARGIN:g}",
         gt=0,
         le=20,
+        least=0.1,
+        because="it holds a vehicle and its lane",
     )
     gap_from: Literal["bumper", "centre"] = option(
         "bumper", None, "where the distance to who is in front starts"
@@ -33,18 +55,43 @@ class RegulationConfig(Section):
     )
     traffic_lights: bool = option(True, None, "the ego stops at red lights", flag="--obey-lights")
     comfortable_deceleration: float = option(
-        2.0, "m/s^2", "of the approach to a red light or a slower vehicle", gt=0, le=10
+        2.0,
+        "m/s^2",
+        "of the approach to a red light or a slower vehicle",
+        gt=0,
+        le=10,
+        least=0.1,
+        because=TYRES,
     )
 
 
 class MpcConfig(Section):
     """The model predictive controller (Yang & Özgüner 2019, section 3, table 1)."""
 
-    horizon: int = option(15, "steps", "prediction horizon N", ge=2, le=200)
-    force_limit: float = option(8000.0, "N", "u_max, of the PID's output too", gt=0, le=1e6)
-    force_rate_limit: float = option(1000.0, "N/step", "du_max", gt=0, le=1e6)
-    speed_min: float = option(0.0, "m/s", "v_min", ge=0, le=60)
-    speed_max: float = option(20.0, "m/s", "v_max", gt=0, le=100)
+    horizon: int = option(
+        15,
+        "steps",
+        "prediction horizon N",
+        ge=2,
+        le=200,
+        because="one step is no plan, and of 200 nothing is known",
+    )
+    force_limit: float = option(
+        8000.0, "N", "u_max, of the PID's output too", gt=0, le=1e6, least=1.0, because=FORCE
+    )
+    force_rate_limit: float = option(
+        1000.0, "N/step", "du_max", gt=0, le=1e6, least=1.0, because=FORCE
+    )
+    speed_min: float = option(0.0, "m/s", "v_min", ge=0, le=60, because="no car is faster")
+    speed_max: float = option(
+        20.0,
+        "m/s",
+        "v_max",
+        gt=0,
+        le=100,
+        least=0.1,
+        because="slower than that nobody says whether it drives; no car is faster",
+    )
     solver: Literal["osqp", "daqp"] = option("osqp", None, "QP solver")
 
 
@@ -52,12 +99,37 @@ class PidConfig(Section):
     """The PID controller, fallback and rival (Yang & Özgüner 2019, section 3.4, table 1)."""
 
     proportional_gain: float = option(
-        2400.0, "N.s/m", "K_p; the printed 300 contradicts the printed error", ge=0, le=1e6
+        2400.0,
+        "N.s/m",
+        "K_p; the printed 300 contradicts the printed error",
+        ge=0,
+        le=1e6,
+        because="with more, the least error is all the force there is",
     )
-    integral_gain: float = option(10.0, "N/m", "K_i", ge=0, le=1e6)
-    derivative_gain: float = option(100.0, "N.s^2/m", "K_d", ge=0, le=1e6)
+    integral_gain: float = option(
+        10.0,
+        "N/m",
+        "K_i",
+        ge=0,
+        le=1e6,
+        because="with more, the least error is all the force there is",
+    )
+    derivative_gain: float = option(
+        100.0,
+        "N.s^2/m",
+        "K_d",
+        ge=0,
+        le=1e6,
+        because="with more, the least error is all the force there is",
+    )
     buffer_distance: float = option(
-        10.0, "m", "d_buffer over which the reference speed rises to v_r", gt=0, le=1e4
+        10.0,
+        "m",
+        "d_buffer over which the reference speed rises to v_r",
+        gt=0,
+        le=500,
+        least=0.1,
+        because=BUFFER,
     )
 
 
@@ -68,28 +140,80 @@ class TunedPidConfig(Section):
         "braking-curve", None, "how the reference speed falls towards who is in front"
     )
     buffer_distance: float = option(
-        10.0, "m", "over which the linear profile rises to v_r", gt=0, le=1e4
+        10.0,
+        "m",
+        "over which the linear profile rises to v_r",
+        gt=0,
+        le=500,
+        least=0.1,
+        because=BUFFER,
     )
     deceleration: float = option(
-        1.0, "m/s^2", "b of the braking curve, and of braking in comfort", gt=0, le=10
+        1.0,
+        "m/s^2",
+        "b of the braking curve, and of braking in comfort",
+        gt=0,
+        le=10,
+        least=0.1,
+        because=TYRES,
     )
     approach_lag: float = option(
-        0.5, "s", "near d_safe the braking curve is the line (gap - d_safe)/tau", gt=0, le=10
+        0.5,
+        "s",
+        "near d_safe the braking curve is the line (gap - d_safe)/tau",
+        gt=0,
+        le=10,
+        least=0.01,
+        because="a loop answers within a step or some seconds",
     )
-    acceleration: float = option(3.0, "m/s^2", "of driving off", gt=0, le=10)
-    jerk: float = option(10.0, "m/s^3", "of a change of acceleration in comfort", gt=0, le=200)
+    acceleration: float = option(
+        3.0, "m/s^2", "of driving off", gt=0, le=10, least=0.1, because=TYRES
+    )
+    jerk: float = option(
+        10.0,
+        "m/s^3",
+        "of a change of acceleration in comfort",
+        gt=0,
+        le=200,
+        least=0.1,
+        because="a brake takes between a minute and a blink to bite",
+    )
     firm_deceleration: float = option(
         3.0,
         "m/s^2",
         "that keeping d_safe may take; where it is not enough, last_distance",
         ge=0,
         le=10,
+        least=0.1,
+        because=TYRES,
     )
     last_distance: float = option(
-        2.0, "m", "it stops before this distance however hard that is", ge=0, le=1e4
+        2.0,
+        "m",
+        "it stops before this distance however hard that is",
+        ge=0,
+        le=100,
+        least=MILLIMETRE,
+        because=GAP,
     )
-    bandwidth: float = option(2.5, "rad/s", "omega of the closed loop's poles", gt=0, le=100)
-    damping: float = option(0.85, None, "zeta of the closed loop's poles", gt=0, le=10)
+    bandwidth: float = option(
+        2.5,
+        "rad/s",
+        "omega of the closed loop's poles",
+        gt=0,
+        le=100,
+        least=0.05,
+        because="a loop answers within a step or some seconds",
+    )
+    damping: float = option(
+        0.85,
+        None,
+        "zeta of the closed loop's poles",
+        gt=0,
+        le=10,
+        least=0.1,
+        because="below it the loop swings, far above it creeps",
+    )
     acceleration_feed_forward: bool = option(
         True, None, "M dv_ref/dt is fed forward beside alpha v_ref"
     )
@@ -98,7 +222,14 @@ class TunedPidConfig(Section):
 class PlannerConfig(Section):
     """The planning MPC (controller = "mpc"); every ingredient is a switch, docs/controllers.md."""
 
-    horizon: float = option(3.0, "s", "how far it plans", ge=0.3, le=10)
+    horizon: float = option(
+        3.0,
+        "s",
+        "how far it plans",
+        ge=0.3,
+        le=10,
+        because="a stop takes longer than 0.3 s, and of people nothing is known after 10 s",
+    )
     gap_choice: bool = option(
         True, None, "search whom to pass before and whom behind; else the plan just keeps d_safe"
     )
@@ -111,14 +242,29 @@ class PlannerConfig(Section):
     planned_speed: bool = option(
         True, None, "people are predicted under the planned speeds; else under the present one"
     )
-    effort_weight: float = option(0.02, "s", "of squared accelerations in the plan", ge=0, le=100)
-    jerk_weight: float = option(0.02, "s^3", "of squared jerks in the plan", ge=0, le=100)
+    effort_weight: float = option(
+        0.02,
+        "s",
+        "of squared accelerations in the plan",
+        ge=0,
+        le=100,
+        because="beyond, a plan is made of that weight alone",
+    )
+    jerk_weight: float = option(
+        0.02,
+        "s^3",
+        "of squared jerks in the plan",
+        ge=0,
+        le=100,
+        because="beyond, a plan is made of that weight alone",
+    )
     conflict_weight: float = option(
         0.6,
         None,
         "seconds of delay that one person-second with less than 1.5 s to a collision is worth",
         ge=0,
         le=1e3,
+        because="beyond, a plan is made of that weight alone",
     )
     nearness_weight: float = option(
         0.3,
@@ -126,6 +272,7 @@ class PlannerConfig(Section):
         "seconds of delay that a second at v_r right before somebody is worth, none at d_safe",
         ge=0,
         le=1e3,
+        because="beyond, a plan is made of that weight alone",
     )
     threat_weight: float = option(
         1.0,
@@ -133,21 +280,49 @@ class PlannerConfig(Section):
         "seconds of delay that a second is worth in which somebody could force an emergency stop",
         ge=0,
         le=1e3,
+        because="beyond, a plan is made of that weight alone",
     )
     minimum_distance: float = option(
-        1.0, "m", "least distance to a person in front, at standstill", ge=0, le=100
+        1.0,
+        "m",
+        "least distance to a person in front, at standstill",
+        ge=0,
+        le=100,
+        least=MILLIMETRE,
+        because=GAP,
     )
     deceleration: float = option(
-        6.0, "m/s^2", "a stop that is no harder stays possible", gt=0, le=10
+        6.0,
+        "m/s^2",
+        "a stop that is no harder stays possible",
+        gt=0,
+        le=10,
+        least=0.1,
+        because=TYRES,
     )
     calm_time: float = option(
-        0.5, "s", "of the plan in which nobody may be able to force an emergency stop", ge=0, le=10
+        0.5,
+        "s",
+        "of the plan in which nobody may be able to force an emergency stop",
+        ge=0,
+        le=10,
+        because="no plan is longer",
     )
     margin_growth: float = option(
-        0.0, "m/s", "what the corridor grows by per second of look-ahead, on each side", ge=0, le=5
+        0.0,
+        "m/s",
+        "what the corridor grows by per second of look-ahead, on each side",
+        ge=0,
+        le=5,
+        because="nobody walks so fast",
     )
     block_growth: float = option(
-        0.25, None, "how the plan's intervals grow from one to the next; 0: not", ge=0, le=2
+        0.25,
+        None,
+        "how the plan's intervals grow from one to the next; 0: not",
+        ge=0,
+        le=2,
+        because="a plan needs some intervals",
     )
 
 
@@ -161,7 +336,13 @@ class SafetyConfig(Section):
         flag="--safety",
     )
     margin: float = option(
-        0.05, "m", "kept between the front bumper and whoever may get there", ge=0, le=5
+        0.05,
+        "m",
+        "kept between the front bumper and whoever may get there",
+        ge=0,
+        le=5,
+        least=MILLIMETRE,
+        because=GAP,
     )
     reaction_time: float | None = option(
         None,
@@ -169,6 +350,7 @@ class SafetyConfig(Section):
         "within which the vehicle does what it is told; none: as its profile identified, else 0",
         ge=0,
         le=5,
+        because="a vehicle that answers later cannot be driven",
     )
     rate_limited: bool = option(False, None, "the layer's braking keeps to du_max too")
 
@@ -182,6 +364,7 @@ class PerceptionConfig(Section):
         "people are seen this far off (standard deviation per axis, cut off at twice that)",
         ge=0,
         le=5,
+        because="whom one looks for a lane off is not seen",
     )
     desired_speeds: Literal["known", "typical"] = option(
         "known", None, "of each person, or [crowd] desired_speed_mean for everybody"

@@ -1,23 +1,20 @@
 """From layers of settings (scenario, TOML file, flags) to one validated configuration, and back."""
 
-from __future__ import annotations
-
 import difflib
+import os
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import Any
 
 import tomlkit
 from pydantic import ValidationError
+from pydantic.fields import FieldInfo
 
-from giveway.config.option import Section
+from giveway.config.option import Section, declared, expectation
 from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError
-
-if TYPE_CHECKING:
-    from pydantic.fields import FieldInfo
 
 Location = tuple[str, ...]
 
@@ -57,9 +54,8 @@ class Option:
 
     @property
     def extra(self) -> dict[str, Any]:
-        """Unit and flag as declared beside the field."""
-        extra = self.field.json_schema_extra
-        return dict(extra) if isinstance(extra, dict) else {}
+        """Unit, flag and limits as declared beside the field."""
+        return declared(self.field)
 
     @property
     def unit(self) -> str | None:
@@ -126,7 +122,7 @@ def anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
         if isinstance(table, dict) and isinstance(table.get(key), str):
             named = Path(table[key])
             is_path = len(named.parts) > 1 or named.suffix  # a bare word is a bundled name
-            if is_path and (folder / named).exists():
+            if is_path and os.path.exists(folder / named):  # noqa: PTH110 - also of too long a name
                 table[key] = str(folder / named)
     return values
 
@@ -175,11 +171,7 @@ def _explain(error: Any, layers: Sequence[Layer]) -> str:
     option = next((o for o in options() if o.location == location), None)
     if option is None:
         return f"{name} = {error['input']!r}: expected a table of options"
-    unit = f" [{option.unit}]" if option.unit else ""
-    expected = str(error["msg"]).removeprefix("Input ")
-    if error["type"] in {"missing", "too_long"}:  # of a tuple's values
-        expected = f"expected {len(get_args(option.field.annotation))} values"
-    return f"{name} = {error['input']!r}: {expected}{unit} ({option.field.description})"
+    return f"{name} = {error['input']!r}: {expectation(error, option.field)}"
 
 
 def _known_part(location: Location) -> Location:

@@ -1,23 +1,17 @@
 """Which settings win: the scenario's, then the user's file, then flags or arguments."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
+import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fmus import FmuError, read_profile
 from giveway.config.layers import Layer, build_config, merge, read_toml
 from giveway.config.presets import parameters_of
 from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError, ScenarioError, VehicleError
+from sumo_scenarios import Scenario, available, find
 from sumo_scenarios import ScenarioError as UnknownScenario
-from sumo_scenarios import available, find
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from sumo_scenarios import Scenario
 
 _FILES = ("fmu", "profile", "preset")  # keys that may name a file
 _WITH_FILES = ("vehicle", "crowd", "perception")  # tables that have such keys
@@ -151,7 +145,11 @@ def _table_placed(name: str, table: Any) -> Any:
 def _absolute(table: Mapping[str, Any]) -> dict[str, str]:
     """The files that a table's settings name, as far as there are such files."""
     named = {key: Path(str(table[key])) for key in _FILES if table.get(key)}
-    return {key: str(path.absolute()) for key, path in named.items() if path.is_file()}
+    return {
+        key: str(path.absolute())
+        for key, path in named.items()
+        if os.path.isfile(path)  # noqa: PTH113 - Path's own raises if a name is too long
+    }
 
 
 def _presets_read(config: RunConfig) -> RunConfig:

@@ -1,9 +1,7 @@
 """How an option is declared: its unit, its bounds, and the values it takes from files and flags."""
 
-from __future__ import annotations
-
 import shlex
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import (
     AfterValidator,
@@ -12,16 +10,64 @@ from pydantic import (
     ConfigDict,
     Field,
     JsonValue,
+    ValidationInfo,
+    field_validator,
 )
+from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
+
+_TOO_SMALL = "least"
+_OUT_OF_RANGE = frozenset(
+    {_TOO_SMALL, "greater_than", "greater_than_equal", "less_than", "less_than_equal"}
+)
 
 
 def option(
-    default: Any, unit: str | None, description: str, *, flag: str | None = None, **bounds: Any
+    default: Any,
+    unit: str | None,
+    description: str,
+    *,
+    flag: str | None = None,
+    least: float | None = None,
+    because: str | None = None,
+    **bounds: Any,
 ) -> Any:
-    """A documented option: its unit, what it means, its flag where the derived one is clumsy."""
-    extra: dict[str, JsonValue] = {"unit": unit, "flag": flag}
+    """A documented option.
+
+    Args:
+        default: its value where nobody sets it.
+        unit: of a quantity.
+        description: what it means.
+        flag: its name on the command line, where the derived one is clumsy.
+        least: the smallest value above 0 that makes sense; a bound says whether 0 does.
+        because: why other values than those within ``least`` and ``bounds`` make no sense.
+        bounds: as of a pydantic field.
+    """
+    extra: dict[str, JsonValue] = {"unit": unit, "flag": flag, "least": least, "because": because}
     return Field(default, description=description, json_schema_extra=extra, **bounds)
+
+
+def declared(field: FieldInfo) -> dict[str, Any]:
+    """What :func:`option` keeps beside the field: unit, flag, least, because."""
+    extra = field.json_schema_extra
+    return dict(extra) if isinstance(extra, dict) else {}
+
+
+def expectation(error: Any, field: FieldInfo) -> str:
+    """What was expected instead of a value that pydantic has refused: range, unit, reason, meaning.
+
+    Args:
+        error: one of those of a ``ValidationError``.
+        field: the option's.
+    """
+    extra = declared(field)
+    expected = str(error["msg"]).removeprefix("Input ")
+    if error["type"] in {"missing", "too_long"}:  # of a tuple's values
+        expected = f"expected {len(get_args(field.annotation))} values"
+    unit = f" [{extra['unit']}]" if extra.get("unit") else ""
+    out_of_range = error["type"] in _OUT_OF_RANGE and extra.get("because")
+    because = f": {extra['because']}" if out_of_range else ""
+    return f"{expected}{unit}{because} ({field.description})"
 
 
 def _split(value: Any) -> Any:
@@ -87,3 +133,14 @@ class Section(BaseModel):
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True
     )
+
+    @field_validator("*", mode="after")
+    @classmethod
+    def _large_enough(cls, value: Any, info: ValidationInfo) -> Any:
+        field = cls.model_fields[str(info.field_name)]
+        least = declared(field).get("least")
+        if least is not None and isinstance(value, int | float) and 0 < value < least:
+            zero = any(getattr(bound, "ge", None) == 0 for bound in field.metadata)
+            expected = f"should be {'0, or ' if zero else ''}at least {least:g}"
+            raise PydanticCustomError(_TOO_SMALL, "{expected}", {"expected": expected})
+        return value

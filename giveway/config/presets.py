@@ -1,21 +1,17 @@
 """The numbers of the pedestrian model by name, or from a preset file (TOML) of your own."""
 
-from __future__ import annotations
-
 import difflib
 import functools
 import tomllib
+from collections.abc import Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import tomlkit
 
 from giveway.errors import ConfigError
-from pedestrian_model import PRESETS, ParameterError, VciParameters
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+from pedestrian_model import PRESETS, ParameterError, VciParameters, require_steady
 
 SUFFIX = ".toml"
 NAMES = tuple(field.name for field in fields(VciParameters))
@@ -44,6 +40,25 @@ def parameters_of(preset: str) -> VciParameters:
             f"{path}: no preset file can be read there ({error.strerror}); see giveway calibrate"
         ) from error
     return _read(path, (status.st_mtime_ns, status.st_size))
+
+
+def require_steady_preset(preset: str, time_step: float, where: str) -> None:
+    """Make sure that people do not tremble by the parameters of ``preset``.
+
+    Args:
+        preset: a name or a file, as for :func:`parameters_of`.
+        time_step: of the crowd [s].
+        where: the option that names the preset; the message begins with it.
+
+    Raises:
+        ConfigError: they do, or the preset cannot be read.
+    """
+    try:
+        require_steady(parameters_of(preset), time_step)
+    except ParameterError as error:
+        raise ConfigError(
+            f"{where} {preset}: {error}; correct the preset, or fit it anew with giveway calibrate"
+        ) from error
 
 
 def require_preset_name(preset: str) -> None:

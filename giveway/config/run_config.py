@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, ValidationError, model_validator
+from pydantic.fields import FieldInfo
 
 from giveway.config.controller_sections import (
     MpcConfig,
@@ -18,7 +19,7 @@ from giveway.config.controller_sections import (
     SafetyConfig,
     TunedPidConfig,
 )
-from giveway.config.option import Section, option
+from giveway.config.option import Section, expectation, option
 from giveway.config.sections import (
     CrowdConfig,
     EgoConfig,
@@ -38,6 +39,9 @@ ControllerName = Annotated[
     Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"], BeforeValidator(_full_name)
 ]
 
+PAPER_STEP = 0.05
+"""[s] The control step where none is set (Yang & Özgüner 2019, table 1)."""
+
 EGO_TABLES = (
     "controller",
     "ego",
@@ -53,11 +57,30 @@ EGO_TABLES = (
 """What may differ from ego to ego."""
 
 
+def _field_at(location: tuple[int | str, ...]) -> FieldInfo | None:
+    """The option at ``location``, which may end within its value; None where there is none."""
+    model: type[Section] = RunConfig
+    for part in location:
+        field = model.model_fields.get(str(part))
+        kind = None if field is None else field.annotation
+        if not (isinstance(kind, type) and issubclass(kind, Section)):
+            return field
+        model = kind
+    return None
+
+
 class RunConfig(Section):
     """One run: a scenario, a seed, a controller, and everything that shapes them."""
 
     scenario: str = option("shared_space", None, "bundled name, folder or .sumocfg", min_length=1)
-    seed: int = option(1, None, "seed of the crowd that giveway adds", ge=0, le=2**31 - 1)
+    seed: int = option(
+        1,
+        None,
+        "seed of the crowd that giveway adds",
+        ge=0,
+        le=2**31 - 1,
+        because="SUMO's are 31 bits",
+    )
     controller: ControllerName = option(
         "mpc",
         None,
@@ -70,6 +93,7 @@ class RunConfig(Section):
         flag="--time-step",
         ge=0.001,
         le=0.5,
+        because="SUMO counts milliseconds, and people walk 1 m in half a second",
     )
     time_limit: float | None = option(
         None,
@@ -77,6 +101,8 @@ class RunConfig(Section):
         "the run ends this long after the first departure; none: with the scenario",
         gt=0,
         le=1e7,
+        least=0.001,
+        because="no step is shorter",
     )
     ego: EgoConfig = EgoConfig()
     vehicle: VehicleConfig = VehicleConfig()
@@ -99,6 +125,7 @@ class RunConfig(Section):
     def _check_egos(self) -> RunConfig:
         for ego in self.each_ego():
             ego.require_speeds_in_reach()
+            ego.require_rolling()
         return self
 
     def each_ego(self) -> tuple[EgoRunConfig, ...]:
@@ -128,9 +155,9 @@ class RunConfig(Section):
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
             key = ".".join(map(str, first["loc"]))
-            raise ValueError(
-                f"egos[{number}]: {key} = {first['input']!r}: {first['msg']}"
-            ) from None
+            field = _field_at(first["loc"])
+            expected = expectation(first, field) if field is not None else first["msg"]
+            raise ValueError(f"egos[{number}]: {key} = {first['input']!r}: {expected}") from None
 
     def _one_per_vehicle(self) -> list[EgoRunConfig]:
         """One for each vehicle that is taken over, or the one of an inserted ego."""
@@ -150,6 +177,7 @@ class EgoRunConfig(RunConfig):
     @model_validator(mode="after")
     def _check_egos(self) -> EgoRunConfig:
         self.require_speeds_in_reach()
+        self.require_rolling()
         return self
 
     @property
@@ -191,3 +219,21 @@ class EgoRunConfig(RunConfig):
                 msg = f"{key} = {speed:g}: expected within [mpc] speed_min and speed_max"
                 msg += f", {low:g} to {high:g} [m/s]"
                 raise ValueError(msg)
+
+    def require_rolling(self) -> None:
+        """Make sure that friction slows the vehicle down and does not reverse it within a step.
+
+        Forward Euler of M s'' + alpha s' = u, the model of the paper's plant and controllers,
+        multiplies the speed by 1 - alpha h / M in each step h.
+
+        Raises:
+            ValueError: it would.
+        """
+        step = self.time_step or PAPER_STEP
+        share = self.vehicle.friction * step / self.vehicle.mass
+        if share > 1.0:
+            raise ValueError(
+                f"[vehicle] friction = {self.vehicle.friction:g} and mass = {self.vehicle.mass:g}: "
+                f"expected friction * {step:g} s <= mass [kg]: friction alone would turn the "
+                "vehicle round within one step"
+            )

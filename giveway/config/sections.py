@@ -6,10 +6,12 @@ docs/reproduction.md explains.
 
 from __future__ import annotations
 
-from typing import Literal
+import math
+from typing import Final, Literal
 
 from pydantic import model_validator
 
+from giveway.config.controller_sections import GAP, MILLIMETRE
 from giveway.config.option import (
     Displacement,
     NameList,
@@ -23,7 +25,13 @@ from giveway.config.option import (
 )
 
 _SUMO_ID = r"^[^\s|\\'\";,:!<>&*?]+$"  # what SUMO accepts as the name of anything
+_NEAREST = 0.01  # [m] a shorter side of an area, or a shorter walk, is none
+WALKING = "the model's people walk with 2.5 m/s at most, and somebody below 0.01 m/s stands"
+SUMO_TIME = "SUMO counts milliseconds"
 _FARTHEST = 1e7  # [m] beyond it a millimetre is lost in rounding
+
+BUNDLED_VEHICLES: Final[dict[str, Literal["2.0", "3.0"]]] = {"fmi2": "2.0", "fmi3": "3.0"}
+"""The FMI versions of the vehicle FMUs that are named by a word."""
 
 DEFAULT_SPEED = 4.0
 """[m/s] of an inserted ego at its departure (Yang & Özgüner 2019, table 1)."""
@@ -46,18 +54,45 @@ class EgoConfig(Section):
         None,
         "index of its departure lane, 0 is the rightmost; none: the first for cars",
         ge=0,
+        because="0 is the rightmost",
     )
     depart_time: float = option(
-        0.0, "s", "simulation time at which it enters; at begin if that is later", ge=0, le=1e7
+        0.0,
+        "s",
+        "simulation time at which it enters; at begin if that is later",
+        ge=0,
+        le=1e7,
+        because="it is a time of the simulation",
     )
     depart_position: float = option(
-        0.0, "m", "its front bumper's place on the first edge at departure", ge=0, le=1e6
+        0.0,
+        "m",
+        "its front bumper's place on the first edge at departure",
+        ge=0,
+        le=1e6,
+        because="it is a place on the edge",
     )
     initial_speed: float | None = option(
-        None, "m/s", "speed at departure; none: 4 m/s, or SUMO's when taken over", ge=0, le=70
+        None,
+        "m/s",
+        "speed at departure; none: 4 m/s, or SUMO's when taken over",
+        ge=0,
+        le=70,
+        because="no car on a road is faster",
+    )
+    keep_stops: bool | None = option(
+        None,
+        None,
+        "one that is taken over serves its stops; none: if it is a bus, a coach or a tram",
     )
     travel_distance: float | None = option(
-        None, "m", "its goal is this far along its way; none: the end of its route", gt=0, le=1e6
+        None,
+        "m",
+        "its goal is this far along its way; none: the end of its route",
+        gt=0,
+        le=1e6,
+        least=0.1,
+        because="a shorter way is no drive",
     )
 
 
@@ -86,16 +121,37 @@ class VehicleConfig(Section):
         "M of the controller's M s'' + alpha s' = u; a profile may know it",
         gt=0,
         le=1e6,
+        least=10.0,
+        because="the lightest vehicle is a scooter of some 10 kg, the heaviest a train",
     )
-    friction: float = option(100.0, "N.s/m", "alpha of it; likewise", ge=0, le=1e6)
+    friction: float = option(
+        100.0,
+        "N.s/m",
+        "alpha of it; likewise",
+        ge=0,
+        le=1e6,
+        because="it slows a vehicle down, and a faster decay than a step is none",
+    )
     exact: bool = option(
         False, None, "the bundled FMU solves exactly instead of by the paper's forward Euler"
     )
     length: float | None = option(
-        None, "m", "body length; none: 5 m, or SUMO's when taken over", gt=0, le=50
+        None,
+        "m",
+        "body length; none: 5 m, or SUMO's when taken over",
+        gt=0,
+        le=50,
+        least=0.1,
+        because="the shortest vehicle is a robot, the longest a tram",
     )
     width: float | None = option(
-        None, "m", "body width; none: 2 m, or SUMO's when taken over", gt=0, le=10
+        None,
+        "m",
+        "body width; none: 2 m, or SUMO's when taken over",
+        gt=0,
+        le=10,
+        least=0.1,
+        because="the narrowest vehicle is a scooter, the widest a machine on a field",
     )
 
 
@@ -103,7 +159,13 @@ class CrowdConfig(Section):
     """The pedestrians that giveway adds: how many, where, where to and how fast."""
 
     pedestrians: int = option(
-        0, "persons", "pedestrians to add", flag="--pedestrians", ge=0, le=20_000
+        0,
+        "persons",
+        "pedestrians to add",
+        flag="--pedestrians",
+        ge=0,
+        le=20_000,
+        because="nobody fits more of them round one vehicle",
     )
     spawn_area: Rectangle = option(
         (23.3, -23.4, 33.2, -12.0),
@@ -117,18 +179,34 @@ class CrowdConfig(Section):
     two_sided: bool = option(
         False, None, "every second pedestrian comes from the other side", flag="--two-sided"
     )
-    desired_speed_mean: float = option(1.394, "m/s", "mean desired speed", gt=0, le=2.5)
-    desired_speed_sd: float = option(0.26, "m/s", "its standard deviation", ge=0, le=2)
-    desired_speed_min: float = option(0.5, "m/s", "its lower truncation", gt=0, le=2.5)
-    desired_speed_max: float = option(2.2, "m/s", "its upper truncation", gt=0, le=2.5)
+    desired_speed_mean: float = option(
+        1.394, "m/s", "mean desired speed", gt=0, le=2.5, least=0.01, because=WALKING
+    )
+    desired_speed_sd: float = option(
+        0.26,
+        "m/s",
+        "its standard deviation",
+        ge=0,
+        le=2,
+        because="the speeds of people who walk are closer to each other",
+    )
+    desired_speed_min: float = option(
+        0.5, "m/s", "its lower truncation", gt=0, le=2.5, least=0.01, because=WALKING
+    )
+    desired_speed_max: float = option(
+        2.2, "m/s", "its upper truncation", gt=0, le=2.5, least=0.01, because=WALKING
+    )
     acceleration_noise: float = option(
         0.0,
         "m/s^2",
         "random acceleration in each step (standard deviation per axis, cut off at twice that)",
         ge=0,
         le=5,
+        because="the model's people accelerate with 5 m/s^2 at most",
     )
-    minimum_spacing: float = option(0.5, "m", "no two start closer than this", ge=0, le=10)
+    minimum_spacing: float = option(
+        0.5, "m", "no two start closer than this", ge=0, le=10, least=MILLIMETRE, because=GAP
+    )
     host_edge: str = option(
         "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"
     )
@@ -146,13 +224,24 @@ class CrowdConfig(Section):
         flag="--zone",
     )
     zone_margin: float = option(
-        5.0, "m", "they are handed back to SUMO this far outside the zone", ge=0, le=1e4
+        5.0,
+        "m",
+        "they are handed back to SUMO this far outside the zone",
+        ge=0,
+        le=1000,
+        least=MILLIMETRE,
+        because="it keeps people from changing hands at the edge, some steps wide",
     )
     walls: bool = option(
         False,
         None,
         "the edges of sidewalks, crossings and walkingareas hold people back",
         flag="--walls",
+    )
+    detour: bool = option(
+        True,
+        None,
+        "people see the way round a standing car; else they may walk into its side and stay there",
     )
 
     @model_validator(mode="after")
@@ -162,6 +251,16 @@ class CrowdConfig(Section):
         x_min, y_min, x_max, y_max = self.spawn_area
         if not (x_min < x_max and y_min < y_max):
             raise ValueError("spawn_area: expected x_min < x_max and y_min < y_max [m]")
+        if min(x_max - x_min, y_max - y_min) < _NEAREST:
+            raise ValueError(
+                f"spawn_area: {x_max - x_min:g} by {y_max - y_min:g} m: expected sides of at least "
+                f"{_NEAREST:g} m: a body has to fit"
+            )
+        if 0.0 < math.hypot(*self.walk) < _NEAREST:
+            raise ValueError(
+                f"walk = {self.walk}: expected at least {_NEAREST:g} m, or 0,0 for people who "
+                "stand: a shorter way is no walk"
+            )
         if not self.desired_speed_min <= self.desired_speed_mean <= self.desired_speed_max:
             raise ValueError(
                 "desired_speed_mean: expected between desired_speed_min and _max [m/s]"
@@ -173,10 +272,16 @@ class TrafficConfig(Section):
     """What SUMO's own vehicles know of the pedestrians that giveway moves."""
 
     yielding: bool = option(
-        True, None, "SUMO's vehicles brake for pedestrians in their way", flag="--yield"
+        True, None, "SUMO's vehicles brake for pedestrians and egos in their way", flag="--yield"
     )
     yield_distance: float = option(
-        2.0, "m", "they want to stop this far before a pedestrian", ge=0, le=50
+        2.0,
+        "m",
+        "they want to stop this far before a pedestrian",
+        ge=0,
+        le=50,
+        least=MILLIMETRE,
+        because=GAP,
     )
 
 
@@ -184,12 +289,26 @@ class SumoConfig(Section):
     """How SUMO is run, and which of its own outputs are wanted."""
 
     step_length: float | None = option(
-        None, "s", "SUMO's step; none: the scenario's own", gt=0, le=60
+        None,
+        "s",
+        "SUMO's step; none: the scenario's own",
+        gt=0,
+        le=60,
+        least=0.001,
+        because=SUMO_TIME,
     )
     seed: SumoSeed = option(
         "scenario", None, "SUMO's seed: a number, 'scenario' (its own) or 'run' (the run's)"
     )
-    end: float | None = option(None, "s", "SUMO's end; none: the scenario's own", gt=0, le=1e7)
+    end: float | None = option(
+        None,
+        "s",
+        "SUMO's end; none: the scenario's own",
+        gt=0,
+        le=1e7,
+        least=0.001,
+        because=SUMO_TIME,
+    )
     fcd: bool = option(False, None, "write SUMO's floating car data", flag="--fcd")
     tripinfo: bool = option(False, None, "write SUMO's trip information", flag="--tripinfo")
     ssm: bool = option(False, None, "write SUMO's surrogate safety measures", flag="--ssm")
@@ -203,10 +322,21 @@ class RecordConfig(Section):
     """How densely trajectories are recorded, and what counts as a stop."""
 
     near: float = option(
-        50.0, "m", "who is this near to an ego is recorded at every control step", ge=0, le=1e6
+        50.0,
+        "m",
+        "who is this near to an ego is recorded at every control step",
+        ge=0,
+        le=1e6,
+        because="no network is larger",
     )
     far_period: float = option(
-        1.0, "s", "everybody else is recorded once in this time", gt=0, le=1e6
+        1.0,
+        "s",
+        "everybody else is recorded once in this time",
+        gt=0,
+        le=1e6,
+        least=0.001,
+        because="no step is shorter",
     )
     predictions: float | None = option(
         None,
@@ -214,5 +344,15 @@ class RecordConfig(Section):
         "keep the predicted positions this far apart in look-ahead; none: keep none",
         gt=0,
         le=1e3,
+        least=0.001,
+        because="no step is shorter",
     )
-    stop_speed: float = option(0.2, "m/s", "a stop of the ego: it is slower than this", gt=0, le=20)
+    stop_speed: float = option(
+        0.2,
+        "m/s",
+        "a stop of the ego: it is slower than this",
+        gt=0,
+        le=5,
+        least=0.001,
+        because="who is faster does not stand",
+    )

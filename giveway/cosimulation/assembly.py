@@ -1,15 +1,16 @@
 """From a configuration to the parts of a run, each set up and at its initial state."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
+from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.presets import parameters_of
 from giveway.cosimulation.departures import Departures
-from giveway.cosimulation.preflight import substeps_of
+from giveway.cosimulation.preflight import CheckedRun, substeps_of
 from giveway.cosimulation.yielding import Yielding
 from giveway.crowd.exchange import Exchange
 from giveway.crowd.roster import Roster
@@ -17,7 +18,7 @@ from giveway.crowd.spawn import PREFIX, Spawned, spawn
 from giveway.crowd.zone import Zone
 from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_remark
-from giveway.ego.waiting import make_waiting_ego
+from giveway.ego.waiting import WaitingEgo, make_waiting_ego
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.scenario_files import StartOptions, free_prefix
@@ -31,15 +32,7 @@ from pedestrian_model import (
     PedestrianModelError,
     Surroundings,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from contextlib import ExitStack
-    from pathlib import Path
-
-    from giveway.config import EgoRunConfig, RunConfig
-    from giveway.cosimulation.preflight import CheckedRun
-    from giveway.ego.waiting import WaitingEgo
+from sumo_scenarios import available
 
 
 @dataclass(frozen=True)
@@ -58,15 +51,13 @@ class Parts:
     exchange: Exchange | None  # None: the scenario's own pedestrians stay SUMO's
     surroundings: Surroundings
     yielding: Yielding | None  # None: background vehicles do not yield to pedestrians
+    net_file: Path  # the scenario's network
     remarks: tuple[str, ...]  # what the user should know
 
     @property
     def all_remarks(self) -> tuple[str, ...]:
         """The remarks, with those that came up during the run."""
-        remarks = [
-            f"ego '{name}': its {count} stop(s) are left out; the vehicle FMU drives on"
-            for name, count in self.sumo.vehicles.dropped_stops.items()
-        ]
+        remarks = list(self.departures.remarks)
         identified = [model_remark(ego.config, self.time_step) for ego in self.egos]
         remarks += [text for text in identified if text]
         remarks += [f"ego '{ego.id}': {text}" for ego in self.egos for text in ego.vehicle.warnings]
@@ -108,7 +99,11 @@ def assemble(
     moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
     sumo = stack.enter_context(
         SumoSession(
-            files, _start_options(config, moved, outputs), _types(egos), native_log=native_log
+            files,
+            _start_options(config, moved, outputs),
+            _types(egos),
+            native_log=native_log,
+            careful=config.scenario not in available(),
         )
     )
     substeps = substeps_of(time_step, sumo.step_length)
@@ -134,7 +129,7 @@ def assemble(
             walls=config.crowd.walls,
         )
     yielding = None
-    if config.traffic.yielding and (len(roster) or walkers):
+    if config.traffic.yielding and (len(roster) or walkers or egos):
         yielding = Yielding(sumo.vehicles, sumo.step_length, config.traffic.yield_distance)
     return Parts(
         config=config,
@@ -145,10 +140,13 @@ def assemble(
         egos=waiting,
         departures=departures,
         roster=roster,
-        crowd_model=CrowdModel(parameters_of(config.crowd.preset), time_step),
+        crowd_model=CrowdModel(
+            parameters_of(config.crowd.preset), time_step, detour=config.crowd.detour
+        ),
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
         yielding=yielding,
+        net_file=files.net_file,
         remarks=tuple(remarks),
     )
 

@@ -1,29 +1,35 @@
-"""When each ego enters the road, and how: inserted by us, or taken over as it departs."""
+"""When each ego enters the road, and how: inserted by us or by SUMO, or taken over as it departs.
 
-from __future__ import annotations
+An ego that is to be inserted enters at its time if there is room for it. Otherwise SUMO inserts it,
+by its own check, as soon as there is, and it is taken over there.
+"""
 
 import difflib
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
 
 from giveway.config.sections import DEFAULT_SPEED
+from giveway.cosimulation.room import Entry, has_room
+from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
+from giveway.ego.stops import Stop, Stops
+from giveway.ego.waiting import WaitingEgo
 from giveway.errors import ConfigError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
+from giveway.geometry.overlap import rectangles_overlap
 from giveway.geometry.path import EgoPath
-from giveway.scenario_files import declares, undeclared
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from pathlib import Path
-
-    from giveway.ego.waiting import WaitingEgo
-    from giveway.sumo.lanes import LanePath
-    from giveway.sumo.session import SumoSession
-    from giveway.sumo.vehicles import VehicleState
+from giveway.scenario_files import declares, flows_due, undeclared
+from giveway.sumo.lanes import LanePath
+from giveway.sumo.session import SumoSession
+from giveway.sumo.vehicles import VehicleState
 
 LONGEST_WAIT = 86_400.0  # [s] for a departure in a scenario that never ends
+LONGEST_WAIT_FOR_ROOM = 300.0  # [s] after which an ego that finds none ends the run
 _ON_THE_LINE = 0.01  # [m]
 _MERGE = 20.0  # [m] along which a vehicle beside its lane's centre line joins it
 _NAMES_KEPT = 100_000  # of vehicles that departed, to guess what was meant
@@ -57,6 +63,10 @@ class Departures:
                 self._require_undeclared(ego.id)
         self._departed: dict[str, None] = dict.fromkeys(session.vehicles.present())
         self._paths = {ego.id: self._path_of_inserted(ego) for ego in egos if not ego.taken_over}
+        self._begin = session.time
+        self._blocked: dict[str, float] = {}  # [s] since when an ego lacks room
+        self._queued: set[str] = set()  # egos that SUMO is to insert
+        self.remarks: list[str] = []  # what the user should know
 
     def _require_declared(self, name: str) -> None:
         """Refuse to wait for a vehicle that no file declares."""
@@ -120,9 +130,12 @@ class Departures:
         """The egos that enter the road now."""
         if not self.waiting:
             return []
-        ready = [ego for ego in self.waiting if self._is_due(ego)]
-        self.waiting = [ego for ego in self.waiting if ego not in ready]
-        return [self._enter(ego) for ego in ready]
+        entered: list[Ego] = []
+        for waiting in self.waiting[:]:
+            if self._is_due(waiting, entered):
+                self.waiting.remove(waiting)
+                entered.append(self._enter(waiting))
+        return entered
 
     def require_all(self) -> None:
         """Make sure that every ego has departed.
@@ -133,16 +146,107 @@ class Departures:
         if self.waiting:
             raise ScenarioError(self._never(self.waiting[0]))
 
-    def _is_due(self, ego: WaitingEgo) -> bool:
-        if not ego.taken_over:
-            return self._session.time >= ego.config.ego.depart_time - 1e-9
+    def _is_due(self, ego: WaitingEgo, entered: Sequence[Ego] = ()) -> bool:
+        """Whether an ego enters the road now; ``entered``: those that do so at this instant."""
+        if ego.taken_over or ego.id in self._queued:
+            return self._is_free_to_take(ego)
+        if self._session.time < ego.config.ego.depart_time - 1e-9:
+            return False
+        if self._has_room(ego, entered):
+            return True
+        self._blocked[ego.id] = self._session.time
+        self._queue(ego)
+        return False
+
+    def _is_free_to_take(self, ego: WaitingEgo) -> bool:
+        """Whether SUMO has the vehicle on a road, and nobody overlaps it.
+
+        Raises:
+            ScenarioError: it has had no room for too long.
+        """
+        vehicles, now = self._session.vehicles, self._session.time
+        there = ego.id in self._departed and ego.id in vehicles.present()
+        if there and vehicles.on_a_road(ego.id) and not self._overlapped(ego):
+            return True
+        if there and ego.id not in self._blocked and self._overlapped(ego):
+            self._blocked[ego.id] = now
+        if now - self._blocked.get(ego.id, now) >= LONGEST_WAIT_FOR_ROOM:
+            raise ScenarioError(self._no_room(ego))
+        return False
+
+    def _overlapped(self, ego: WaitingEgo) -> bool:
+        """Whether another vehicle on the road overlaps the one that is to be taken over."""
+        vehicles = self._session.vehicles
+        state, others = vehicles.state(ego.id), vehicles.everybody_but(ego.id)
+        if not others.ids:
+            return False
+        shape = _shape_of(ego, state)
+        body = np.array([state.x, state.y, state.heading, shape.length, shape.width])
+        touched = np.flatnonzero(rectangles_overlap(body, others.bodies))
+        return any(not vehicles.parked(others.ids[i]) for i in touched)
+
+    def _has_room(self, ego: WaitingEgo, entered: Sequence[Ego]) -> bool:
+        """Whether an ego that is to be inserted can enter now, and SUMO inserts nobody there."""
+        entry, session = self._entry(ego), self._session
+        if not has_room(entry, session.vehicles, entered):
+            return False
+        edge = ego.config.ego.route[0]
+        near = {edge, *ego.config.ego.route[:2], *session.lanes.edges_before(edge)}
+        if near & session.vehicles.edges_of_entry({other.id for other in entered}):
+            return False
+        starts = flows_due(
+            session.start.read, session.time - session.step_length, session.time, self._begin
+        )
+        edges = (start.edge or session.vehicles.first_edge(start.route) for start in starts)
+        return not any(not first or first in near for first in edges)
+
+    def _entry(self, ego: WaitingEgo) -> Entry:
+        path, lane_path = self._paths[ego.id]
+        config = ego.config
+        return Entry(
+            path,
+            lane_path.first,
+            config.ego.depart_position,
+            _shape_of(ego, BODY),
+            _initial_speed(ego),
+            config.mpc.force_limit / config.vehicle.mass,
+        )
+
+    def _queue(self, ego: WaitingEgo) -> None:
+        """Let SUMO insert the ego."""
+        entry = self._entry(ego)
+        self._session.vehicles.queue(
+            ego.id,
+            ego.config.ego.route,
+            lane=entry.lane,
+            position=entry.station,
+            speed=entry.speed,
+        )
+        self._queued.add(ego.id)
+
+    def _no_room(self, ego: WaitingEgo) -> str:
+        since = self._blocked[ego.id]
+        if ego.id not in self._queued:
+            return (
+                f"--ego {ego.id}: other vehicles overlap it ever since {since:.12g} s; it is not "
+                f"taken over later than {LONGEST_WAIT_FOR_ROOM:g} s after; name another vehicle"
+            )
+        entry = self._entry(ego)
         return (
-            ego.id in self._departed
-            and ego.id in self._session.vehicles.present()
-            and self._session.vehicles.on_a_road(ego.id)
+            f"ego '{ego.id}': no room on lane '{entry.lane}' at {entry.station:g} m for "
+            f"{entry.speed:g} m/s within {LONGEST_WAIT_FOR_ROOM:g} s from {since:.12g} s on; "
+            "let it depart elsewhere (--ego-depart-position, --ego-lane, --ego-route), at another "
+            "time (--ego-depart-time) or as fast as the traffic (--ego-initial-speed)"
         )
 
     def _never(self, ego: WaitingEgo) -> str:
+        if ego.id in self._queued:
+            return (
+                f"ego '{ego.id}': {self._config_file} ends at {self._session.time:.12g} s, and "
+                f"from {self._blocked[ego.id]:.12g} s on there was no room for it; let it depart "
+                "at another time (--ego-depart-time) or elsewhere (--ego-depart-position, "
+                "--ego-route)"
+            )
         if not ego.taken_over:
             departure = ego.config.ego.depart_time
             return (
@@ -200,11 +304,11 @@ class Departures:
     # --- entering -----------------------------------------------------------------------------
 
     def _enter(self, ego: WaitingEgo) -> Ego:
-        if ego.taken_over:
+        if ego.taken_over or ego.id in self._queued:
             return self._take_over(ego)
-        settings, vehicle = ego.config.ego, ego.config.vehicle
+        settings = ego.config.ego
         path, lane_path = self._paths[ego.id]
-        speed = DEFAULT_SPEED if settings.initial_speed is None else settings.initial_speed
+        speed = _initial_speed(ego)
         self._session.vehicles.insert(
             ego.id,
             settings.route,
@@ -212,22 +316,69 @@ class Departures:
             position=settings.depart_position,
             speed=speed,
         )
-        shape = VehicleShape(vehicle.length or BODY.length, vehicle.width or BODY.width)
+        shape = _shape_of(ego, BODY)
         return self._on_the_road(ego, path, lane_path, settings.depart_position, shape, speed)
 
     def _take_over(self, ego: WaitingEgo) -> Ego:
-        state = self._session.vehicles.state(ego.id)
-        vehicle = ego.config.vehicle
-        shape = VehicleShape(vehicle.length or state.length, vehicle.width or state.width)
+        vehicles = self._session.vehicles
+        state = vehicles.state(ego.id)
+        shape = _shape_of(ego, state)
+        stops = vehicles.stops(ego.id)
+        keep = ego.config.ego.keep_stops
+        serves = state.kind in SERVING if keep is None else keep
+        places = placed(stops, state) if serves else {}
         lane_path = self._session.lanes.along(
-            state.edges, state.lane, kind=state.kind, start=state.lane_position
+            state.edges,
+            state.lane,
+            kind=state.kind,
+            start=state.lane_position,
+            by=lanes_of(places, stops),
         )
-        path, departure, lights = _joined(lane_path, state)
+        path, departure, joined = _joined(lane_path, state)
         self._require_room(ego, path, departure)
-        self._session.vehicles.adopt(state, shape)
+        if ego.taken_over:
+            vehicles.adopt(state, shape)
+        else:
+            vehicles.claim(ego.id)
+        self._remark_on_wait(ego)
+        self._remark_on_stops(ego, len(places), len(stops))
         speed = ego.config.ego.initial_speed
         speed = state.speed if speed is None else speed
-        return self._on_the_road(ego, path, lights, departure, shape, speed)
+        return self._on_the_road(
+            ego,
+            path,
+            joined,
+            departure,
+            shape,
+            speed,
+            on_path(places, stops, path, joined, self._session.lanes),
+        )
+
+    def _remark_on_wait(self, ego: WaitingEgo) -> None:
+        """Say how long the ego has waited for room, if it has."""
+        if ego.id not in self._blocked:
+            return
+        since, now = self._blocked[ego.id], self._session.time
+        waited = f"{now - since:.12g} s later, at {now:.12g} s"
+        if ego.taken_over:
+            text = f"overlapped another vehicle at {since:.12g} s; it was taken over {waited}"
+        else:
+            place = f"on lane '{self._entry(ego).lane}'"
+            text = f"there was no room {place} at {since:.12g} s; SUMO inserted it {waited}"
+        self.remarks.append(f"ego '{ego.id}': {text}")
+
+    def _remark_on_stops(self, ego: WaitingEgo, served: int, stops: int) -> None:
+        """Say what becomes of the stops of a vehicle that is taken over."""
+        if served:
+            self.remarks.append(
+                f"ego '{ego.id}': it halts at {served} stop(s) for the scenario's times; nobody "
+                "boards or alights"
+            )
+        if stops > served:
+            self.remarks.append(
+                f"ego '{ego.id}': its {stops - served} stop(s) are left out; the vehicle FMU "
+                "drives on"
+            )
 
     def _on_the_road(
         self,
@@ -237,15 +388,18 @@ class Departures:
         departure: float,
         shape: VehicleShape,
         speed: float,
+        stops: Sequence[Stop] = (),
     ) -> Ego:
         config = ego.config
+        hardest = config.mpc.force_limit / config.vehicle.mass
         ego.start(speed)
         goal = config.ego.travel_distance
         lights = Lights(
             lane_path.lights if config.regulation.traffic_lights else (),
             comfortable=config.regulation.comfortable_deceleration,
-            hardest=config.mpc.force_limit / config.vehicle.mass,
+            hardest=hardest,
         )
+        halts = Stops(stops, clock=self._session.time, time_step=self._time_step, hardest=hardest)
         return Ego(
             ego,
             path,
@@ -254,6 +408,7 @@ class Departures:
             lights,
             path.length - departure if goal is None else goal,
             self._time_step,
+            halts if stops else None,
         )
 
 
@@ -272,4 +427,25 @@ def _joined(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, L
     joined = EgoPath.through([(state.x, state.y), *beside])
     shift = joined.length - (path.length - station)
     lights = [light._replace(station=light.station - station + shift) for light in lane_path.lights]
-    return joined, 0.0, type(lane_path)(joined.vertices, tuple(lights))
+    return (
+        joined,
+        0.0,
+        replace(
+            lane_path,
+            points=joined.vertices,
+            lights=tuple(lights),
+            edges=tuple(begin - station + shift for begin in lane_path.edges),
+        ),
+    )
+
+
+def _shape_of(ego: WaitingEgo, own: VehicleShape | VehicleState) -> VehicleShape:
+    """The ego's body: as wanted, or its ``own``."""
+    vehicle = ego.config.vehicle
+    return VehicleShape(vehicle.length or own.length, vehicle.width or own.width)
+
+
+def _initial_speed(ego: WaitingEgo) -> float:
+    """The speed [m/s] at which an ego that is inserted departs."""
+    speed = ego.config.ego.initial_speed
+    return DEFAULT_SPEED if speed is None else speed

@@ -5,25 +5,18 @@ its position along them changes in every step. So the lanes' polylines are kept 
 by all vehicles with the same lanes ahead, and the kernels cut them where each vehicle is.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.passage import look
+from giveway.sumo.vehicles import SumoVehicles
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from giveway.geometry.kernel import Array
-    from giveway.sumo.vehicles import SumoVehicles
-
-    Indices = NDArray[np.int64]
+Indices = NDArray[np.int64]
 
 _REACH = 2.0  # times the present sight: a vehicle that accelerates still finds its lanes known
 _LEAST_REACH = 100.0  # [m] of lane path are known at least

@@ -14,32 +14,26 @@ lag of one sample: position and speed do not depend on the force instantaneously
 algebraic loop.
 """
 
-from __future__ import annotations
-
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from controller import ControllerError
 from fmus import FmuError
+from giveway.cosimulation.assembly import Parts
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.standstill import Standstill
 from giveway.crowd.disturbance import disturbance_of
+from giveway.crowd.reachable import spawn_remark, way_of
+from giveway.ego.ego import Ego
 from giveway.errors import ControlError, CrowdError, VehicleError
-from giveway.processes.heartbeat import Phase
+from giveway.geometry.kernel import Array
+from giveway.processes.heartbeat import INSTANT, MILLISECONDS, PHASE, Phase
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
 from pedestrian_model import PedestrianModelError, arrived
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.cosimulation.assembly import Parts
-    from giveway.ego.ego import Ego
-    from giveway.geometry.kernel import Array
-    from giveway.processes.interrupts import DeferredInterrupt
-    from giveway.recording.recorder import Recorder
-
 
 ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
 
@@ -72,12 +66,14 @@ class Loop:
     def __init__(self, parts: Parts, recorder: Recorder) -> None:
         self._parts = parts
         self._recorder = recorder
-        self._beat = recorder.journal.heartbeat
+        heartbeat = recorder.journal.heartbeat
+        self._pulse, self._instant = heartbeat.slots, heartbeat.instant
         self._start = parts.sumo.time
         self._time_step = parts.time_step
         self._k = 0
         self._roster = parts.roster
         self._egos: list[Ego] = []
+        self._ways: list[Array] = []  # (k, 2) [m] of each ego that has departed
         self.endings = {}
         self.remarks = []
         self._standstill = Standstill()
@@ -106,6 +102,7 @@ class Loop:
             raise CrowdError(self._blame(error)) from error
         for ego in self._egos:
             self.endings.setdefault(ego.id, ending)
+            self._remark_on_missed_stops(ego)
         if ending in {Ending.SCENARIO_END, Ending.TIME_LIMIT}:
             self._parts.departures.require_all()
         return ending
@@ -176,6 +173,10 @@ class Loop:
             self._egos += arrivals
             for ego in arrivals:
                 self._recorder.drive(ego.id, ego.shape, ego.goal)
+                end = ego.departure + ego.goal
+                self._ways.append(way_of(ego.path.vertices, ego.path.stations, ego.departure, end))
+            if arrivals and parts.config.crowd.pedestrians and not parts.departures.waiting:
+                self._remark_on_spawn_area()
         if parts.exchange is not None:
             parts.exchange.update(self._places())
         self._mirror.read(self._egos, self._roster.crowd.position)
@@ -185,9 +186,21 @@ class Loop:
                 ego.lights.update(states, ego.front, ego.vehicle.speed)
         background, yielding = self._mirror.background, parts.yielding
         if yielding is not None and (background.ids or yielding.limited):
-            yielding.update(background, self._roster.crowd)
+            yielding.update(background, self._roster.crowd, self._egos)
         self._record_background()
         self._recorder.ledger(self._roster.ledger)
+
+    def _remark_on_spawn_area(self) -> None:
+        """Say so if the added pedestrians start where no ego comes by."""
+        remark = spawn_remark(self._parts.config.crowd, self._ways, self._parts.net_file)
+        self.remarks += [remark] if remark else []
+
+    def _remark_on_missed_stops(self, ego: Ego) -> None:
+        if ego.stops is not None and ego.stops.missed:
+            self.remarks.append(
+                f"ego '{ego.id}': it drove past {ego.stops.missed} of its stops, which were too "
+                "near to halt at"
+            )
 
     def _places(self) -> Array:
         """(e, 2) [m] the egos' front bumpers."""
@@ -202,8 +215,10 @@ class Loop:
     def _control(self) -> str:
         """Decide on every ego's force, and record the instant."""
         time = self._start + self._k * self._time_step
-        self._beat.step(self._k, time)
-        self._beat.beat(Phase.CONTROLLING)
+        instant, pulse = self._instant, self._pulse
+        instant[0], instant[1] = self._k, round(time * MILLISECONDS)
+        pulse[INSTANT] = instant
+        pulse[PHASE] = Phase.CONTROLLING
         recorder, mirror = self._recorder, self._mirror
         recorder.instant(time)
         mirror.place(self._egos)
@@ -268,6 +283,7 @@ class Loop:
             if not ego.arrived:
                 continue
             self.endings[ego.id] = Ending.COMPLETED
+            self._remark_on_missed_stops(ego)
             self._mirror.drop(self._egos.index(ego))
             self._egos.remove(ego)
             if self._egos or self._parts.departures.waiting:
@@ -276,15 +292,15 @@ class Loop:
     def _advance(self) -> None:
         parts, mirror = self._parts, self._mirror
         recorded_at = perf_counter()
-        self._beat.beat(Phase.VEHICLE)
+        self._pulse[PHASE] = Phase.VEHICLE
         for ego in self._egos:
             ego.advance()
         vehicle_at = perf_counter()
-        self._beat.beat(Phase.CROWD)
+        self._pulse[PHASE] = Phase.CROWD
         self._step_crowd()
         crowd_at = perf_counter()
         self._k += 1
-        self._beat.beat(Phase.SUMO)
+        self._pulse[PHASE] = Phase.SUMO
         if self._k % parts.substeps:
             mirror.carry_on()
         else:

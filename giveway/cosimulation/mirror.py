@@ -1,27 +1,19 @@
 """The exchange with SUMO: poses of background vehicles in, positions of pedestrians out."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
+from giveway.crowd.roster import Roster
+from giveway.ego.ego import Ego
 from giveway.errors import CrowdError, VehicleError
-from giveway.geometry.angles import angle_of_velocity
 from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.passage import SIGHT
+from giveway.geometry.path import angle_of_velocity
 from giveway.sumo.background import NO_VEHICLES, BackgroundVehicles
+from giveway.sumo.session import SumoSession
 from pedestrian_model import Vehicles
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import NDArray
-
-    from giveway.crowd.roster import Roster
-    from giveway.ego.ego import Ego
-    from giveway.sumo.session import SumoSession
-
 
 _INFLUENCE_RANGE = 10.0  # [m] from a vehicle's contour: the influence is exp(-26) of the strongest
 _NOSE = 1.5  # [s] the contour's nose is no longer than this times the speed

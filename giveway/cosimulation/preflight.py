@@ -1,22 +1,16 @@
 """The one check before a run: what is wrong with a request is said before anything is loaded."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from giveway.config import EgoRunConfig, RunConfig
+from giveway.config.presets import require_steady_preset
 from giveway.crowd.zone import Zone
 from giveway.ego.vehicle import require_vehicles
 from giveway.errors import ConfigError
-from giveway.scenario_files import read_scenario
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from giveway.config import EgoRunConfig, RunConfig
-    from giveway.scenario_files import ScenarioFiles
-    from sumo_scenarios import Scenario
+from giveway.scenario_files import ScenarioFiles, read_scenario
+from sumo_scenarios import Scenario
 
 LONGEST_STEP = 0.05  # [s] of the co-simulation: the paper's, and what the crowd is stable at
 
@@ -47,7 +41,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
 
     Raises:
         ScenarioError: a file of the scenario is missing or cannot be read.
-        ConfigError: the zone is none, or two egos have the same id.
+        ConfigError: the zone is none, two egos have the same id, or people would tremble.
         VehicleError: a vehicle FMU cannot be read, or its profile does not fit.
     """
     files = read_scenario(scenario.config_file)
@@ -57,6 +51,10 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
     _require_distinct(egos)
     time_step = control_step(config, files)
     require_vehicles(egos, time_step)
+    require_steady_preset(config.crowd.preset, time_step, "[crowd] preset")
+    for ego in egos:
+        if ego.perception.preset:
+            require_steady_preset(ego.perception.preset, time_step, "[perception] preset")
     return CheckedRun(config, scenario, files, egos, zone, time_step)
 
 

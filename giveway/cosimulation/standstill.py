@@ -1,13 +1,8 @@
 """Ends a scenario without an end in which no ego moves any more."""
 
-from __future__ import annotations
+from collections.abc import Sequence
 
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from giveway.ego.ego import Ego
+from giveway.ego.ego import Ego
 
 LONGEST = 3600.0  # [s] without a move
 _MOVED = 0.1  # [m] from which on an ego has moved

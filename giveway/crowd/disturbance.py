@@ -1,20 +1,12 @@
 """A random acceleration on top of the model's: pedestrians walk as no model predicts."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
+from giveway.config import RunConfig
 from giveway.crowd.noise import planar_noise
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.config import RunConfig
-    from giveway.geometry.kernel import Array
-    from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles
-
+from giveway.geometry.kernel import Array
+from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles
 
 _STREAM = 0xACC  # tells these draws from others of the same seed
 

@@ -1,25 +1,17 @@
 """Who of the scenario's walkers joins our crowd, and who goes back to SUMO."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
-from giveway.sumo.persons import Arrival
+from giveway.crowd.roster import Roster
+from giveway.crowd.zone import Zone
+from giveway.geometry.kernel import Array
+from giveway.sumo.persons import Arrival, Person
+from giveway.sumo.session import SumoSession
+from giveway.walkways import WalkNetwork
 from pedestrian_model import Crowd, Surroundings, Walls
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from giveway.crowd.roster import Roster
-    from giveway.crowd.zone import Zone
-    from giveway.geometry.kernel import Array
-    from giveway.sumo.persons import Person
-    from giveway.sumo.session import SumoSession
-    from giveway.walkways import WalkNetwork
-
 
 HANDED_BACK_WITHIN = 3.0  # [m] of the middle of a lane for pedestrians, or SUMO makes them jump
 _CLOSED = frozenset("rRyYus")  # states of a crossing's light at which pedestrians wait

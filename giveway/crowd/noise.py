@@ -1,13 +1,7 @@
 """Random numbers with an end: what physics or a proof bounds must not have normal tails."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from numpy.typing import NDArray
 
 BOUND = 2.0
 """Standard deviations at which the normal distribution is cut off, on each axis."""

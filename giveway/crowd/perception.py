@@ -3,18 +3,13 @@
 Prediction and control work on what is seen here; tables and metrics on the truth.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.config import EgoRunConfig
 from giveway.crowd.noise import planar_noise
-
-if TYPE_CHECKING:
-    from giveway.config import EgoRunConfig
-    from pedestrian_model import Crowd
+from pedestrian_model import Crowd
 
 _STREAM = 0x5EE  # tells these draws from others of the same seed
 

@@ -1,19 +1,13 @@
 """The pedestrians of a run, drawn from its seed: where each starts, goes, and how fast."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from giveway.config.sections import CrowdConfig
 from giveway.errors import CrowdError
-
-if TYPE_CHECKING:
-    from giveway.config.sections import CrowdConfig
-    from giveway.geometry.kernel import Array
-    from giveway.geometry.path import EgoPath, Pose
-
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath, Pose
 
 _REDRAWS = 1_000
 _ATTEMPTS_PER_PERSON = 2_000  # rejection sampling up to a third of the densest packing

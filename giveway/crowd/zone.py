@@ -1,25 +1,21 @@
 """The zone in which the scenario's own walkers follow the VCI model."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from giveway.errors import ConfigError
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.geometry.kernel import Array
-
+from giveway.geometry.kernel import Array
 
 _EXPECTED = (
     "expected metres round each ego (like 50), 'everywhere', 'none', or a polygon of at least "
     "three corners 'x,y x,y x,y' [m] in network coordinates"
 )
+
+_SMALLEST, _LARGEST = 0.1, 1e6  # [m] radii
+_FARTHEST = 1e7  # [m] a corner; beyond it a millimetre is lost in rounding
 
 
 class Zone:
@@ -49,8 +45,8 @@ class Zone:
         except ValueError:
             numbers = []
         if len(numbers) == 1 and 0.0 < numbers[0] < math.inf:
-            self._radius = numbers[0]
-        elif len(numbers) >= 6 and len(numbers) % 2 == 0 and np.isfinite(numbers).all():
+            self._radius = _radius(text, numbers[0])
+        elif len(numbers) >= 6 and len(numbers) % 2 == 0 and np.abs(numbers).max() <= _FARTHEST:
             self._inner = _polygon(text, numbers)
             self._outer = self._inner.union(self._inner.buffer(margin))  # which may be rounded away
             shapely.prepare((self._inner, self._outer))
@@ -104,6 +100,15 @@ class Zone:
             d_x, d_y = points[:, 0] - x, points[:, 1] - y
             inside |= d_x * d_x + d_y * d_y <= radius * radius
         return inside
+
+
+def _radius(text: str, radius: float) -> float:
+    if not _SMALLEST <= radius <= _LARGEST:
+        raise ConfigError(
+            f"--zone '{text}': expected {_SMALLEST:g} to {_LARGEST:g} m: less holds no person, and "
+            "no network is larger; nobody is 'none', everybody 'everywhere'"
+        )
+    return radius
 
 
 def _polygon(text: str, numbers: list[float]) -> shapely.Polygon:

@@ -1,16 +1,12 @@
 """What scenario files contain, counted while their bytes are read: cheap on files of any size."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 
 from giveway.scenario_files.reading import pieces
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 _DEMAND = re.compile(rb"<(vehicle|trip|flow|person|personFlow|tlLogic)[\s>]")
 _REMOTE = re.compile(rb"\b(?:file|href|dest|output|imgFile)\s*=\s*[\"'](https?://[^\"']{1,200})")

@@ -1,16 +1,15 @@
 """The installation: versions, SUMO, FMU, solver, compiler, folders, terminal."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
 import tomllib
+from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 from packaging.requirements import InvalidRequirement, Requirement
@@ -20,9 +19,6 @@ from fmus import FmuError, VehicleFmu, bundled_fmu
 from giveway._environment import check_rooms, kernel_cache
 from giveway.doctor.finding import Finding, error, note, ok, warning
 from giveway.errors import InstallationError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 _ENOUGH_SPACE = 1e9  # [bytes] for the results of a study
 _OLDEST_PYTHON = (3, 11)

@@ -1,9 +1,9 @@
 """Checks of a scenario: whether its files are there, what they contain, what a run would do."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Final
+from collections import Counter
+from pathlib import Path
+from typing import Final
 
 from giveway.doctor.contents import Contents, read_contents
 from giveway.doctor.finding import Finding, error, note, ok, warning
@@ -13,10 +13,6 @@ from giveway.errors import ScenarioError as UnusableScenario
 from giveway.scenario_files import STRIPING, ScenarioFiles, read_scenario
 from giveway.scenario_files.outputs import is_file
 from sumo_scenarios import ScenarioError, find
-
-if TYPE_CHECKING:
-    from collections import Counter
-    from pathlib import Path
 
 _CONTROL_STEP: Final = 0.05  # [s] at most; a run takes the longest step that divides SUMO's
 _NETWORK_VERSION: Final = (1, 20)  # what SUMO 1.28's netconvert writes
@@ -51,7 +47,10 @@ def examine_scenario(scenario: str | Path, patience: float = PATIENCE) -> list[F
                 findings.append(error("files", text, "replace it by a whole one"))
     findings += [*_network(files, network, demand), *_demand(network, demand), *_time(files)]
     findings += [*_settings(files), *_remote(files, network, demand)]
-    return findings + try_in_sumo(files.config_file, patience)
+    people = demand.persons > 0
+    return findings + try_in_sumo(
+        files.config_file, patience, people=people, net_file=files.net_file
+    )
 
 
 def _missing(files: ScenarioFiles) -> list[Finding]:

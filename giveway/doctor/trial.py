@@ -1,31 +1,44 @@
 """The probe of a scenario as its parent process sees it, also if SUMO crashes or hangs."""
 
-from __future__ import annotations
-
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
 from giveway.doctor.finding import Finding, error, note, ok, warning
+from giveway.doctor.meetings import meetings
+from giveway.errors import GivewayError
 from giveway.processes.causes import cause_of_end
+from giveway.walkways import WalkNetwork, beside
 
 PATIENCE: Final = 120.0  # [s] for loading and a moment's running
 _HOUSE: Final = Path(__file__).resolve().parents[2]
 _SHOWN: Final = 12  # edges of a route
 
 
-def try_in_sumo(config_file: Path, patience: float = PATIENCE) -> list[Finding]:
+def try_in_sumo(
+    config_file: Path,
+    patience: float = PATIENCE,
+    *,
+    people: bool = False,
+    net_file: Path | None = None,
+) -> list[Finding]:
     """Let SUMO load the scenario and run it for a moment, in a process of its own.
 
     Args:
         config_file: the .sumocfg.
         patience: how long to wait [s].
+        people: the scenario has people of its own: find out who meets them.
+        net_file: its network; None: no place for people of the user's own is looked for.
     """
     # -P: a controller.py in the user's folder must not come before giveway's own.
     command = [sys.executable, "-P", "-m", "giveway.sumo.probe", str(config_file)]
+    command += ["--people"] if people else []
     ours = os.pathsep.join(filter(None, (str(_HOUSE), os.environ.get("PYTHONPATH"))))
     try:
         result = subprocess.run(
@@ -43,10 +56,16 @@ def try_in_sumo(config_file: Path, patience: float = PATIENCE) -> list[Finding]:
         return [error("SUMO", text, f"see where it waits: sumo -c {config_file}")]
     except OSError as problem:
         return [error("SUMO", f"no process can be started ({problem})", "free some memory")]
-    return judged(config_file, result)
+    return judged(config_file, result, people=people, net_file=net_file)
 
 
-def judged(config_file: Path, result: subprocess.CompletedProcess[str]) -> list[Finding]:
+def judged(
+    config_file: Path,
+    result: subprocess.CompletedProcess[str],
+    *,
+    people: bool = False,
+    net_file: Path | None = None,
+) -> list[Finding]:
     """The findings from what the probe left: an exit code, JSON, SUMO's messages."""
     if result.returncode < 0:
         name = cause_of_end(result.returncode)
@@ -62,7 +81,10 @@ def judged(config_file: Path, result: subprocess.CompletedProcess[str]) -> list[
         text = f"SUMO refuses the scenario: {_reasons(result.stderr, seen['refused'])}"
         return [error("SUMO", text, f"correct it; sumo -c {config_file} says the same")]
     findings = [*_loaded(seen), *_warnings(result.stderr, seen["copies"]), *_outputs(seen)]
-    return [*findings, *_remarks(seen), *_egos(seen)]
+    findings += [*_remarks(seen), *_egos(seen)]
+    if people:
+        return findings + meetings(config_file, seen)
+    return findings + _people_of_your_own(config_file, seen, net_file)
 
 
 def _reasons(stderr: str, refused: str) -> str:
@@ -125,3 +147,19 @@ def _egos(seen: dict[str, Any]) -> list[Finding]:
     return [
         note("ego", f"first to depart: {named}", f"--ego={first}, or --ego-route={route}"),
     ]
+
+
+def _people_of_your_own(
+    config_file: Path, seen: dict[str, Any], net_file: Path | None
+) -> list[Finding]:
+    """Where added pedestrians would cross the first vehicle's way."""
+    if net_file is None or len(seen["way"]) < 2:
+        return []
+    try:
+        place = beside(np.array(seen["way"]), WalkNetwork.read(net_file))
+    except GivewayError:
+        return []  # the finding on the network says what is wrong with it
+    first = next(iter(seen["vehicles"]))
+    text = f"added pedestrians can cross the way of {first}"
+    remedy = f"giveway run {shlex.quote(str(config_file))} --ego={shlex.quote(first)}"
+    return [note("spawn area", text, f"{remedy} --pedestrians 20 {place.flags}")]

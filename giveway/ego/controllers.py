@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from controller import (
+    Controller,
     ControllerError,
     LongitudinalModel,
     ManoeuvreParameters,
@@ -21,17 +23,13 @@ from controller import (
     TunedPid,
     TunedPidParameters,
 )
+from giveway.config import EgoRunConfig
+from giveway.config.option import Section
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ControlError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from _typeshed import DataclassInstance
-
-    from controller import Controller
-    from giveway.config import EgoRunConfig
-    from giveway.config.option import Section
 
 Parameters = TypeVar("Parameters", bound="DataclassInstance")
 

@@ -6,20 +6,12 @@ path, at that instant. A vehicle is in front if a part of its outline is. If not
 only beyond the sight of 100 m along the path, the distance is infinite.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from giveway.ego.leader import Leader, vehicles_in_front
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.passage import BEHIND, SIGHT, look, window
-from giveway.geometry.path import body_pose
-
-if TYPE_CHECKING:
-    from giveway.geometry.kernel import Array
-    from giveway.geometry.path import EgoPath
+from giveway.geometry.path import EgoPath, body_pose
 
 
 class Corridor:

@@ -1,41 +1,38 @@
 """One vehicle that giveway drives: its FMU, its controller, its path."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from controller import Observation
+from controller import Decision, Observation
 from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight
 from giveway.ego.leader import NO_LEADER, Leader
+from giveway.ego.lights import Lights
 from giveway.ego.path_view import PathView
 from giveway.ego.safety import Guard
+from giveway.ego.stops import Stops
+from giveway.ego.waiting import WaitingEgo
 from giveway.errors import ControlError, VehicleError
-from giveway.records.rows import EgoRow
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from controller import Decision
-    from giveway.ego.lights import Lights
-    from giveway.ego.waiting import WaitingEgo
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.geometry.kernel import Array
-    from giveway.geometry.path import EgoPath, Pose
-    from pedestrian_model import Crowd, Surroundings
-
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath, Pose
+from giveway.records.rows import STOP_SPEED, EgoRow
+from pedestrian_model import Crowd, Surroundings
 
 _KEPT = 0.5  # [m] before the safe distance at which the approach to a vehicle ends
 _BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
 _RECOVERY = 2.0  # [s] in which a lost safe distance is to be regained
+_REACTION = 1.0  # [s] in which a planning controller follows a leader's speed (Gipps 1981)
 _STRAIGHT = (
     1.0  # [s] for which other vehicles are predicted straight on; beyond it the road may bend
 )
+_NEAR = 3.0  # [m] in addition to the distance kept: what is so near is what the ego stands for
+_FREE = ("clear", "drive on")  # reasons of a planning controller that sees nobody in its way
 _PREDICT_ALL = 150  # pedestrians; of a larger crowd only those that matter to the ego are predicted
 
 
@@ -44,7 +41,7 @@ class Seen(NamedTuple):
 
     pedestrian: float  # station [m] of the closest pedestrian in front; inf: none
     leader: Leader
-    stop: float  # station [m] where a red light wants the front bumper; inf: none
+    stop: float  # station [m] where a red light or a stop wants the front bumper; inf: none
     ahead: Array  # (N,) stations [m] of the closest obstacle at steps 1 ... N
     predicted: Array | None  # (N, n, 2) [m] positions at steps 1 ... N, until the next look
     relevant: NDArray[np.bool_] | None  # (n,) who has been predicted; None: the whole crowd
@@ -68,6 +65,7 @@ class Ego:
         lights: the traffic lights on its path.
         goal: the FMU's position [m] at which it is done.
         time_step: [s].
+        stops: that it serves; None: none.
     """
 
     def __init__(
@@ -79,6 +77,7 @@ class Ego:
         lights: Lights,
         goal: float,
         time_step: float,
+        stops: Stops | None = None,
     ) -> None:
         config = waiting.config
         self._controller, self._predictor = waiting.controller, waiting.predictor
@@ -89,6 +88,7 @@ class Ego:
         self.departure = departure
         self.shape = shape
         self.lights = lights
+        self.stops = stops
         self.goal = goal
         self.vehicle = waiting.vehicle
         half_width = config.regulation.corridor_half_width
@@ -114,6 +114,11 @@ class Ego:
         self._force = 0.0
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
+        # A planning controller follows with a headway, and plans no hard stop for a little less of
+        # the distance to a vehicle that it keeps on the average.
+        plans = waiting.controller.foresees
+        self._lag = config.regulation.comfortable_deceleration * _REACTION if plans else 0.0
+        self._tolerated = config.regulation.safe_distance / 2 if plans else 0.0
         self._heed_lights = config.regulation.traffic_lights and bool(lights.systems)
 
     def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
@@ -193,12 +198,14 @@ class Ego:
         leader, stop = NO_LEADER, math.inf
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
-            ahead = np.minimum(ahead, vehicles)
+            ahead = np.minimum(ahead, vehicles + self._tolerated)
         if self._heed_lights:
             stop = self.lights.stop_at(front, speed)
-            if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
-                allowed = stop + _BEYOND + self._origin
-                ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
+        if self.stops is not None:
+            stop = min(stop, self.stops.stop_at(front, speed))
+        if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
+            allowed = stop + _BEYOND + self._origin
+            ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
         return Seen(
             pedestrian,
             leader,
@@ -299,7 +306,10 @@ class Ego:
             v = seen.leader.speed
             room = seen.leader.station - self.front - self._origin - regulation.safe_distance
             room -= _KEPT
-            behind = math.sqrt(v * v + 2.0 * b * room) if room > 0.0 else v + room / _RECOVERY
+            if room <= 0.0:
+                behind = v + room / _RECOVERY
+            else:
+                behind = math.sqrt(v * v + 2.0 * b * room + self._lag**2) - self._lag
             limit = min(limit, max(0.0, behind))
         return limit
 
@@ -307,6 +317,8 @@ class Ego:
         """Step the FMU with the force decided on."""
         self._pose = None
         self.vehicle.step(self._force)
+        if self.stops is not None:
+            self.stops.pass_time(self.front, self.vehicle.speed)
 
     def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
         """The row of this instant for the tables."""
@@ -326,5 +338,30 @@ class Ego:
             decision.acting,
             decision.reason,
             decision.status,
+            self._waits_for(seen, decision),
             decision.iterations,
         )
+
+    def _waits_for(self, seen: Seen, decision: Decision) -> str:
+        """What the ego stands for; empty while it drives, and when it drives off."""
+        speed, front = self.vehicle.speed, self.front
+        if speed >= STOP_SPEED:
+            return ""
+        kept = front + self._origin + self.config.regulation.safe_distance
+        place, cause = min(
+            (seen.pedestrian - kept, "person"),
+            (seen.leader.station - kept, "vehicle"),
+            (seen.stop - front, "light"),
+        )
+        if place <= _NEAR:
+            stops = self.stops
+            if cause == "light" and stops is not None and stops.stop_at(front, speed) <= seen.stop:
+                return "stop"
+            return cause
+        if decision.acting == "safety":
+            return "person"
+        if seen.ahead.size and seen.ahead.min() - kept <= 0.0:
+            return "vehicle" if seen.predicted is None else "person"
+        if decision.force > 0.0:
+            return ""
+        return "none" if decision.reason in _FREE else "plan"

@@ -1,26 +1,18 @@
 """What a manoeuvre would lead to: the crowd predicted under it, as seen from the ego."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from controller import Prospect
+from controller import Manoeuvre, Prospect
 from giveway.ego.corridor import closest_in_front, fill_poses
 from giveway.ego.threats import Alarm, conflicts_and_calm
-from giveway.geometry.kernel import kernel
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.passage import window
-from giveway.geometry.path import body_pose
+from giveway.geometry.path import EgoPath, body_pose
 from giveway.metrics.conflicts import CRITICAL_TTC
-
-if TYPE_CHECKING:
-    from controller import Manoeuvre
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.geometry.kernel import Array
-    from giveway.geometry.path import EgoPath
-    from pedestrian_model import Crowd, Predictor, Surroundings
-
+from pedestrian_model import Crowd, Predictor, Surroundings
 
 PASSED = 0.3  # [m] behind the front bumper pedestrians still count as in front, being squeezed by
 _EVERY = 2  # steps from one search for conflicts to the next

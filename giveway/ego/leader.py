@@ -1,20 +1,16 @@
 """The closest vehicle in front, as :mod:`giveway.ego.corridor` defines what is in front."""
 
-from __future__ import annotations
-
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.passage import BEHIND, SIGHT, look, window
 from giveway.geometry.path import body_pose, project, segment_at
 
-if TYPE_CHECKING:
-    from giveway.geometry.kernel import Array
-
 _ONCOMING = -0.8  # cosine of the angle to the ego's path there
+_PARALLEL = 0.95  # likewise: 18 degrees, as a body in a bend lies askew
 _OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
 _FINEST_OUTLINE = 0.1  # [m] and at least
 
@@ -77,9 +73,9 @@ def vehicles_in_front(
 
     A vehicle that is in the corridor now is predicted to follow the path at its present speed, any
     other to go straight on for ``straight`` steps. So one ahead in a bend stays ahead, and one
-    from the side arrives. Beyond these steps oncoming vehicles are predicted to keep to their own
-    lane. A vehicle in the corridor behind the front bumper stays behind: it does not drive through
-    the ego.
+    from the side arrives. Where N is longer than these steps, vehicles along the path beside it,
+    the same way or oncoming, are predicted to keep to their own lane. A vehicle in the corridor
+    behind the front bumper stays behind: it does not drive through the ego.
     """
     N = ahead.shape[0]
     first, last = window(stations, front, BEHIND)
@@ -104,8 +100,9 @@ def vehicles_in_front(
         if straight < N:
             nearest_to_it, _ = project(vertices, stations, vehicle[0], vehicle[1])
             i = segment_at(stations, nearest_to_it)
-            if np.cos(vehicle[2] - headings[i]) < _ONCOMING:
-                continue  # it is on the oncoming lane, which bends as ours does
+            aligned = np.cos(vehicle[2] - headings[i])
+            if aligned < _ONCOMING or aligned > _PARALLEL:
+                continue  # it is on a lane beside ours, which bends as ours does
         reach = min(N, straight) * (advance + abs(vehicle[3]) * time_step) + size + half_width
         if away > reach:
             continue  # it cannot meet the ego within the horizon

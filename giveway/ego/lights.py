@@ -1,14 +1,9 @@
 """The traffic lights on the ego's path: where it has to stop, if anywhere."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from giveway.sumo.lanes import Light
+from giveway.sumo.lanes import Light
 
 STOP_BEFORE = 1.0  # [m] before the line the front bumper is to stand
 _RED = frozenset("rRus")  # red, red with yellow, red with a green arrow (after a stop)

@@ -1,15 +1,9 @@
 """An ego's path as its controller sees it: from the front bumper on, computed when asked for."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from giveway.geometry.kernel import Array
-    from giveway.geometry.path import EgoPath
-
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath
 
 _HALF = 2.5  # [m] before and behind a place, whose mean headings give the curvature there
 

@@ -1,24 +1,15 @@
 """The safety layer of one ego on its path."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from controller import LongitudinalModel, SafetyLayer, SafetyParameters
-from giveway.geometry.kernel import kernel
-from giveway.geometry.path import body_pose, segment_at
-
-if TYPE_CHECKING:
-    from controller import Decision
-    from giveway.config import EgoRunConfig
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.geometry.kernel import Array
-    from giveway.geometry.path import EgoPath
-    from pedestrian_model import Crowd
-
+from controller import Decision, LongitudinalModel, SafetyLayer, SafetyParameters
+from giveway.config import EgoRunConfig
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.path import EgoPath, body_pose, segment_at
+from pedestrian_model import Crowd
 
 _FINEST = 0.25  # [m] between poses: a chord of a bend of 5 m radius is 1.6 mm off
 _MOST = 256  # poses

@@ -1,17 +1,11 @@
 """Pedestrians about to collide with the ego, and speeds at which none could make it stop hard."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from giveway.geometry.contact import contact_interval, to_frame
-from giveway.geometry.kernel import kernel
-
-if TYPE_CHECKING:
-    from giveway.geometry.kernel import Array
-
+from giveway.geometry.kernel import Array, kernel
 
 _SLOW = 0.2  # [m/s] the ego is no danger (Yang & Özgüner 2019: a standing vehicle is an obstacle)
 _HALVINGS = 5  # of the interval in which the calm speed is looked for

@@ -1,11 +1,11 @@
 """An ego's vehicle FMU: from the configuration to one that is ready to start."""
 
-from __future__ import annotations
-
 import dataclasses
+from collections.abc import Sequence
+from contextlib import ExitStack
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any
 
 from fmus import (
     FmuError,
@@ -22,29 +22,21 @@ from fmus import (
     read_profile,
 )
 from fmus.checking import convergence, goes_the_wrong_way, opener_of, remedy
-from fmus.profile.vehicle_profile import Axis
-from giveway.config import RunConfig
-from giveway.config.sections import DEFAULT_SPEED
+from fmus.profile.advice import gain_line
+from fmus.profile.vehicle_profile import Axis, FittedModel
+from giveway.config import EgoRunConfig, RunConfig
+from giveway.config.sections import BUNDLED_VEHICLES, DEFAULT_SPEED, VehicleConfig
 from giveway.errors import VehicleError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from contextlib import ExitStack
-
-    from fmus.profile.vehicle_profile import FittedModel
-    from giveway.config import EgoRunConfig
-    from giveway.config.sections import VehicleConfig
 
 _CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
 _SAME_STEP = 1e-6  # relative
 _OTHER_SIZE = 2.0  # times as heavy, or as light, as the defaults' car
 _sound: set[tuple[str, str, float, float, float]] = set()  # what has passed in this process
-_BUNDLED: dict[str, Literal["2.0", "3.0"]] = {"fmi2": "2.0", "fmi3": "3.0"}
 
 
 def fmu_path(settings: VehicleConfig) -> Path:
     """The .fmu file that a configuration names."""
-    version = _BUNDLED.get(settings.fmu)
+    version = BUNDLED_VEHICLES.get(settings.fmu)
     return Path(settings.fmu) if version is None else bundled_fmu(version)
 
 
@@ -138,7 +130,7 @@ def _require_sound(
     try:
         result = convergence(
             opener_of(path, step_size=time_step, profile=profile),
-            profile.fmu.step or time_step,
+            prepare(path, step_size=time_step, profile=profile).pace.step,
             force=force,
             start_speed=speed,
         )
@@ -152,7 +144,7 @@ def _require_sound(
         role = next(role for role, axis in profile.inputs if isinstance(axis, Axis))
         raise FmuOutputError(
             f"{path}: a force forwards slows it down, and one backwards does not; turn the sign: "
-            f"add the line gain = -1.0 to [inputs.{role}], or to [outputs.speed]"
+            f"write {gain_line(profile, 'inputs', role, -1.0, '')}, or in [outputs.speed]"
         )
     _sound.add(key)
 

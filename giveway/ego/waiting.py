@@ -1,24 +1,16 @@
 """An ego before it departs: its vehicle FMU is loaded, its controller is set up."""
 
-from __future__ import annotations
-
+from contextlib import ExitStack
 from dataclasses import dataclass
 from math import inf, sqrt
-from typing import TYPE_CHECKING
 
-from controller import SafetyParameters
-from fmus import FmuError
+from controller import Controller, SafetyParameters
+from fmus import FmuError, Vehicle
+from giveway.config import EgoRunConfig
 from giveway.config.presets import parameters_of
 from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
 from giveway.errors import VehicleError
 from pedestrian_model import Predictor
-
-if TYPE_CHECKING:
-    from contextlib import ExitStack
-
-    from controller import Controller
-    from fmus import Vehicle
-    from giveway.config import EgoRunConfig
 
 _WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut off at two of them in x and in y
 
@@ -99,7 +91,8 @@ def make_waiting_ego(
     except FmuError as error:
         raise VehicleError(str(error)) from error
     ahead = controller.horizon
-    predictor = Predictor(expected, time_step, ahead) if ahead else None
+    detour = config.crowd.detour
+    predictor = Predictor(expected, time_step, ahead, detour=detour) if ahead else None
     fastest = max(crowd.max_speed, expected.max_speed)
     safety = safety_parameters(config, time_step) if config.safety_layer else None
     return WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety)

@@ -1,23 +1,18 @@
 """The influence figure: the force by which the vehicle keeps a standing pedestrian away."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
+from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.quiver import Quiver
 from numpy.typing import NDArray
 
 from giveway.figures.style import BLACK, BLUE, keep_panels, styled
 from giveway.geometry.bodies import VehicleShape
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.contour import QuadContourSet
-    from matplotlib.quiver import Quiver
 
 Influence = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
 """Points (k, 2) [m] and the vehicle's speed [m/s] to the forces (k, 2) [N] on persons there."""

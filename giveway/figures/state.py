@@ -4,11 +4,12 @@ After the state figure of Yang & Özgüner 2019 (section 5): one column per run,
 the left and the PID on the right.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -26,12 +27,6 @@ from giveway.figures.style import (
     styled,
 )
 from giveway.records.tracks import EgoTrack
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
 
 VEHICLE: dict[str, Any] = {"color": GREY, "linewidth": 1.2, "label": "distance to vehicle"}
 RED_LIGHT: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "label": "distance to red light"}

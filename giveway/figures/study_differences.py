@@ -4,27 +4,22 @@ A picture has a row per context and a column per situation. Bars on the side whe
 is better are blue, those on the other orange; pairs without any difference stand at zero, in grey.
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator, NullLocator
+from numpy.typing import NDArray
 
 from giveway.figures.study_rows import PUBLISHED, digits_for, number, pretty_unit, wrapped
 from giveway.figures.style import BLACK, BLUE, GREY, ORANGE, quiet_grid, styled
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from numpy.typing import NDArray
 
 BINS = 48
 TAIL = 2.5  # [%] of the differences at either end that the picture may leave out

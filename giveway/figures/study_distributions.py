@@ -1,13 +1,14 @@
 """How a study's runs are spread, cell by cell: quartiles, tails and mean of each metric."""
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from giveway.figures.study_rows import (
     LABEL_WIDTH,
@@ -19,13 +20,6 @@ from giveway.figures.study_rows import (
     wrapped,
 )
 from giveway.figures.style import BLACK, GREY, styled
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-    from numpy.typing import NDArray
 
 WHISKERS = (5.0, 25.0, 50.0, 75.0, 95.0)  # [%]
 

@@ -1,11 +1,12 @@
 """Forest plot: mean differences with their intervals, per context, situation and metric."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -19,12 +20,6 @@ from giveway.figures.study_rows import (
     wrapped,
 )
 from giveway.figures.style import BLACK, BLUE, GREEN, GREY, VERMILION, styled
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
 
 LOOKS = {  # colour and marker
     "general": (BLUE, "o"),

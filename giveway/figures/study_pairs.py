@@ -3,12 +3,12 @@
 After figure 5 of Yang & Özgüner 2019 (MPC on the left, PID on the right).
 """
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -22,14 +22,7 @@ from giveway.figures.state import (
 )
 from giveway.figures.study_rows import wrapped
 from giveway.figures.style import BLACK, BLUE, GREEN, GREY, quiet_grid, styled
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
-
-    from giveway.records.tracks import EgoTrack
+from giveway.records.tracks import EgoTrack
 
 
 @dataclass(frozen=True)

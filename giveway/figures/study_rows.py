@@ -1,13 +1,12 @@
 """What the pictures of a study share: colours of levels, rows with headings, numbers as text."""
 
-from __future__ import annotations
-
 import math
 import textwrap
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 
 from giveway.figures.style import (
     BLUE,
@@ -19,11 +18,6 @@ from giveway.figures.style import (
     VERMILION,
     quiet_grid,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
 
 LEVEL_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY_BLUE)
 PUBLISHED = PURPLE

@@ -1,18 +1,13 @@
 """Trade-off between time and distance: one point per cell, intervals both ways."""
 
-from __future__ import annotations
-
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from giveway.figures.study_rows import with_unit, wrapped
 from giveway.figures.style import GREY, quiet_grid, styled
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
 
 SAME_PLACE = 0.05  # of the picture's width and height
 

@@ -3,12 +3,10 @@
 After the screenshots figure of Yang & Özgüner 2019 (section 5).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
@@ -17,13 +15,9 @@ from numpy.typing import NDArray
 
 from giveway.figures.style import BLACK, GREY, LIGHT_GREY, VERMILION, keep_panels, styled
 from giveway.figures.view import Box
+from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.groups import PedestrianGroups
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack
+from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack
 
 Road = Sequence[NDArray[np.float64]]
 """Lines (k, 2) [m] to draw underneath; one that ends where it starts is a filled area."""

@@ -1,12 +1,12 @@
 """Predictions against recorded trajectories: growth of the error, tracks, where errors are made."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
@@ -25,14 +25,7 @@ from giveway.figures.style import (
     quiet_grid,
     styled,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from matplotlib.axes import Axes
-
-    from giveway.geometry.kernel import Array
-
+from giveway.geometry.kernel import Array
 
 _LOOKS: dict[str, tuple[str, Any]] = {  # of each predictor in every picture
     "VCI": (BLUE, "-"),

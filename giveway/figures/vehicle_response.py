@@ -1,12 +1,13 @@
 """How a vehicle FMU responds: the picture of a check, and that of an identification."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
+from fmus.checking import CheckReport, Identification, Trace
 from fmus.checking.actuator import mean_force
 from fmus.checking.prediction import position_errors, simulate
 from giveway.figures.style import (
@@ -18,12 +19,6 @@ from giveway.figures.style import (
     quiet_grid,
     styled,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from numpy.typing import NDArray
-
-    from fmus.checking import CheckReport, Identification, Trace
 
 DASHES = (0, (4, 2))
 MODEL: dict[str, Any] = {"color": BLACK, "linewidth": 0.9, "linestyle": DASHES, "zorder": 4}

@@ -1,7 +1,5 @@
 """The outlines of vehicles."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

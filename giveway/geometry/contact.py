@@ -5,8 +5,6 @@ the left. A circle of radius R touches the rectangle exactly when its centre lie
 grown by R (the Minkowski sum: a rectangle with rounded corners), so the circle becomes a point.
 """
 
-from __future__ import annotations
-
 from math import hypot, inf, sqrt
 
 from giveway.geometry.kernel import kernel

@@ -3,8 +3,6 @@
 The type of the arrays that they take stands here, too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
 

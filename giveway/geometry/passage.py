@@ -1,7 +1,5 @@
 """Where a path passes a point."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from giveway.geometry.kernel import Array, kernel

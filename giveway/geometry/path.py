@@ -2,21 +2,21 @@
 
 A *station* is the arc length [m] along the polyline; the ego's station is that of the centre of
 its front bumper, which is also SUMO's reference point of a vehicle. Beyond its ends the path goes
-on straight.
+on straight. A *heading* is in radians, counter-clockwise from +x; SUMO's navigational *angle* is in
+degrees, 0 is north, clockwise.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array, kernel
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 
 class Pose(NamedTuple):
@@ -154,3 +154,30 @@ def project(vertices: Array, stations: Array, x: float, y: float) -> tuple[float
             if e_x * d_y - e_y * d_x < 0.0:
                 best_lateral = -best_lateral
     return best_station, best_lateral
+
+
+def heading_to_angle(heading: float) -> float:
+    """The navigational angle [deg] of a heading [rad]."""
+    return (90.0 - math.degrees(heading)) % 360.0
+
+
+def angle_to_heading(angle: float) -> float:
+    """The heading [rad] of a navigational angle [deg]."""
+    return math.radians(90.0 - angle)
+
+
+def angles_to_headings(angles: Array) -> Array:
+    """The headings (n,) [rad] of navigational angles (n,) [deg]."""
+    headings: Array = np.radians(90.0 - angles)
+    return headings
+
+
+def headings_to_angles(headings: Array) -> Array:
+    """The navigational angles (n,) [deg] of headings (n,) [rad], as tables keep them: rounded."""
+    return np.mod(np.round(90.0 - np.degrees(headings), 6), 360.0)
+
+
+@kernel
+def angle_of_velocity(v_x: float, v_y: float) -> float:
+    """The navigational angle [deg] into which a velocity points."""
+    return float((90.0 - np.degrees(np.arctan2(v_y, v_x))) % 360.0)

@@ -5,12 +5,13 @@ from giveway.metrics.contacts import FRONTAL, NO_CONTACT, SIDE, contacts
 from giveway.metrics.encroachment import post_encroachment_time
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS, pedestrian_metrics
 from giveway.metrics.summary import (
-    STOP_SPEED,
     SUMMARY_FIELDS,
     Summary,
     summarise,
     waiting_times,
 )
+from giveway.metrics.vehicles import VehicleContact, vehicle_contacts
+from giveway.records.rows import STOP_SPEED
 
 __all__ = [
     "CRITICAL_TTC",
@@ -23,11 +24,13 @@ __all__ = [
     "Critical",
     "Proximity",
     "Summary",
+    "VehicleContact",
     "conflicts",
     "contacts",
     "pedestrian_metrics",
     "post_encroachment_time",
     "proximity",
     "summarise",
+    "vehicle_contacts",
     "waiting_times",
 ]

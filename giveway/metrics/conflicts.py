@@ -4,23 +4,17 @@ The ego is its true rectangle, a pedestrian a circle of ``body_radius``; both ar
 control instants. Lengths in m, times in s.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from math import cos, inf, sin
-from typing import TYPE_CHECKING, NamedTuple
+from math import cos, inf, nan, sin
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.contact import contact_interval, signed_distance, to_frame
 from giveway.geometry.kernel import kernel
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.records.tracks import CrowdTrack, EgoTrack
-
+from giveway.records.tracks import CrowdTrack, EgoTrack
 
 CRITICAL_TTC = 1.5
 """[s] Below it an encounter is a conflict: the threshold of SSAM (Gettman & Head 2003, FHWA), in
@@ -91,10 +85,12 @@ class Critical:
     Attributes:
         pedestrians: how many pedestrians had one.
         share: of the control instants at which somebody had one.
+        minimum_ttc: [s] the smallest time to collision with the moving ego; nan if there is none.
     """
 
     pedestrians: int
     share: float
+    minimum_ttc: float = nan
 
 
 def conflicts(
@@ -115,11 +111,14 @@ def conflicts(
         ValueError: a record points outside the ego's track.
     """
     ttc = proximity(ego, crowd, shape, body_radius).time_to_collision
-    critical = (ttc < CRITICAL_TTC) & (ego.speed[crowd.step] > stop_speed)
+    moving = ego.speed[crowd.step] > stop_speed
+    critical = (ttc < CRITICAL_TTC) & moving
+    soonest = float(ttc[moving].min(initial=inf))
     instants = np.unique(crowd.step[critical]).size
     return Critical(
         pedestrians=int(np.unique(crowd.pedestrian[critical]).size),
         share=instants / ego.time.size if ego.time.size else 0.0,
+        minimum_ttc=soonest if soonest < inf else nan,
     )
 
 

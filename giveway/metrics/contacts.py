@@ -4,13 +4,12 @@ The ego is answerable for the pedestrians that it drives into, not for those who
 or into it while it stands. The rule, and its odd cases, stand in docs/results.md.
 """
 
-from __future__ import annotations
-
 from math import inf
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import kernel
 from giveway.metrics.conflicts import (
@@ -21,12 +20,7 @@ from giveway.metrics.conflicts import (
     contact_body,
 )
 from giveway.metrics.groups import PedestrianGroups
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.records.tracks import CrowdTrack, EgoTrack
 
 NO_CONTACT = ""
 SIDE = "side"

@@ -1,12 +1,11 @@
 """Post-encroachment time: how narrowly ego and pedestrian missed each other in time."""
 
-from __future__ import annotations
-
 from math import hypot, inf, nan
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import kernel
 from giveway.metrics.conflicts import (
@@ -17,12 +16,7 @@ from giveway.metrics.conflicts import (
     contact_body,
 )
 from giveway.metrics.groups import PedestrianGroups
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.records.tracks import CrowdTrack, EgoTrack
 
 BLOCK = 8  # ego instants that are ruled out together
 SECTIONS = 16  # of a control period, to find the smallest separation in it

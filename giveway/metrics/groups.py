@@ -1,15 +1,9 @@
 """The crowd's flat records, gathered by pedestrian."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.records.tracks import CrowdTrack
+from giveway.records.tracks import CrowdTrack
 
 
 class PedestrianGroups:

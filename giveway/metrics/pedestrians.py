@@ -1,23 +1,18 @@
 """One row per pedestrian: how it walked, and how close the ego came to it."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.conflicts import proximity
 from giveway.metrics.contacts import contacts
 from giveway.metrics.encroachment import post_encroachment_time
 from giveway.metrics.groups import PedestrianGroups
 from giveway.records.columns import Quantity, columns_of
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.records.tracks import CrowdTrack, EgoTrack
 
 
 class PedestrianRow:

@@ -1,27 +1,25 @@
 """A run in one row: the numbers by which runs and controllers are compared."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
 
+from giveway.metrics.conflicts import Critical
 from giveway.metrics.contacts import FRONTAL, SIDE
+from giveway.metrics.vehicles import VehicleContact
 from giveway.records.columns import Quantity, columns_of
+from giveway.records.rows import STOP_SPEED
+from giveway.records.tracks import EgoTrack
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import pandas as pd
-    from numpy.typing import NDArray
-
-    from giveway.metrics.conflicts import Critical
-    from giveway.records.tracks import EgoTrack
-
-STOP_SPEED = 0.2
-"""[m/s] Below it the ego stands: Yang & Özgüner 2019, section 2.1, treat it as an obstacle then."""
 SAFETY = "safety"  # the name under which the safety layer acts
+HARD = 4.0
+"""[m/s^2] A harder deceleration is a hard brake: above what passengers who stand can bear."""
+_CAUSE = 15.0  # [m] nobody nearer in front at a hard brake: it has no cause
+_AROUND = 0.5  # [s] before and after its begin in which that is looked for
 
 
 @dataclass(frozen=True)
@@ -80,6 +78,17 @@ class Summary:
     maximum_drac: Annotated[
         float, Quantity("m/s^2", "largest deceleration that the ego needed to spare somebody")
     ]
+    minimum_ttc_moving: Annotated[
+        float, Quantity("s", "smallest time to collision while the ego moved; empty: none")
+    ]
+    vehicle_contacts: Annotated[
+        int, Quantity(None, "background vehicles whose rectangle ever overlapped the ego's")
+    ]
+    vehicle_contact_time: Annotated[float, Quantity("s", "of all background vehicles, added up")]
+    hard_brakes: Annotated[int, Quantity(None, "periods of braking harder than 4 m/s^2")]
+    hard_brakes_without_cause: Annotated[
+        int, Quantity(None, "of these, with nobody, no vehicle and no stop within 15 m in front")
+    ]
 
     def as_dict(self) -> dict[str, bool | int | float]:
         """Names and values, in the order of ``SUMMARY_FIELDS``."""
@@ -98,6 +107,7 @@ def summarise(
     safe_distance: float,
     stop_speed: float = STOP_SPEED,
     controller: str,
+    vehicles: Sequence[VehicleContact] = (),
 ) -> Summary:
     """Summarise a run in one row.
 
@@ -114,6 +124,7 @@ def summarise(
         safe_distance: d_safe [m].
         stop_speed: the ego stands below it [m/s].
         controller: its name; one that begins with "mpc" optimises.
+        vehicles: the background vehicles that it came into contact with.
 
     Raises:
         ValueError: the ego's track is empty.
@@ -125,6 +136,7 @@ def summarise(
     waits = waiting_times(ego, stop_speed)
     jerk = np.diff(ego.acceleration) / np.diff(ego.time)
     clearances = per_pedestrian["minimum_clearance"].to_numpy()
+    brakes = hard_brakes(ego)
     return Summary(
         completed=bool(ego.position[-1] >= goal),
         completion_time=_time_at(ego, goal),
@@ -154,6 +166,11 @@ def summarise(
         share_below_ttc=critical.share,
         minimum_pet=_extreme(per_pedestrian["post_encroachment_time"].to_numpy(), np.min),
         maximum_drac=_extreme(per_pedestrian["maximum_drac"].to_numpy(), np.max),
+        minimum_ttc_moving=critical.minimum_ttc,
+        vehicle_contacts=len(vehicles),
+        vehicle_contact_time=float(sum(contact.duration for contact in vehicles)),
+        hard_brakes=len(brakes),
+        hard_brakes_without_cause=sum(not _has_cause(ego, k) for k in brakes),
     )
 
 
@@ -176,6 +193,23 @@ def waiting_times(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.f
     starts = np.flatnonzero(edges == 1)
     ends = np.minimum(np.flatnonzero(edges == -1), ego.time.size - 1)
     return np.asarray(ego.time[ends] - ego.time[starts], dtype=np.float64)
+
+
+def hard_brakes(ego: EgoTrack) -> NDArray[np.int64]:
+    """The instants at which a deceleration beyond ``HARD`` begins.
+
+    A pause of less than ``_AROUND`` does not end the braking.
+    """
+    hard = np.flatnonzero(ego.acceleration < -HARD)
+    begins = np.diff(ego.time[hard], prepend=-np.inf) > _AROUND
+    return np.asarray(hard[begins], dtype=np.int64)
+
+
+def _has_cause(ego: EgoTrack, k: int) -> bool:
+    """Whether somebody, a vehicle or a stop was within ``_CAUSE`` in front about instant k."""
+    first, last = np.searchsorted(ego.time, (ego.time[k] - _AROUND, ego.time[k] + _AROUND))
+    near = [gap[first : last + 1].min() for gap in (ego.gap, ego.vehicle_gap, ego.stop_gap)]
+    return bool(min(near) <= _CAUSE)
 
 
 def _extreme(

@@ -4,16 +4,11 @@ The supervisor of a run and that of a study's workers both watch a child's heart
 about the end of a child, and how they let a hanging one speak, is the same and stands here.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
 from contextlib import suppress
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from pathlib import Path
 
 _LAST_WORDS = 2.0  # [s] for a hanging process to write its traceback
 WINDOWS_CAUSES = {

@@ -1,7 +1,5 @@
 """The child's half of a supervised run: it says where it stands, and dies with its supervisor."""
 
-from __future__ import annotations
-
 import contextlib
 import faulthandler
 import os
@@ -10,17 +8,14 @@ import sys
 import threading
 import time
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Self
+from typing import IO, Self
 
 from giveway.processes.heartbeat import Heartbeat, Phase
-
-if TYPE_CHECKING:
-    from types import FrameType
+from giveway.processes.interrupts import ENDING, RaisedSignals, exit_code_of
 
 JOURNAL_VARIABLE = "GIVEWAY_JOURNAL"  # names the journal's folder to the child
 TRACEBACK_FILE = "traceback.txt"  # where Python stood when native code died
 STDERR_FILE = "stderr.txt"  # what native code printed, kept here so that its last words are read
-_PATIENCE = 10.0  # [s] after which a second Ctrl-C ends a process that did not heed the first
 _ORPHAN_POLL = 1.0  # [s]
 _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
@@ -32,6 +27,14 @@ def take_journal_folder() -> Path | None:
     """
     folder = os.environ.pop(JOURNAL_VARIABLE, None)
     return Path(folder) if folder and Path(folder).is_dir() else None
+
+
+_supervised = False
+
+
+def is_supervised() -> bool:
+    """Whether another process watches over this one, so that its crash costs one run only."""
+    return _supervised
 
 
 class Supervised:
@@ -48,7 +51,7 @@ class Supervised:
         self._folder = folder
         self._heartbeat = Heartbeat(folder)
         self._traceback: IO[str] | None = None
-        self._interrupted_at: float | None = None
+        self._signals = RaisedSignals(once=True)
 
     def __enter__(self) -> Self:
         if self._folder is None:
@@ -58,8 +61,7 @@ class Supervised:
         with contextlib.suppress(OSError):  # without a traceback the report is only shorter
             self._traceback = (self._folder / TRACEBACK_FILE).open("w", encoding="utf-8")
             faulthandler.enable(self._traceback)
-        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            signal.signal(signal.SIGINT, self._interrupt_once)
+        self._signals.__enter__()  # until this process ends: it may be told to once more
         return self
 
     def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> None:
@@ -67,23 +69,13 @@ class Supervised:
             self._heartbeat.finish(_exit_code(error))
 
     def listen(self) -> None:
-        """Let a Ctrl-C through that the supervisor has held back while Python started.
+        """Let a signal through that the supervisor has held back while Python started.
 
         Raises:
             KeyboardInterrupt: there has been one.
         """
         if self._folder is not None and sys.platform != "win32":
-            signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-
-    def _interrupt_once(self, number: int, frame: FrameType | None) -> None:
-        """Ctrl-C reaches us from the terminal and again from the supervisor: it counts once."""
-        now = time.monotonic()
-        if self._interrupted_at is None:
-            self._interrupted_at = now
-            signal.default_int_handler(number, frame)
-        elif now - self._interrupted_at > _PATIENCE:
-            signal.signal(number, signal.SIG_DFL)
-            signal.raise_signal(number)
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
 
 
 def _exit_code(error: BaseException | None) -> int:
@@ -92,6 +84,8 @@ def _exit_code(error: BaseException | None) -> int:
         return 0
     if isinstance(error, SystemExit):
         return error.code if isinstance(error.code, int) else int(error.code is not None)
+    if isinstance(error, KeyboardInterrupt):
+        return exit_code_of(error)
     return 1
 
 
@@ -105,6 +99,8 @@ def die_with(supervisor: int) -> None:
     Args:
         supervisor: its process id; 0 means that there is none.
     """
+    global _supervised
+    _supervised = bool(supervisor)
     if not supervisor or not hasattr(os, "getppid") or sys.platform == "win32":
         return
     if sys.platform == "linux":

@@ -5,20 +5,17 @@ more than an assignment, so every phase of every control step is told. Nothing h
 since the supervisor has to be there at once.
 """
 
-from __future__ import annotations
-
 import enum
 import mmap
 import struct
-from typing import TYPE_CHECKING, NamedTuple, Self
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from pathlib import Path
+from typing import NamedTuple, Self
 
 HEARTBEAT_FILE = "heartbeat"
 _LAYOUT = struct.Struct("=8q")
-_PHASE, _STEP, _TIME, _CODE, _SUPERVISOR = range(5)  # the slots in use, int64 each
-_MILLISECONDS = 1000.0  # per second: SUMO's own resolution
+PHASE, _STEP, _TIME, _CODE, _SUPERVISOR, _KEEP = range(6)  # the slots in use, int64 each
+INSTANT = slice(_STEP, _TIME + 1)  # stored at once: a kill finds both words or neither
+MILLISECONDS = 1000.0  # per second: SUMO's own resolution
 
 
 class Phase(enum.IntEnum):
@@ -71,14 +68,22 @@ class Heartbeat:
         folder: of the journal; the file is made if there is none. With None the memory is this
             process's own.
 
+    Attributes:
+        slots: the memory, one int64 each. The loop stores into ``slots[PHASE]`` and
+            ``slots[INSTANT]`` itself, which saves it five calls a step.
+        instant: room for step and time, before they are stored.
+
     Raises:
         OSError: the file cannot be made or mapped.
     """
 
+    slots: memoryview
+    instant: memoryview
+
     def __init__(self, folder: Path | None) -> None:
-        self._instant = memoryview(bytearray(16)).cast("q")  # step and time, before they are stored
+        self.instant = memoryview(bytearray(16)).cast("q")  # step and time, before they are stored
         if folder is None:
-            self._slots = memoryview(bytearray(_LAYOUT.size)).cast("q")
+            self.slots = memoryview(bytearray(_LAYOUT.size)).cast("q")
             return
         path = folder / HEARTBEAT_FILE
         # Zeros are written: a store into a hole of a file on a full disk would kill us (SIGBUS).
@@ -86,35 +91,44 @@ class Heartbeat:
             if len(file.read()) < _LAYOUT.size:
                 file.seek(0)
                 file.write(bytes(_LAYOUT.size))
-            self._slots = memoryview(mmap.mmap(file.fileno(), _LAYOUT.size)).cast("q")
+            self.slots = memoryview(mmap.mmap(file.fileno(), _LAYOUT.size)).cast("q")
 
     @classmethod
     def supervised_by(cls, process_id: int, folder: Path) -> Self:
         """A new heartbeat that names its reader."""
         heartbeat = cls(folder)
-        heartbeat._slots[_SUPERVISOR] = process_id
+        heartbeat.slots[_SUPERVISOR] = process_id
         return heartbeat
 
     def beat(self, phase: int) -> None:
         """Tell what is being done from now on."""
-        self._slots[_PHASE] = phase
+        self.slots[PHASE] = phase
 
     def step(self, step: int, time: float) -> None:
         """Tell which control step begins, at which time [s] of SUMO's clock."""
-        instant = self._instant
-        instant[0], instant[1] = step, round(time * _MILLISECONDS)
-        self._slots[_STEP : _TIME + 1] = instant  # at once: a kill finds both words or neither
+        instant = self.instant
+        instant[0], instant[1] = step, round(time * MILLISECONDS)
+        self.slots[INSTANT] = instant
 
     def finish(self, code: int) -> None:
         """Tell that everything has been done, and the exit code: an end without this is a crash."""
-        self._slots[_CODE] = code
-        self._slots[_PHASE] = Phase.DONE
+        self.slots[_CODE] = code
+        self.slots[PHASE] = Phase.DONE
+
+    def keep(self) -> None:
+        """Ask that the journal be kept: its rows have not been written elsewhere."""
+        self.slots[_KEEP] = 1
+
+    @property
+    def kept(self) -> bool:
+        """Whether the journal is to be kept."""
+        return bool(self.slots[_KEEP])
 
     def read(self) -> Pulse:
         """The latest state."""
-        phase, step, time, code, supervisor = self._slots[: _SUPERVISOR + 1].tolist()
+        phase, step, time, code, supervisor = self.slots[: _SUPERVISOR + 1].tolist()
         known = Phase(phase) if phase in _PLACES else Phase.LOADING  # overwritten by a wild pointer
-        return Pulse(known, step, time / _MILLISECONDS, code, supervisor)
+        return Pulse(known, step, time / MILLISECONDS, code, supervisor)
 
 
 class Stillness:

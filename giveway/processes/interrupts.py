@@ -1,27 +1,54 @@
-"""Ctrl-C as a request that the loop honours between two steps.
+"""Ctrl-C, and the other signals by which a user ends a process.
 
-A KeyboardInterrupt raised between a person's moveToXY and SUMO's step would crash the next
-simulation, and one raised inside the recorder would leave half a row.
+In the loop they are requests, honoured between two steps: a KeyboardInterrupt raised between a
+person's moveToXY and SUMO's step would crash the next simulation, and one raised inside the
+recorder would leave half a row. Everywhere else they are raised as exceptions, so that whatever
+is open is closed: temporary folders are removed, and the user reads a line.
 """
-
-from __future__ import annotations
 
 import signal
 import threading
 import time
-from typing import TYPE_CHECKING, Any, Self
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from types import FrameType
+from collections.abc import Iterable
+from types import FrameType
+from typing import Any, Self
 
 PATIENCE = 10.0  # [s] after which a second interrupt acts at once
+ENDING = frozenset(
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+)
+"""By these a user ends a process: Ctrl-C, ``kill``, a terminal that is closed."""
+
+
+class TerminatedError(KeyboardInterrupt):
+    """Somebody has asked this process to end, by a signal other than Ctrl-C's.
+
+    Args:
+        number: of the signal.
+    """
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
+def who_ended(error: KeyboardInterrupt) -> str:
+    """How the user has ended us, in a word or two: "interrupted", or "ended by SIGTERM"."""
+    if isinstance(error, TerminatedError):
+        return f"ended by {signal.Signals(error.number).name}"
+    return "interrupted"
+
+
+def exit_code_of(error: KeyboardInterrupt) -> int:
+    """128 + the signal, as shells have it."""
+    return 128 + (error.number if isinstance(error, TerminatedError) else signal.SIGINT)
 
 
 class SignalHandler:
     """While active, signals are handed to :meth:`handle`; their former handlers come back after it.
 
-    Outside the main thread, where handlers cannot be set, nothing changes.
+    Signals that this process was told to ignore, as nohup does, are still ignored. Outside the
+    main thread, where handlers cannot be set, nothing changes.
 
     Args:
         numbers: of the signals.
@@ -34,7 +61,8 @@ class SignalHandler:
     def __enter__(self) -> Self:
         if threading.current_thread() is threading.main_thread():
             for number in self._numbers:
-                self._previous[number] = signal.signal(number, self.handle)
+                if signal.getsignal(number) is not signal.SIG_IGN:
+                    self._previous[number] = signal.signal(number, self.handle)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -47,15 +75,48 @@ class SignalHandler:
         raise NotImplementedError
 
 
+class RaisedSignals(SignalHandler):
+    """While active, a signal by which the user ends us is raised where the main thread stands.
+
+    Args:
+        once: only the first one is; one that comes ``PATIENCE`` after it acts at once, and those
+            between them do nothing. A terminal tells a supervised process, and so does its
+            supervisor: the second must not disturb the tidying up.
+    """
+
+    def __init__(self, *, once: bool = False) -> None:
+        super().__init__(ENDING)
+        self._once = once
+        self._first: float | None = None
+
+    def handle(self, number: int, frame: FrameType | None) -> None:
+        """Raise.
+
+        Raises:
+            KeyboardInterrupt: it was Ctrl-C.
+            TerminatedError: it was another one.
+        """
+        now = time.monotonic()
+        if self._once and self._first is not None:
+            if now - self._first > PATIENCE:
+                signal.signal(number, signal.SIG_DFL)
+                signal.raise_signal(number)
+            return
+        self._first = now
+        if number == signal.SIGINT:
+            signal.default_int_handler(number, frame)
+        raise TerminatedError(number)
+
+
 class DeferredInterrupt(SignalHandler):
-    """While active, SIGINT and SIGTERM only set :attr:`requested`.
+    """While active, a signal by which the user ends us only sets :attr:`requested`.
 
     So an impatient second Ctrl-C does not cost the rows that are being written. One that comes
     ``PATIENCE`` after the first acts at once: a native call may hang.
     """
 
     def __init__(self) -> None:
-        super().__init__((signal.SIGINT, signal.SIGTERM))
+        super().__init__(ENDING)
         self.requested = False
         self._first = 0.0
 

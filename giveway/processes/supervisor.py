@@ -6,9 +6,8 @@ shares its terminal, waits, and tells what became of it; the rows are in the jou
 nothing heavy, since it only waits.
 """
 
-from __future__ import annotations
-
 import contextlib
+import errno
 import math
 import os
 import shutil
@@ -18,22 +17,21 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from types import FrameType
+from typing import Self
 
 from giveway.processes.causes import WINDOWS_CAUSES, cause_of_end, let_speak, stood_still, text_in
 from giveway.processes.child import JOURNAL_VARIABLE, STDERR_FILE, TRACEBACK_FILE
 from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
-from giveway.processes.interrupts import SignalHandler
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from types import FrameType
+from giveway.processes.interrupts import ENDING, SignalHandler
+from giveway.processes.locks import in_use, locked
 
 HANG_LIMIT = 120.0  # [s] of wall clock without a sign of life from the loop
 _PREFIX = "giveway-journal-"
-_KEPT = 86400.0  # [s] that the journal of a killed supervisor stays for whoever wants its rows
+_KEPT = 7 * 86400.0  # [s] that the journal of a killed supervisor stays for "giveway recover"
 _PATIENCE = 10.0  # [s] a child gets to write its rows before a second signal kills it
 _TEARDOWN_LIMIT = 10.0  # [s] from "done" to the process's end; native destructors hang, too
 _POLL = 1.0  # [s] between two looks at the heartbeat
@@ -72,29 +70,66 @@ class Verdict:
 
 @contextlib.contextmanager
 def journal_folder() -> Iterator[Path]:
-    """A folder for a journal, gone afterwards.
+    """A folder for a journal, gone afterwards unless its heartbeat asks to keep it.
 
     It is a local temporary folder and not the results folder, which may be a network disk (the
     journal is written at every control step), is not known before the configuration has been
-    read, and is no place for left-overs. ``/var/tmp`` comes before ``/tmp``, which often is
-    memory that the run itself needs; ``TMPDIR`` before both.
+    read, and is no place for left-overs.
+
+    Raises:
+        OSError: it cannot be made.
+    """
+    place = journal_place()
+    _sweep(place)
+    folder = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=place))
+    try:
+        with locked(folder):
+            yield folder
+    finally:
+        kept = False
+        with contextlib.suppress(OSError):
+            kept = Heartbeat(folder).kept
+        shutil.rmtree(temporary_in(folder) if kept else folder, ignore_errors=True)
+
+
+def journal_place() -> Path:
+    """Where journals are.
+
+    ``/var/tmp`` comes before ``/tmp``, which often is memory that the run itself needs; ``TMPDIR``
+    before both.
     """
     large = Path("/var/tmp")
     named = os.environ.get("TMPDIR") or not os.access(large, os.W_OK)
-    place = Path(tempfile.gettempdir()) if named else large
-    _sweep(place)
-    with tempfile.TemporaryDirectory(
-        prefix=_PREFIX, dir=place, ignore_cleanup_errors=True
-    ) as folder:
-        yield Path(folder)
+    return Path(tempfile.gettempdir()) if named else large
+
+
+def journals() -> list[Path]:
+    """The folders of journals whose supervisors are gone, oldest first."""
+    found: list[tuple[float, Path]] = []
+    for folder in journal_place().glob(f"{_PREFIX}*"):
+        with contextlib.suppress(OSError):
+            if not in_use(folder):
+                found.append((folder.stat().st_mtime, folder))
+    return [folder for _, folder in sorted(found)]
+
+
+def verdict_on_left(journal: Path) -> Verdict:
+    """What became of a process whose supervisor, killed too, could not tell.
+
+    Raises:
+        OSError: the folder cannot be read.
+    """
+    pulse = Heartbeat(journal).read()
+    traceback, last_words = (text_in(journal / name) for name in (TRACEBACK_FILE, STDERR_FILE))
+    return Verdict(1, True, False, "killed, with its supervisor,", pulse, traceback, last_words)
 
 
 def _sweep(place: Path) -> None:
-    """Remove the journals of supervisors that were killed; a living one is written all the time."""
+    """Remove the journals that nobody has asked for in a week; a living one is locked."""
     with contextlib.suppress(OSError):
         for folder in place.glob(f"{_PREFIX}*"):
             written = max((file.stat().st_mtime for file in folder.iterdir()), default=math.inf)
-            if time.time() - written > _KEPT:
+            if time.time() - written > _KEPT and not in_use(folder):
                 shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -124,9 +159,14 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
         # Like any program on this terminal: same process group, same files (also <(...)).
         with _held_back():
             child = subprocess.Popen(command, env=environment, close_fds=False)
-        with _Watchdog(child, heartbeat, hang_limit) as watchdog:
-            relay.connect(child)
+        try:
+            with _Watchdog(child, heartbeat, hang_limit) as watchdog:
+                relay.connect(child)
+                child.wait()
+        except BaseException:  # a child whom nobody watches must not stay
+            child.kill()
             child.wait()
+            raise
     pulse = heartbeat.read()
     verdict = _judge(child.returncode, pulse, watchdog, relay, journal)
     if verdict.crashed and sys.stdout.isatty():
@@ -136,23 +176,28 @@ def supervise(command: Sequence[str], journal: Path, *, hang_limit: float = HANG
     return verdict
 
 
+def temporary_in(journal: Path) -> Path:
+    """The temporary folder of the process that writes the journal."""
+    return journal / "tmp"
+
+
 def _temporary(journal: Path) -> dict[str, str]:
     """Variables that name the child's temporary folder, which is removed with the journal."""
-    folder = journal / "tmp"
+    folder = temporary_in(journal)
     folder.mkdir(exist_ok=True)
     return dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder))
 
 
 @contextlib.contextmanager
 def _held_back() -> Iterator[None]:
-    """Let a child that is started here inherit a blocked Ctrl-C, until :meth:`Supervised.listen`.
+    """Let a child that is started here inherit blocked signals, until :meth:`Supervised.listen`.
 
-    While Python itself starts, a Ctrl-C would end in a traceback.
+    While Python itself starts, a Ctrl-C would end in a traceback, and the others without a line.
     """
     if sys.platform == "win32":
         yield
         return
-    previous = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    previous = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     try:
         yield
     finally:
@@ -168,10 +213,7 @@ class _Relay(SignalHandler):
     """
 
     def __init__(self) -> None:
-        names = ("SIGINT", "SIGTERM", "SIGHUP")
-        numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-        # Whoever ignores a signal, as nohup does, wants the child to ignore it, too.
-        super().__init__([n for n in numbers if signal.getsignal(n) is not signal.SIG_IGN])
+        super().__init__(ENDING)
         self.first: int | None = None
         self.killed = False
         self._at = 0.0
@@ -216,7 +258,10 @@ class _Watchdog:
         self._thread = threading.Thread(target=self._watch, daemon=True)
 
     def __enter__(self) -> Self:
-        self._thread.start()
+        try:
+            self._thread.start()
+        except RuntimeError as error:  # Python's way to say that the system gives no thread
+            raise OSError(errno.EAGAIN, os.strerror(errno.EAGAIN)) from error
         return self
 
     def __exit__(self, *_: object) -> None:

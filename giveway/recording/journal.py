@@ -16,24 +16,20 @@ A journal is a safety net and never ends a run itself: when it cannot be written
 :attr:`Journal.failure`, and the run goes on from memory.
 """
 
-from __future__ import annotations
-
 import contextlib
 import enum
 import json
 import struct
-from typing import TYPE_CHECKING, Any
+from io import FileIO
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from giveway.processes.heartbeat import Heartbeat
 
-if TYPE_CHECKING:
-    from io import FileIO
-    from pathlib import Path
-
-    from giveway.geometry.kernel import Array
-
+Array = NDArray[np.float64]
 
 ROWS_FILE = "rows"
 META_FILE = "meta.json"

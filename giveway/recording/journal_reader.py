@@ -1,22 +1,16 @@
 """A journal read back, whatever became of the process that wrote it."""
 
-from __future__ import annotations
-
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from giveway.errors import ResultsError
 from giveway.processes.heartbeat import Heartbeat, Pulse
-from giveway.recording.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Kind
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from giveway.geometry.kernel import Array
+from giveway.recording.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Array, Kind
 
 
 @dataclass(frozen=True)
@@ -46,7 +40,12 @@ def read_journal(folder: Path) -> JournalContents:
         OSError: it cannot be read.
     """
     meta_file, rows_file = folder / META_FILE, folder / ROWS_FILE
-    meta = json.loads(meta_file.read_text(encoding="utf-8")) if meta_file.exists() else {}
+    try:
+        meta = json.loads(meta_file.read_text(encoding="utf-8")) if meta_file.exists() else {}
+    except ValueError:
+        meta = None
+    if not isinstance(meta, dict):
+        raise _broken(meta_file)
     pulse = Heartbeat(folder).read()
     if not rows_file.exists() or not rows_file.stat().st_size:
         return JournalContents(meta, {}, {}, 0, pulse)
@@ -57,9 +56,18 @@ def read_journal(folder: Path) -> JournalContents:
             f"{rows_file}: is not a journal of giveway ({MAGIC.decode()} expected at its start)"
         )
     reader = _Reader()
-    for step in _steps(content):
-        reader.take(step)
-    return JournalContents(meta, *reader.contents(), pulse)
+    try:
+        for step in _steps(content):
+            reader.take(step)
+        return JournalContents(meta, *reader.contents(), pulse)
+    except (ValueError, LookupError, TypeError):
+        raise _broken(rows_file) from None
+
+
+def _broken(file: Path) -> ResultsError:
+    return ResultsError(
+        f"{file}: is broken, or another version of giveway wrote it; the run has to be made again"
+    )
 
 
 _Record = tuple[Kind, int, memoryview]

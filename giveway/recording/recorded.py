@@ -1,21 +1,15 @@
 """The rows of a run, as a recorder or a journal hands them over, and as tracks."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
+from giveway.recording.journal import Array
 from giveway.records.rows import LEDGER
 from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from numpy.typing import NDArray
-
-    from giveway.geometry.kernel import Array
 
 
 class RecordedEgo(NamedTuple):
@@ -43,6 +37,7 @@ class RecordedRows:
         instants = len(rows["clock"])  # rows of an instant without a row here are left out
         self.time = np.ascontiguousarray(rows["clock"][:, 0])  # (T,) [s]
         self._ego = rows["ego"][rows["ego"][:, 0] < instants]
+        self._background: BackgroundTrack | None = None
 
     @property
     def ledger(self) -> dict[str, int]:
@@ -69,9 +64,9 @@ class RecordedRows:
     def _track(self, rows: Array) -> EgoTrack:
         columns = [np.ascontiguousarray(column) for column in rows.T]
         word = self._words
-        acting, reason, status, iterations = columns[-4:]
-        words: Sequence[Any] = (word(acting), word(reason), word(status))
-        numbers: Sequence[Any] = columns[2:-4]  # in EgoTrack's order
+        *texts, iterations = columns[-5:]
+        words: Sequence[Any] = [word(text) for text in texts]
+        numbers: Sequence[Any] = columns[2:-5]  # in EgoTrack's order
         return EgoTrack(*numbers, *words, iterations.astype(np.int64))  # type: ignore[call-arg]
 
     def _predictions_of(self, number: float) -> PredictionTrack:
@@ -105,12 +100,14 @@ class RecordedRows:
         )
 
     def background_track(self) -> BackgroundTrack:
-        """The background vehicles' rows as arrays."""
-        columns = [np.ascontiguousarray(column) for column in self._rows["background"].T]
-        names = np.array(self._names["vehicles"], dtype=np.str_)
-        time, vehicle, kind, *numbers = columns
-        who, what = names[vehicle.astype(np.int64)], names[kind.astype(np.int64)]
-        return BackgroundTrack(time, who, what, *numbers)
+        """The background vehicles' rows as arrays, the same for the run and each ego."""
+        if self._background is None:
+            columns = [np.ascontiguousarray(column) for column in self._rows["background"].T]
+            names = np.array(self._names["vehicles"], dtype=np.str_)
+            time, vehicle, kind, *numbers = columns
+            who, what = names[vehicle.astype(np.int64)], names[kind.astype(np.int64)]
+            self._background = BackgroundTrack(time, who, what, *numbers)
+        return self._background
 
     def timings(self) -> Timings:
         """The computing times as an array."""

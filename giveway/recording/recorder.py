@@ -1,23 +1,17 @@
 """The rows of a run, gathered step by step, from our own state and not SUMO's mirror of it."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, kernel
 from giveway.recording.journal import Journal
 from giveway.recording.recorded import RecordedRows
 from giveway.records.rows import EGO_NUMBERS, LEDGER, EgoRow
 from giveway.records.tracks import Timings
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.sumo.background import BackgroundVehicles
+from giveway.sumo.background import BackgroundVehicles
 
 Indices = NDArray[np.int64]
 
@@ -33,7 +27,7 @@ class Recorder:
         self.journal = journal or Journal(None)
         rows, names = self.journal.rows, self.journal.names
         self._clock = rows("clock", 1)  # time
-        self._ego = rows("ego", 2 + EGO_NUMBERS + 4)  # instant, ego, numbers, words, iterations
+        self._ego = rows("ego", 2 + EGO_NUMBERS + 5)  # instant, ego, numbers, words, iterations
         self._crowd = rows("crowd", 6)  # instant, pedestrian, x, y, vx, vy
         self._background = rows("background", 9)  # time, vehicle, type, x, y, heading, ...
         self._timings = rows("timing", len(Timings.NAMES))
@@ -78,6 +72,7 @@ class Recorder:
             word(row.acting),
             word(row.reason),
             word(row.status),
+            word(row.waits_for),
             row.iterations,
         )
 

@@ -4,8 +4,6 @@ Recorder, CSV writer and data package all read from here. ``trajectories.csv`` k
 the reference point and the angle convention of SUMO's floating car data (FCD).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, get_args, get_type_hints
 
@@ -65,7 +63,17 @@ EGO_COLUMNS = (
     Column("reference_speed", "number", "m/s", "the reference speed of the controller that acted"),
     Column("vehicle_gap", "number", "m", "distance to the closest vehicle in front; empty: none"),
     Column(
-        "stop_gap", "number", "m", "front bumper's distance to where a red light stops it; or empty"
+        "stop_gap",
+        "number",
+        "m",
+        "front bumper's distance to where a red light or a stop halts it; or empty",
+    ),
+    Column(
+        "waits_for",
+        "string",
+        None,
+        "what it stands for: person, vehicle, light, stop, plan (people expected in front), none; "
+        "empty: it drives, or drives off",
     ),
 )
 

@@ -1,7 +1,5 @@
 """Where a run stands, and how it or one ego's drive ended."""
 
-from __future__ import annotations
-
 import enum
 from collections.abc import Callable
 from dataclasses import dataclass

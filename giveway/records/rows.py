@@ -1,11 +1,11 @@
 """One row of an ego's table, and what the ledger of pedestrians counts."""
 
-from __future__ import annotations
+from typing import NamedTuple
 
-from typing import TYPE_CHECKING, NamedTuple
+from giveway.geometry.path import Pose
 
-if TYPE_CHECKING:
-    from giveway.geometry.path import Pose
+STOP_SPEED = 0.2
+"""[m/s] Below it the ego stands: Yang & Özgüner 2019, section 2.1, treat it as an obstacle then."""
 
 EGO_NUMBERS = 12  # of an EgoRow, the pose's three among them
 
@@ -26,6 +26,7 @@ class EgoRow(NamedTuple):
     acting: str
     reason: str
     status: str
+    waits_for: str
     iterations: int
 
 

@@ -7,12 +7,10 @@ mathematical (radians, counter-clockwise from +x) and x, y are the network's coo
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -34,6 +32,7 @@ class EgoTrack:
     acting: NDArray[np.str_]  # (T,) who acted: "mpc", "pid" or "safety"
     reason: NDArray[np.str_]  # (T,) why it acted, e.g. "optimal", "infeasible", "selected"
     solver_status: NDArray[np.str_]  # (T,) of the QP; empty where none ran
+    waits_for: NDArray[np.str_]  # (T,) what it stands for, e.g. "person"; empty while it drives
     solver_iterations: NDArray[np.int64]  # (T,)
 
 

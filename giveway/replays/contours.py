@@ -1,8 +1,6 @@
 """The vehicle's influence as lines of equal force, for a range of its speeds."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -14,13 +12,9 @@ from giveway.figures.influence import (
     REAR_MARGIN,
     SIDE_MARGIN,
 )
+from giveway.geometry.kernel import Array
 from giveway.replays.packing import MILLIMETRES, packed
-from pedestrian_model import Vehicles, vehicle_influence
-
-if TYPE_CHECKING:
-    from giveway.geometry.kernel import Array
-    from pedestrian_model import VciParameters
-
+from pedestrian_model import VciParameters, Vehicles, vehicle_influence
 
 _RESOLUTION = 0.15  # [m]
 _SLOW = (0.0, 0.1, 0.3, 0.5)  # [m/s] below 0.2 a vehicle is an obstacle like a wall

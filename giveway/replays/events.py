@@ -1,19 +1,14 @@
 """What happened in a run, in words: why each controller acted, and the events on the time line."""
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    import pandas as pd
-    from numpy.typing import NDArray
-
-    from giveway.config import EgoRunConfig
+from giveway.config import EgoRunConfig
 
 _INFEASIBLE = {
     "infeasible: too close": "no plan: the next position is already inside the safe distance",

@@ -7,16 +7,14 @@ from __future__ import annotations
 
 import base64
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import DTypeLike, NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import DTypeLike, NDArray
-
-    from giveway.geometry.kernel import Array
-    from giveway.replays.run_folder import RunFolder
+from giveway.geometry.kernel import Array
+from giveway.replays.run_folder import RunFolder
 
 MILLIMETRES = 1000.0  # per metre
 MOST_SAMPLES = 700_000  # of all tracks together: 17 MB of page

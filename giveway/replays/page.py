@@ -1,13 +1,13 @@
 """From a results folder to one self-contained page that plays the run."""
 
-from __future__ import annotations
-
 import json
 import math
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pandas as pd
 from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from shapely import LineString
@@ -16,7 +16,7 @@ from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.config.presets import parameters_of
 from giveway.errors import ResultsError
 from giveway.figures.study_rows import pretty_unit
-from giveway.geometry.angles import angle_to_heading, angles_to_headings
+from giveway.geometry.path import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.replays.contours import influence_contours
 from giveway.replays.events import events, why
@@ -29,11 +29,6 @@ from giveway.replays.packing import (
     thinning,
 )
 from giveway.replays.run_folder import PREDICTIONS, RunFolder, read_predictions
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import pandas as pd
 
 _SCRIPTS = ("data.js", "motion.js", "view.js", "scene.js", "charts.js", "panels.js", "player.js")
 _NUMBERS = ("speed", "reference_speed", "force", "gap", "vehicle_gap", "stop_gap")

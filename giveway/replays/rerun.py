@@ -1,19 +1,14 @@
 """A run made once more, with its predictions on record."""
 
-from __future__ import annotations
-
 import contextlib
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from giveway.replays.run_folder import PREDICTIONS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 PERIOD = 0.25  # [s] of look-ahead between two predicted positions
 

@@ -4,24 +4,18 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from giveway.config import EgoRunConfig
+from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.layers import build_config, read_toml
 from giveway.errors import ConfigError, ResultsError
-from giveway.records.columns import EGO_COLUMNS, PREDICTION_COLUMNS, TRAJECTORY_COLUMNS
+from giveway.geometry.kernel import Array
+from giveway.records.columns import EGO_COLUMNS, PREDICTION_COLUMNS, TRAJECTORY_COLUMNS, Column
 from giveway.records.scene import Scene
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from giveway.config import RunConfig
-    from giveway.geometry.kernel import Array
-    from giveway.records.columns import Column
-
 
 PREDICTIONS = "predictions.csv"
 

@@ -4,21 +4,15 @@ The choice is not random: the same study gives the same runs, and of equal ones 
 study.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from giveway.reports.pairing import DIFFERENCE, paired
+from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import metric
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.studies.folder import StudyFolder
 
 
 @dataclass(frozen=True)

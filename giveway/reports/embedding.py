@@ -1,17 +1,12 @@
 """Pictures for a page: SVG with the page's colours and fonts, and ids that do not clash."""
 
-from __future__ import annotations
-
 import re
 from io import BytesIO
-from typing import TYPE_CHECKING
 
 from matplotlib import rc_context
+from matplotlib.figure import Figure
 
 from giveway.figures.style import house_style
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 # Black is the page's ink, so that a dark page has light lines; white is its paper.
 _COLOURS = {

@@ -1,20 +1,14 @@
 """Examples of pairs: both runs are made again and drawn side by side."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
 
 from giveway.errors import GivewayError
 from giveway.figures.study_pairs import PairSide, pair_figure
+from giveway.reports.choice import ExamplePair
 from giveway.reports.pictures import Picture
 from giveway.reports.wording import quantity, shown_ego
+from giveway.results.run_result import EgoResult, RunResult
 from giveway.studies.statistics import metric
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from giveway.reports.choice import ExamplePair
-    from giveway.results.run_result import EgoResult, RunResult
 
 TITLES = {
     "median": "A typical pair",

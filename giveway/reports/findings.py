@@ -3,9 +3,8 @@
 Every sentence is made from the study's numbers.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import pandas as pd
 
@@ -27,12 +26,8 @@ from giveway.reports.wording import (
     share,
     shown_ego,
 )
+from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import metric
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from giveway.studies.folder import StudyFolder
 
 METRICS_IN_WORDS = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
 MOST_SENTENCES = 4  # of one metric; more groups than that are counted in one

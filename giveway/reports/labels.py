@@ -1,21 +1,15 @@
 """How the levels and contexts of a study are labelled in its report."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
-from giveway.studies.contexts import baseline_level, other_factors
+from giveway.studies.contexts import Context, baseline_level, other_factors
 from giveway.studies.contexts import contexts as contexts_of
 from giveway.studies.design import label_of
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from giveway.studies.contexts import Context
-    from giveway.studies.folder import StudyFolder
+from giveway.studies.folder import StudyFolder
 
 
 def contexts(study: StudyFolder) -> list[Context]:

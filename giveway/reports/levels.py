@@ -1,10 +1,9 @@
 """Every level's own numbers in one table: a block per context, a row per level."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from giveway.reports.labels import (
     baseline_label,
@@ -15,13 +14,9 @@ from giveway.reports.labels import (
 )
 from giveway.reports.table import Cell, Table
 from giveway.reports.wording import number, pretty_unit
+from giveway.studies.contexts import Context
+from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import metric
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-
-    from giveway.studies.contexts import Context
-    from giveway.studies.folder import StudyFolder
 
 BETTER, WORSE = "+", "−"
 

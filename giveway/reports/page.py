@@ -1,13 +1,12 @@
 """The report of a study: one HTML file that needs nothing else, and the pictures as files."""
 
-from __future__ import annotations
-
 import json
 import os
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from urllib.parse import quote
 
 import numpy as np
@@ -19,7 +18,7 @@ from giveway.errors import ResultsError
 from giveway.figures.style import save_figure
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.reports import findings, tables
-from giveway.reports.choice import example_pairs, worst_runs
+from giveway.reports.choice import ExamplePair, WorstRun, example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
 from giveway.reports.examples import TITLES, example_pictures
 from giveway.reports.labels import contexts
@@ -27,14 +26,9 @@ from giveway.reports.levels import levels_section
 from giveway.reports.pictures import Picture, study_pictures
 from giveway.reports.published import published_frame, published_table
 from giveway.reports.wording import pretty_unit
+from giveway.results.run_result import RunResult
+from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import METRICS
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
-    from giveway.reports.choice import ExamplePair, WorstRun
-    from giveway.results.run_result import RunResult
-    from giveway.studies.folder import StudyFolder
 
 REPORT = "report.html"
 FIGURES = "figures"

@@ -1,20 +1,14 @@
 """The statistics' pairs as one table with the ids of the runs, as a report needs them."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pandas as pd
 
+from giveway.studies.folder import StudyFolder
 from giveway.studies.record import run_id
 from giveway.studies.statistics import METRICS
 from giveway.studies.statistics import pairs as statistics
+from giveway.studies.statistics.pairs import Pairs
 from giveway.studies.statistics.situations import within
-
-if TYPE_CHECKING:
-    from giveway.studies.folder import StudyFolder
-    from giveway.studies.statistics.pairs import Pairs
 
 NUMBERS = tuple(metric.name for metric in METRICS)
 BASELINE = "_baseline"

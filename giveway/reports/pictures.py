@@ -1,13 +1,13 @@
 """The pictures of a study: what each one shows of the tables; ``giveway.figures`` draws it."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 from scipy import stats
 
 from giveway.figures.study_differences import DifferenceColumn, Differences, differences_figure
@@ -27,15 +27,8 @@ from giveway.reports.labels import (
 from giveway.reports.pairing import BASELINE, DIFFERENCE, paired, situation_of
 from giveway.reports.published import SOURCE, published_numbers
 from giveway.reports.wording import shown_ego
+from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import SITUATIONS, metric
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from giveway.studies.folder import StudyFolder
 
 ROWS_PER_PICTURE = 8
 FOREST = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")

@@ -1,9 +1,8 @@
 """Numbers from the literature with which a report compares those of the study."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+
+import pandas as pd
 
 from giveway.reports.labels import (
     baseline_label,
@@ -14,13 +13,10 @@ from giveway.reports.labels import (
 from giveway.reports.table import Cell, Table
 from giveway.reports.wording import digits_for, interval, number
 from giveway.studies.contexts import short_name
+from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import PUBLISHED, TABLE_2_COLUMNS, table2
 from giveway.studies.statistics.yang2019 import METRIC_OF
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from giveway.studies.folder import StudyFolder
 SOURCE = "Yang & Özgüner 2019"
 DENSITY = "crowd.pedestrians"
 TREATMENT, BASELINE = "mpc-paper", "pid-paper"

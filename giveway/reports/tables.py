@@ -1,24 +1,19 @@
 """A study's frames as tables to read: names in words, units, as many digits as mean something."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from giveway.reports.choice import WorstRun
 from giveway.reports.labels import level_label
 from giveway.reports.table import Cell, Table, number_cell, verdict_cell, whole_cell
 from giveway.reports.wording import digits_for, interval, number, pretty_unit, quantity, share
 from giveway.studies.contexts import other_factors, short_name
+from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import METRICS, metric
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from giveway.reports.choice import WorstRun
-    from giveway.studies.folder import StudyFolder
 
 SHOWN_IN_CELLS = (
     "completion_time",

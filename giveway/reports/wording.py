@@ -1,7 +1,5 @@
 """How numbers, units and identities are written in a report."""
 
-from __future__ import annotations
-
 import math
 
 from giveway.figures.study_rows import digits_for, number, pretty_unit

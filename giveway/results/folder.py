@@ -1,28 +1,24 @@
 """The results folder: tables, summary, manifest, data package, configuration and pictures."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import math
 import shutil
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from giveway.errors import ResultsError
+from giveway.processes.locks import FolderInUseError, locked
+from giveway.records.columns import Column
 from giveway.records.scene import SCENE_FILE
 from giveway.results.names import FILES, SUMO_FOLDER
+from giveway.results.run_result import RunResult
 from giveway.results.scene import scene_of
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
-    from pathlib import Path
-
-    import pandas as pd
-
-    from giveway.records.columns import Column
-    from giveway.results.run_result import RunResult
 
 _RUNNING = '{"ending": "running"}\n'
 _DECIMALS = 6  # micrometres, microseconds: finer than anything that is compared
@@ -43,24 +39,28 @@ def check_folder(
         ResultsError: it exists and ``force`` is not given, it is a file, or it holds files that
             the writer did not write.
     """
-    if not folder.exists():
+    try:
+        folder.stat()
+        present = sorted(path.name for path in folder.iterdir())
+    except FileNotFoundError:
         return
-    if not folder.is_dir():
+    except NotADirectoryError:
         raise ResultsError(
-            f"{folder}: is a file; expected a folder for the results, name another with --out"
-        )
-    present = sorted(path.name for path in folder.iterdir())
+            f"{folder}: is a file, or below one; expected a folder for the results, name another "
+            "with --out"
+        ) from None
+    except OSError as error:
+        raise _unusable(folder, error) from error
     foreign = [name for name in present if name not in ours]
     if foreign:
         raise ResultsError(
             f"{folder}: holds '{foreign[0]}', which {writer} did not write; "
             "name another folder with --out"
         )
-    marker = folder / "manifest.json"
-    if present == [marker.name] and not force and marker.read_text("utf-8") == _RUNNING:
+    if not force and is_marked_only(folder):
         raise ResultsError(
-            f"{folder}: another run is writing there, or was killed; name another folder with "
-            "--out, or replace it with --force"
+            f"{folder}: another run is writing there, or was killed ('giveway recover' lists the "
+            "rows of killed runs); name another folder with --out, or replace it with --force"
         )
     if present and not force:
         raise ResultsError(
@@ -68,8 +68,20 @@ def check_folder(
         )
 
 
-def take_folder(folder: Path, *, force: bool) -> bool:
-    """Take ``folder`` for a run; former results stay until the new ones are written.
+def is_marked_only(folder: Path) -> bool:
+    """Whether a run has taken ``folder`` and not written its results: it is at work, or died.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    if not folder.is_dir() or [path.name for path in folder.iterdir()] != ["manifest.json"]:
+        return False
+    return (folder / "manifest.json").read_bytes() == _RUNNING.encode("ascii")
+
+
+@contextlib.contextmanager
+def taken_folder(folder: Path, *, force: bool) -> Iterator[bool]:
+    """Have ``folder`` for one run; former results stay until the new ones are written.
 
     Returns:
         Whether the folder was taken empty, so that ``release_folder`` may undo it.
@@ -77,22 +89,28 @@ def take_folder(folder: Path, *, force: bool) -> bool:
     Raises:
         ResultsError: as ``check_folder``, or it cannot be written, or another run has taken it.
     """
-    try:
-        check_folder(folder, force=force)
-        folder.mkdir(parents=True, exist_ok=True)
-        if any(folder.iterdir()):
-            return False
-        with (folder / "manifest.json").open("x", encoding="utf-8") as marker:
-            marker.write(_RUNNING)
-    except FileExistsError:
-        raise ResultsError(
-            f"{folder}: another run is writing there; name another folder with --out"
-        ) from None
-    except OSError as error:
-        raise ResultsError(
-            f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
-        ) from error
-    return True
+    with contextlib.ExitStack() as stack:
+        try:
+            check_folder(folder, force=force)
+            folder.mkdir(parents=True, exist_ok=True)
+            stack.enter_context(locked(folder))
+            empty = not any(folder.iterdir())
+            if empty:
+                with (folder / "manifest.json").open("x", encoding="utf-8") as marker:
+                    marker.write(_RUNNING)
+        except (FileExistsError, FolderInUseError):
+            raise ResultsError(
+                f"{folder}: another run is writing there; name another folder with --out"
+            ) from None
+        except OSError as error:
+            raise _unusable(folder, error) from error
+        yield empty
+
+
+def _unusable(folder: Path, error: OSError) -> ResultsError:
+    return ResultsError(
+        f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
+    )
 
 
 def release_folder(folder: Path) -> None:
@@ -113,24 +131,36 @@ def write_results(result: RunResult, folder: Path, *, parquet: bool = False) -> 
         name: _rounded(result.summary_table if name == "summary" else getattr(result, name))
         for name in result.schemas
     }
+    contents: dict[str, Callable[[Path], object]] = {"config.toml": _text(result.config_text)}
+    for name in frames:
+        contents[f"{name}.csv"] = partial(frames[name].to_csv, index=False, lineterminator="\n")
+        if parquet:
+            contents[f"{name}.parquet"] = partial(_write_parquet, frames[name])
+    contents["summary.json"] = _json(_summary(result))
+    contents["datapackage.json"] = _json(data_package(result))
+    contents[SCENE_FILE] = _text(scene_of(result).to_json())
+    if result.sumo_messages:
+        contents["sumo.log"] = _text(result.sumo_messages)
+    contents["manifest.json"] = _json(result.manifest)  # the last: with it the results are whole
+    path = folder
     try:
         for name in FILES - {SUMO_FOLDER}:
-            (folder / name).unlink(missing_ok=True)  # results are never mixed
-        (folder / "config.toml").write_text(result.config_text, encoding="utf-8")
-        for name in frames:
-            frames[name].to_csv(folder / f"{name}.csv", index=False, lineterminator="\n")
-            if parquet:
-                _write_parquet(frames[name], folder / f"{name}.parquet")
-        _write_json(folder / "summary.json", _summary(result))
-        _write_json(folder / "manifest.json", result.manifest)
-        _write_json(folder / "datapackage.json", data_package(result))
-        (folder / SCENE_FILE).write_text(scene_of(result).to_json(), encoding="utf-8")
-        if result.sumo_messages:
-            (folder / "sumo.log").write_text(result.sumo_messages, encoding="utf-8")
+            path = folder / name
+            path.unlink(missing_ok=True)  # results are never mixed
+        for name, write in contents.items():
+            path = folder / name
+            write(path)
     except OSError as error:
-        raise ResultsError(
-            f"{error.filename or folder}: cannot be written ({error.strerror}); free the disk"
-        ) from error
+        message = f"{path}: cannot be written ({error.strerror}); free the disk"
+        _leave_incomplete(path, result.manifest | {"incomplete": message})
+        raise ResultsError(message) from error
+
+
+def _leave_incomplete(torn: Path, manifest: dict[str, Any]) -> None:
+    """Leave no half of a file, and a manifest that says what is missing, if there is the space."""
+    with contextlib.suppress(OSError):
+        torn.unlink(missing_ok=True)
+        _json(manifest)(torn.with_name("manifest.json"))
 
 
 def _summary(result: RunResult) -> dict[str, Any]:
@@ -245,9 +275,13 @@ def _write_parquet(frame: pd.DataFrame, path: Path) -> None:
     pyarrow.parquet.write_table(pyarrow.Table.from_pandas(frame, preserve_index=False), path)
 
 
-def _write_json(path: Path, content: dict[str, Any]) -> None:
+def _text(text: str) -> Callable[[Path], object]:
+    return lambda path: path.write_text(text, encoding="utf-8")
+
+
+def _json(content: dict[str, Any]) -> Callable[[Path], object]:
     text = json.dumps(_json_ready(content), indent=2, ensure_ascii=False, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
+    return _text(text + "\n")
 
 
 def _json_ready(value: Any) -> Any:

@@ -1,18 +1,12 @@
 """Whether a vehicle answered as the controller's model of it said it would."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from fmus.checking.fitting import fit, prepare
 from fmus.checking.manoeuvres import Trace
 from fmus.checking.prediction import position_errors
-
-if TYPE_CHECKING:
-    from giveway.records.tracks import EgoTrack
-    from giveway.results.run_result import EgoResult
+from giveway.records.tracks import EgoTrack
+from giveway.results.run_result import EgoResult
 
 _TOLERATED = 0.05  # [m] over the horizon
 _SURE = 0.1  # half width of M's 95 % interval, relative, up to which a fit is worth telling

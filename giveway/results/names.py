@@ -1,7 +1,5 @@
 """The names of the files in a results folder."""
 
-from __future__ import annotations
-
 from giveway.records.scene import SCENE_FILE
 
 SUMO_FOLDER = "sumo"

@@ -1,10 +1,10 @@
 """The two pictures of a run, and the one of the vehicle's influence."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from giveway.errors import ResultsError
 from giveway.figures import (
@@ -14,20 +14,11 @@ from giveway.figures import (
     state_figure,
     top_view_figure,
 )
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
 from giveway.results.names import MARKS
-from pedestrian_model import Vehicles, vehicle_influence
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from matplotlib.figure import Figure
-
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.geometry.kernel import Array
-    from giveway.results.run_result import EgoResult, RunResult
-    from pedestrian_model import VciParameters
-
+from giveway.results.run_result import EgoResult, RunResult
+from pedestrian_model import VciParameters, Vehicles, vehicle_influence
 
 _CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
 

@@ -1,22 +1,17 @@
 """What a run was made of, so that anybody can make it again: versions, hashes, seeds, command."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import platform
+from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from giveway._version import __version__
+from giveway.config import RunConfig
 from giveway.scenario_files import read_scenario
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from giveway.config import RunConfig
-    from sumo_scenarios import Scenario
+from sumo_scenarios import Scenario
 
 _PACKAGES = ("daqp", "fmpy", "libsumo", "numba", "numpy", "osqp", "pandas", "shapely")
 

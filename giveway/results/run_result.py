@@ -1,23 +1,27 @@
 """What a run leaves behind: tracks, tables, summaries."""
 
-from __future__ import annotations
-
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
+from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.layers import dump_toml
 from giveway.config.presets import parameters_of
 from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
 from giveway.metrics import (
     PEDESTRIAN_FIELDS,
     SUMMARY_FIELDS,
+    VehicleContact,
     conflicts,
     pedestrian_metrics,
     summarise,
+    vehicle_contacts,
 )
+from giveway.recording.recorded import RecordedRows
 from giveway.records.columns import (
     EGO_COLUMNS,
     PREDICTION_COLUMNS,
@@ -29,14 +33,7 @@ from giveway.records.columns import (
 from giveway.records.progress import Ending
 from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
 from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from giveway.config import EgoRunConfig, RunConfig
-    from giveway.geometry.kernel import Array
-    from giveway.recording.recorded import RecordedRows
-    from sumo_scenarios import Scenario
+from sumo_scenarios import Scenario
 
 
 @dataclass(frozen=True)
@@ -53,6 +50,7 @@ class EgoResult:
         ending: why its drive ended.
         crowd: the crowd's records of these instants, counted from ``first``.
         predictions: what its controller expected of the crowd, if that was recorded.
+        background: the background vehicles of the run.
     """
 
     config: EgoRunConfig
@@ -64,6 +62,7 @@ class EgoResult:
     ending: Ending
     crowd: CrowdTrack
     predictions: PredictionTrack
+    background: BackgroundTrack
 
     @property
     def body_radius(self) -> float:
@@ -74,6 +73,11 @@ class EgoResult:
     def pedestrians(self) -> pd.DataFrame:
         """One row per pedestrian: closest approach to this ego, TTC, PET."""
         return pedestrian_metrics(self.track, self.crowd, self.shape, self.body_radius)
+
+    @cached_property
+    def vehicle_contacts(self) -> tuple[VehicleContact, ...]:
+        """The background vehicles that it came into contact with."""
+        return vehicle_contacts(self.track, self.background, self.shape)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
@@ -88,6 +92,7 @@ class EgoResult:
             safe_distance=config.regulation.safe_distance,
             stop_speed=config.record.stop_speed,
             controller=config.controller,
+            vehicles=self.vehicle_contacts,
         )
         return figures.as_dict()
 
@@ -255,7 +260,7 @@ def results_of_egos(
         ending: of the run.
         endings: of those egos whose drive ended by itself.
     """
-    crowd = rows.crowd_track()
+    crowd, background = rows.crowd_track(), rows.background_track()
     configs = {own.ego_id: own for own in config.each_ego()}
     return tuple(
         EgoResult(
@@ -268,6 +273,7 @@ def results_of_egos(
             ending=endings.get(ego.id, ending),
             crowd=crowd.during(ego.first, len(ego.track.time)),
             predictions=ego.predictions,
+            background=background,
         )
         for ego in rows.egos()
     )

@@ -1,17 +1,10 @@
 """The scene that a run leaves for replays: the outlines near anybody, and all bodies."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from giveway.geometry.kernel import Array
 from giveway.records.scene import Scene
-
-if TYPE_CHECKING:
-    from giveway.geometry.kernel import Array
-    from giveway.results.run_result import RunResult
-
+from giveway.results.run_result import RunResult
 
 _AROUND = 60.0  # [m] of road kept beyond the places where somebody was
 _DECIMALS = 2  # centimetres

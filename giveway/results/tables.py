@@ -1,32 +1,25 @@
 """The run's tables as pandas frames, columns as in :mod:`giveway.records.columns`."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
 
-from giveway.geometry.angles import headings_to_angles
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import headings_to_angles
 from giveway.records.columns import (
     EGO_COLUMNS,
     PREDICTION_COLUMNS,
     TIMING_COLUMNS,
     TRAJECTORY_COLUMNS,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from giveway.geometry.kernel import Array
-    from giveway.records.tracks import (
-        BackgroundTrack,
-        CrowdTrack,
-        EgoTrack,
-        PredictionTrack,
-        Timings,
-    )
-
+from giveway.records.tracks import (
+    BackgroundTrack,
+    CrowdTrack,
+    EgoTrack,
+    PredictionTrack,
+    Timings,
+)
 
 _STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
 
@@ -53,6 +46,7 @@ def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
         track.reference_speed,
         vehicle_gap,
         stop_gap,
+        track.waits_for,
     )
     names = [column.name for column in EGO_COLUMNS]
     return pd.DataFrame(dict(zip(names, values, strict=True)), index=range(len(track.time)))

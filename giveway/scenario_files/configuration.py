@@ -1,15 +1,13 @@
 """A .sumocfg as what it names: input files, outputs, and the settings that a run depends on."""
 
-from __future__ import annotations
-
-import math
 import os
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import Final, TypeVar
 from urllib.parse import unquote
 
 from giveway.errors import ScenarioError
@@ -21,14 +19,12 @@ from giveway.scenario_files.options import (
     canonical,
 )
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
 _Value = TypeVar("_Value")
 
 SUMO_SEED: Final = 23423  # what SUMO takes where neither scenario nor command line names a seed
 STRIPING: Final = "striping"  # SUMO's default pedestrian model, and the only one that can be moved
 
+_LATEST: Final = 9e15  # [s] SUMO counts milliseconds in 63 bits
 _A_TIME: Final = "seconds, h:m:s or d:h:m:s"
 _VARIABLE = re.compile(r"\$\{(\w+)\}")
 _TRUE = frozenset({"true", "1", "yes", "on", "x", "t"})
@@ -78,7 +74,11 @@ class ScenarioFiles:
     @property
     def missing(self) -> tuple[tuple[str, Path], ...]:
         """Those of :attr:`inputs` that do not exist."""
-        return tuple((option, path) for option, path in self.inputs if not path.exists())
+        return tuple(
+            (option, path)
+            for option, path in self.inputs
+            if not os.path.exists(path)  # noqa: PTH110 - Path's own raises if a name is too long
+        )
 
     @property
     def teleport_settings(self) -> dict[str, str]:
@@ -219,17 +219,16 @@ def seconds(text: str) -> float:
     """A time as SUMO writes it: seconds, ``h:m:s`` or ``d:h:m:s``.
 
     Raises:
-        ValueError: it is none of these.
+        ValueError: it is none of these, or beyond SUMO's clock.
     """
     parts = [float(part) for part in text.split(":")]
-    if not all(map(math.isfinite, parts)):
+    if len(parts) not in (1, 3, 4):
         raise ValueError(text)
-    if len(parts) == 1:
-        return parts[0]
-    if len(parts) not in (3, 4):
+    days, hours, minutes, rest = [0.0] * (4 - len(parts)) + parts
+    time = ((days * 24.0 + hours) * 60.0 + minutes) * 60.0 + rest
+    if not abs(time) <= _LATEST:  # nor a nan
         raise ValueError(text)
-    days, hours, minutes, rest = ([0.0] if len(parts) == 3 else []) + parts
-    return ((days * 24.0 + hours) * 60.0 + minutes) * 60.0 + rest
+    return time
 
 
 def _truth(text: str) -> bool:

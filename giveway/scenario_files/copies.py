@@ -1,18 +1,14 @@
 """Scenario files that write: run from copies whose outputs go into the results folder."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Final
 
 from giveway.errors import ScenarioError
 from giveway.scenario_files.configuration import located
 from giveway.scenario_files.markup import rewrite
 from giveway.scenario_files.outputs import OutputFolder, is_file
 from giveway.scenario_files.reading import opened, pieces
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
 
 _WRITES: Final = {
     **dict.fromkeys(

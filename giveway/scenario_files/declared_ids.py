@@ -3,22 +3,18 @@
 A vehicle that no file declares will never depart; a person that is added needs a name of its own.
 """
 
-from __future__ import annotations
-
 import difflib
 import re
+from collections.abc import Iterable, Iterator
 from html import unescape
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from giveway.scenario_files.reading import pieces
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from pathlib import Path
 
 _VEHICLE = re.compile(rb"<(vehicle|trip|flow)\s[^>]*?\bid\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 _PERSON = re.compile(rb"<(?:person|personFlow)\s[^>]*?\bid\s*=\s*[\"']([^\"']*)")
 _CALIBRATOR = b"<calibrator"  # inserts vehicles of names of its own
+_INCLUDE = b"<include"  # of a file that may declare anything
 _COMPARED = 5_000  # declared names among which a similar one is looked for
 
 
@@ -73,6 +69,16 @@ def _in(text: bytes) -> Iterator[tuple[bytes, str]]:
     for match in _VEHICLE.finditer(text):
         name = match[2] if match[2] is not None else match[3]
         yield match[1], unescape(name.decode("utf-8", "replace"))
+
+
+def declares_people(files: Iterable[Path]) -> bool:
+    """Whether a person or a flow of persons is declared in any of ``files``, or may be."""
+    try:
+        return any(
+            _PERSON.search(text) or _INCLUDE in text for file in files for text in pieces(file)
+        )
+    except (OSError, EOFError):
+        return True  # SUMO will say what is wrong with the file
 
 
 def free_prefix(wanted: str, files: Iterable[Path]) -> str:

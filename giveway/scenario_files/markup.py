@@ -1,18 +1,14 @@
 """XML rewritten as it streams by: only the attributes that are asked for change, byte for byte."""
 
-from __future__ import annotations
-
 import codecs
 import html
 import re
-from typing import IO, TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import IO
 from xml.sax.saxutils import escape
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    Changes = Mapping[str, str]
-    Visitor = Callable[[str, Mapping[str, str], str], Changes]
+Changes = Mapping[str, str]
+Visitor = Callable[[str, Mapping[str, str], str], Changes]
 
 _CHUNK = 1 << 20  # [bytes]
 _ENDS = ((b"<!--", b"-->"), (b"<![CDATA[", b"]]>"), (b"<?", b"?>"))

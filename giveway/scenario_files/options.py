@@ -5,14 +5,10 @@ that no output option of a later version is missed. libsumo ships without the pr
 why they stand here.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Final
+from collections.abc import Sequence
+from typing import Final
 
 from giveway.errors import ConfigError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 OUTPUTS: Final = (
     "amitran-output",

@@ -1,14 +1,9 @@
 """Where SUMO's outputs go instead of beside the scenario."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from pathlib import Path, PurePath
 
 from giveway.errors import ResultsError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path, PurePath
 
 _NOWHERE = frozenset({"stdout", "stderr", "-", "nul", "/dev/null", "/dev/stdout", "/dev/stderr"})
 

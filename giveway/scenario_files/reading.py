@@ -1,14 +1,10 @@
 """Scenario files as streams of bytes, compressed or not."""
 
-from __future__ import annotations
-
 import gzip
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import IO, TYPE_CHECKING, cast
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
+from pathlib import Path
+from typing import IO, cast
 
 _CHUNK = 1 << 22  # bytes
 _GZIP = b"\x1f\x8b"  # the magic number: SUMO looks at the content too, not at the name

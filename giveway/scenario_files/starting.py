@@ -1,22 +1,16 @@
 """How SUMO is started with somebody's scenario: what is kept, what is replaced, and why."""
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 from urllib.parse import unquote
 
-from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, located
+from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, ScenarioFiles, located
 from giveway.scenario_files.copies import Copies
 from giveway.scenario_files.options import OUTPUTS, parse_options
 from giveway.scenario_files.outputs import OutputFolder, is_file
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from giveway.scenario_files.configuration import ScenarioFiles
 
 _VALIDATION: Final = ("xml-validation", "xml-validation.net", "xml-validation.routes")
 _WINDOW_ONLY: Final = ("osg-view",)  # known to a SUMO built with OpenSceneGraph only

@@ -1,14 +1,9 @@
 """Files of a study, which are written whole or not at all."""
 
-from __future__ import annotations
-
 import os
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from giveway.errors import ResultsError
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 _UNFINISHED = ".{}.new"  # of a file that is being written; it stays if the process is killed
 

@@ -1,7 +1,5 @@
 """The columns of the tables of means and differences; those of the factors come before them."""
 
-from __future__ import annotations
-
 from giveway.records.columns import Column
 
 

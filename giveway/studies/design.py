@@ -1,11 +1,9 @@
 """From factors and levels to cells: the settings of every combination that is run."""
 
-from __future__ import annotations
-
 import difflib
 import itertools
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from giveway.config.layers import Layer, merge, options
 from giveway.errors import ConfigError
@@ -17,9 +15,7 @@ from giveway.studies.columns import (
     SITUATION_COLUMNS,
     TABLE_2_COLUMNS,
 )
-
-if TYPE_CHECKING:
-    from giveway.studies.definition import StudyDefinition
+from giveway.studies.definition import StudyDefinition
 
 _RESERVED = frozenset({"run", "cell", "seed", "ego", "ending", "runs", "failed", "seconds"}) | {
     column.name

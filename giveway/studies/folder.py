@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shlex
 from collections import defaultdict
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
 from giveway.errors import ResultsError
+from giveway.studies.contents import (
+    DEFINITION,
+    MANIFEST,
+    intact_tables,
+    read_manifest,
+    require_definition,
+)
 from giveway.studies.definition import StudyDefinition, parse_definition
 from giveway.studies.design import Cell, Design, design
 from giveway.studies.frames import (
@@ -24,7 +30,7 @@ from giveway.studies.frames import (
     runs_frame,
 )
 from giveway.studies.identity import run_key
-from giveway.studies.record import run_id
+from giveway.studies.record import RunRecord, run_id
 from giveway.studies.statistics import (
     COMPARISON_COLUMNS,
     compare,
@@ -33,11 +39,6 @@ from giveway.studies.statistics import (
 )
 from giveway.studies.store import RecordStore
 
-if TYPE_CHECKING:
-    from giveway.studies.record import RunRecord
-
-DEFINITION = "study.toml"
-MANIFEST = "manifest.json"
 _RUN = re.compile(r"c([1-9][0-9]*)-s(0|[1-9][0-9]*)")
 
 
@@ -55,6 +56,7 @@ class StudyFolder:
 
     Raises:
         ResultsError: there is no study, or one that was killed before it had begun.
+        BrokenFileError: definition or manifest are not what was written.
     """
 
     path: Path
@@ -64,20 +66,22 @@ class StudyFolder:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._store = RecordStore(path)
         origin = str(path / DEFINITION)
         try:
             text = (path / DEFINITION).read_text(encoding="utf-8")
-            self.manifest = json.loads((path / MANIFEST).read_text(encoding="utf-8"))
+            self.manifest = read_manifest(path)
+            by_seals = self.manifest["identity"] if "definition" in self.manifest else None
+            self._store = RecordStore(path, by_seals)
             cells = self.manifest["cells"]
             self._digests: dict[int, str] = {cell["cell"]: cell["digest"] for cell in cells}
             labels: dict[int, str] = {cell["cell"]: cell["label"] for cell in cells}
             self._seeds = int(self.manifest["seeds"])
-        except (OSError, ValueError, KeyError, TypeError):
+        except (OSError, UnicodeDecodeError, KeyError, TypeError):
             raise ResultsError(
                 f"{path}: no study there ({DEFINITION} and {MANIFEST} that giveway wrote); "
                 "name the folder that giveway study printed"
             ) from None
+        require_definition(path, self.manifest)
         self.definition = parse_definition(text, origin, path.absolute())
         self.design = design(self.definition, origin)
         if labels != {cell.number: cell.label for cell in self.design.cells}:
@@ -202,7 +206,7 @@ class StudyFolder:
     def _kept_comparison(self) -> pd.DataFrame | None:
         """``comparison.csv``, which takes long to compute; None if it is not that of all runs."""
         path = self.path / "comparison.csv"
-        if not self.complete or not path.is_file():
+        if not self.complete or path.name not in intact_tables(self.path):
             return None
         columns = (*runs_columns(self.design), *COMPARISON_COLUMNS)
         texts = {column.name for column in columns if column.type == "string"}

@@ -1,21 +1,15 @@
 """The tables of a study, made from its records."""
 
-from __future__ import annotations
-
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.records.columns import Column
-from giveway.studies.record import CRASHED, run_id
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from giveway.studies.design import Cell, Design, Level
-    from giveway.studies.record import RunRecord
+from giveway.studies.design import Cell, Design, Level
+from giveway.studies.record import CRASHED, RunRecord, run_id
 
 _HEAD = (
     Column("run", "string", None, "id of the run: c2-s17 is cell 2, seed 17"),

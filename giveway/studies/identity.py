@@ -3,15 +3,12 @@
 Two runs with one key have the same rows, byte for byte; that is what lets a study be resumed.
 """
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import json
 import platform
 import socket
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from giveway._environment import ROOMS
 from giveway.config import RunConfig
@@ -20,11 +17,8 @@ from giveway.ego.vehicle import fmu_path
 from giveway.errors import ConfigError, GivewayError
 from giveway.results.provenance import scenario_hashes, scenario_inputs, sha256, software_versions
 from giveway.scenario_files.options import parse_options
-from sumo_scenarios import ScenarioError, find
-
-if TYPE_CHECKING:
-    from giveway.studies.record import Task
-    from sumo_scenarios import Scenario
+from giveway.studies.record import Task
+from sumo_scenarios import Scenario, ScenarioError, find
 
 _NOT_NUMBERS = ("cli", "doctor", "figures", "replays", "reports", "studies", "validation")
 """Parts of giveway that look at results only: a change there leaves every record valid."""

@@ -1,31 +1,26 @@
 """Reserving a study's folder: one process works there, and foreign files are never removed."""
 
-from __future__ import annotations
-
-import json
 import shutil
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import filelock
 
 from giveway.errors import ResultsError
 from giveway.studies.atomic_files import finished_name
-from giveway.studies.folder import DEFINITION, MANIFEST
-from giveway.studies.output import PACKAGE, TABLES
+from giveway.studies.contents import DEFINITION, MANIFEST, PACKAGE, read_manifest
+from giveway.studies.options import StudyOptions
+from giveway.studies.output import TABLES
+from giveway.studies.sealing import ASIDE, BrokenFileError
 from giveway.studies.store import RECORDS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from giveway.studies.options import StudyOptions
 
 LOCK = ".lock"
 REPORT = "report.html"
 _DERIVED_FILES = frozenset({*(f"{name}.csv" for name in TABLES), PACKAGE, REPORT})
 _STUDY_FILES = (
-    frozenset({DEFINITION, MANIFEST, RECORDS, "figures", "replays", "reruns"}) | _DERIVED_FILES
+    frozenset({DEFINITION, MANIFEST, RECORDS, ASIDE, "figures", "replays", "reruns"})
+    | _DERIVED_FILES
 )
 
 
@@ -93,8 +88,8 @@ def _require_free(out: Path, study: str, options: StudyOptions) -> None:
 def _name_of(out: Path) -> str | None:
     """The name of the study in the folder; None if there is none or its manifest is broken."""
     try:
-        return str(json.loads((out / MANIFEST).read_text(encoding="utf-8"))["study"])
-    except (OSError, ValueError, KeyError, TypeError):
+        return str(read_manifest(out)["study"])
+    except (OSError, BrokenFileError, KeyError):
         return None
 
 

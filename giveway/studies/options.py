@@ -1,16 +1,10 @@
 """How a study is computed, which its results do not depend on."""
 
-from __future__ import annotations
-
 import os
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from giveway.errors import ConfigError
-from giveway.studies.execution import HANG_LIMIT, cluster_executor, local_executor
-
-if TYPE_CHECKING:
-    from giveway.studies.execution import Executor
+from giveway.studies.execution import HANG_LIMIT, Executor, cluster_executor, local_executor
 
 
 @dataclass(frozen=True)

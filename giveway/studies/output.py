@@ -1,16 +1,18 @@
 """The tables of a study as CSV files, and the data package that describes them."""
 
-from __future__ import annotations
-
 import json
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from giveway.records.columns import Column
 from giveway.results.folder import package_of
 from giveway.studies.atomic_files import write_atomically
 from giveway.studies.columns import COMPARISON_COLUMNS, LEVEL_COLUMNS, SITUATION_COLUMNS
+from giveway.studies.contents import PACKAGE, SHA256
+from giveway.studies.folder import StudyFolder
 from giveway.studies.frames import (
     COMPUTING_COLUMNS,
     EXECUTION_COLUMNS,
@@ -18,14 +20,9 @@ from giveway.studies.frames import (
     as_written,
     runs_columns,
 )
+from giveway.studies.identity import software_identity
+from giveway.studies.sealing import fingerprint, sealed
 from giveway.studies.statistics.rounding import tabulated
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    import pandas as pd
-
-    from giveway.studies.folder import StudyFolder
 
 TABLES = (
     "runs",
@@ -37,7 +34,6 @@ TABLES = (
     "computing",
     "failures",
 )
-PACKAGE = "datapackage.json"
 _LONG = frozenset({"comparison", "levels", "situations"})  # these take some seconds
 _COUNTS = (
     Column("runs", "integer", None, "runs of the cell that are there"),
@@ -60,15 +56,20 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
     """
     names = [name for name in TABLES if whole or name not in _LONG]
     columns = {name: _columns(study, name) for name in names}
+    seals = {}
     for name in names:
         frame = as_written(getattr(study, name), columns[name])
         floats = [column for column in frame.columns if frame[column].dtype == np.float64]
         text = tabulated(frame, floats).to_csv(index=False, lineterminator="\n")
         write_atomically(study.path / f"{name}.csv", text)
+        seal = fingerprint(text.encode("utf-8"))
+        seals[name] = {"bytes": seal["bytes"], "hash": f"{SHA256}{seal['sha256']}"}
     name = f"giveway-study-{study.definition.name}"
     title = study.definition.description or f"giveway study {study.definition.name}"
     package = package_of(name, title, columns)
-    text = json.dumps(package, indent=2, ensure_ascii=False) + "\n"
+    for resource in package["resources"]:
+        resource |= seals[resource["name"]]
+    text = json.dumps(sealed(package, software_identity()), indent=2, ensure_ascii=False) + "\n"
     write_atomically(study.path / PACKAGE, text)
 
 

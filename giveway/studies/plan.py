@@ -1,24 +1,20 @@
 """Planning a study: settings, key and order of every run, before any of them is made."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from giveway.config import RunConfig
 from giveway.config.loading import load
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ConfigError, GivewayError
-from giveway.studies.design import design
+from giveway.results.provenance import scenario_inputs
+from giveway.scenario_files.declared_ids import declares_people
+from giveway.studies.definition import StudyDefinition
+from giveway.studies.design import Cell, Design, design
 from giveway.studies.identity import cell_digest, input_hashes, run_key, software_identity
 from giveway.studies.record import Task, run_id
 from giveway.studies.statistics import metric
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from giveway.config import RunConfig
-    from giveway.studies.definition import StudyDefinition
-    from giveway.studies.design import Cell, Design
+from sumo_scenarios import Scenario
 
 
 @dataclass(frozen=True)
@@ -141,9 +137,26 @@ def _planned(cell: Cell, definition: StudyDefinition, origin: str) -> PlannedCel
         config, scenario = load([cell.layer(origin, definition)])
         config = config.model_copy(update={"seed": definition.first_seed})
         preflight(config, scenario)
+        _require_people(cell, config, scenario)
         inputs = input_hashes(config, scenario)
     except GivewayError as error:
         where = f"{origin}: cell {cell.number} ({cell.label})"
         error.args = (str(error) if origin in str(error) else f"{where}: {error}",)
         raise
     return PlannedCell(cell, config, inputs, cell_digest(config, inputs, software_identity()))
+
+
+def _require_people(cell: Cell, config: RunConfig, scenario: Scenario) -> None:
+    """Make sure that a study that varies the crowd has somebody in each of its cells.
+
+    Raises:
+        ConfigError: neither giveway nor the scenario has anybody walk in this one.
+    """
+    varied = any("crowd" in level.settings for level in cell.levels.values())
+    if not varied or config.crowd.pedestrians > 0:
+        return
+    if not declares_people(scenario_inputs(scenario).values()):
+        raise ConfigError(
+            f"crowd.pedestrians = 0: expected at least 1: the study varies [crowd], but nobody "
+            f"walks in {config.scenario} of its own, and every seed would make the same run"
+        )

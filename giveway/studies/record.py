@@ -103,8 +103,16 @@ class RunRecord:
         Raises:
             ValueError: the text is not one.
         """
+        return cls.from_values(json.loads(text))
+
+    @classmethod
+    def from_values(cls, values: dict[str, Any]) -> RunRecord:
+        """The record whose JSON has been read already; ``values`` are used up.
+
+        Raises:
+            ValueError: they are not those of a record.
+        """
         try:
-            values: dict[str, Any] = json.loads(text)
             computing = Computing(**{k: _number(v) for k, v in values.pop("computing").items()})
             rows = tuple({k: _number(v) for k, v in row.items()} for row in values.pop("rows"))
             remarks = tuple(values.pop("remarks"))

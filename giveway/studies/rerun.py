@@ -1,25 +1,18 @@
 """One run of a study once more, with everything that a single run leaves behind."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from giveway.api import run_checked
 from giveway.config.loading import load
-from giveway.cosimulation.preflight import preflight
+from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.errors import GivewayError
-from giveway.records.progress import Ending
+from giveway.records.progress import Ending, Watcher
+from giveway.results.run_result import RunResult
 from giveway.studies.execution.perform import rows_of
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from giveway.cosimulation.preflight import CheckedRun
-    from giveway.records.progress import Watcher
-    from giveway.results.run_result import RunResult
-    from giveway.studies.folder import StudyFolder
-    from giveway.studies.record import RunRecord, Scalar
+from giveway.studies.folder import StudyFolder
+from giveway.studies.record import RunRecord, Scalar
 
 _PERHAPS = "other software or scenario files since then? Compare its manifest.json"
 PREDICTIONS = 0.25  # [s] between two predicted positions that are kept

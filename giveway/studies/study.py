@@ -1,38 +1,34 @@
 """A study from its definition to its tables: plan, compute what is missing, keep, compare."""
 
-from __future__ import annotations
-
 import json
 import math
+import sys
 from collections import defaultdict
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
 from giveway.errors import GivewayError
+from giveway.processes.interrupts import exit_code_of, who_ended
 from giveway.results.provenance import software_versions
 from giveway.studies.atomic_files import write_atomically
-from giveway.studies.definition import dump_definition
-from giveway.studies.folder import DEFINITION, MANIFEST, StudyFolder
+from giveway.studies.contents import DEFINITION, MANIFEST, broken_files, read_manifest
+from giveway.studies.definition import StudyDefinition, dump_definition
+from giveway.studies.execution import Executor
+from giveway.studies.folder import StudyFolder
 from giveway.studies.frames import runs_frame
 from giveway.studies.identity import software_identity
 from giveway.studies.lock import remove_derived_files, remove_study, reserved
 from giveway.studies.options import StudyOptions, processors
 from giveway.studies.output import write_tables
-from giveway.studies.plan import Plan, plan
+from giveway.studies.plan import Plan, PlannedRun, plan
+from giveway.studies.record import RunRecord
+from giveway.studies.sealing import BrokenFileError, fingerprint, put_aside, sealed
 from giveway.studies.statistics import looks, precise_enough
 from giveway.studies.store import RecordStore
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
-    from giveway.studies.definition import StudyDefinition
-    from giveway.studies.execution import Executor
-    from giveway.studies.plan import PlannedRun
-    from giveway.studies.record import RunRecord
 
 __all__ = [
     "StudyInterruptedError",
@@ -72,6 +68,7 @@ def run_study(
     out: Path,
     options: StudyOptions | None = None,
     watcher: Callable[[StudyProgress], None] | None = None,
+    tell: Callable[[str], None] | None = None,
 ) -> StudyFolder:
     """Compute the missing runs of a study, and write its tables.
 
@@ -81,6 +78,8 @@ def run_study(
         out: its folder.
         options: how it is computed.
         watcher: told of every finished run.
+        tell: takes one line for each kept file that is broken, and when the runs of another
+            giveway are made again; None: to standard error.
 
     Raises:
         GivewayError: it cannot be run, or was ended; every finished run is kept.
@@ -88,16 +87,18 @@ def run_study(
     options = options or StudyOptions()
     planned = plan(definition, origin)
     with reserved(out, definition.name, options):
-        session = _Session(planned, out, options, watcher or (lambda _: None))
+        session = _Session(planned, out, options, watcher or (lambda _: None), tell or _to_stderr)
         try:
             with options.executor() as executor:
                 session.begin()
                 session.compute(executor)
             session.end()
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as error:
             with suppress(KeyboardInterrupt):  # a second Ctrl-C skips the tables
                 session.write_partial_tables()
-            raise StudyInterruptedError(session.interrupted()) from None
+            ended = StudyInterruptedError(f"{who_ended(error)}; {session.kept()}")
+            ended.exit_code = exit_code_of(error)
+            raise ended from None
     return StudyFolder(out)
 
 
@@ -110,25 +111,37 @@ class _Session:
         out: Path,
         options: StudyOptions,
         watcher: Callable[[StudyProgress], None],
+        tell: Callable[[str], None],
     ) -> None:
         self._plan = planned
         self._out = out
         self._options = options
         self._watcher = watcher
-        self._store = RecordStore(out)
+        self._tell = tell
+        self._software = software_identity()
+        self._store = RecordStore(out, self._software)
         self._records: dict[str, RunRecord] = {}
         self._kept = self._made = self._failed = 0
         self._seeds = planned.seeds
+        self._definition = dump_definition(planned.definition)
         self._begun = False
 
     def begin(self) -> None:
         """Write definition and manifest; remove tables and report of a former session."""
         if self._options.force:
             remove_study(self._out)
+        for file in broken_files(self._out):
+            there = put_aside(file, self._out)
+            self._tell(f"{file}: is not what giveway wrote; put aside in {there}, it is made again")
+        with suppress(OSError, KeyError):
+            before = read_manifest(self._out)["identity"]
+            if before != self._software:
+                self._tell(
+                    f"{self._out}: its runs were made by another giveway or other libraries "
+                    f"(identity {before}, now {self._software}); they are made again"
+                )
         remove_derived_files(self._out)
-        write_atomically(
-            self._out / DEFINITION, dump_definition(self._plan.definition), durable=True
-        )
+        write_atomically(self._out / DEFINITION, self._definition, durable=True)
         self._write_manifest(complete=False)
         self._begun = True
 
@@ -159,32 +172,44 @@ class _Session:
             self._write_manifest(complete=False)
             write_tables(StudyFolder(self._out), whole=False)
 
-    def interrupted(self) -> str:
-        """What to tell the user."""
+    def kept(self) -> str:
+        """What to tell a user who has ended the study."""
         done = f"{self._kept + self._made:,} of {len(self._plan):,} runs"
-        return f"interrupted; {done} are kept in {self._out}: go on with --resume"
+        return f"{done} are kept in {self._out}: go on with --resume"
 
     def _make(self, executor: Executor, seeds: range) -> None:
         """Make the missing runs of ``seeds``; cells with equal settings share them."""
         missing: defaultdict[str, list[PlannedRun]] = defaultdict(list)
         for run in self._plan.runs(seeds):
-            record = self._store.get(run.key)
+            record = self._kept_record(run.key)
             if record is None or (record.failed and self._options.retry_failed):
                 missing[run.key].append(run)
             else:
                 self._records[run.key] = record
                 self._kept += 1
                 self._failed += record.failed
-                self._tell(None)
+                self._report(None)
         for record in executor.run(runs[0].task() for runs in missing.values()):
             self._store.put(record)
             self._records[record.key] = record
             count = len(missing[record.key])
             self._made += count
             self._failed += count * record.failed
-            self._tell(record)
+            self._report(record)
 
-    def _tell(self, record: RunRecord | None) -> None:
+    def _kept_record(self, key: str) -> RunRecord | None:
+        """The record of a run that has been made; a broken one is named and put aside."""
+        try:
+            return self._store.get(key)
+        except BrokenFileError as error:
+            there = put_aside(error.file, self._out)
+            self._tell(
+                f"{error.file}: is not what giveway wrote ({error.reason}); put aside in {there}, "
+                "the run is made again"
+            )
+            return None
+
+    def _report(self, record: RunRecord | None) -> None:
         total = len(self._plan)
         self._watcher(StudyProgress(total, self._kept, self._made, self._failed, record))
 
@@ -210,7 +235,8 @@ class _Session:
             "study": self._plan.definition.name,
             "seeds": len(self._seeds),
             "complete": complete,
-            "identity": software_identity(),
+            "identity": self._software,
+            "definition": fingerprint(self._definition.encode("utf-8")),
             "cells": [
                 {
                     "cell": planned.cell.number,
@@ -222,7 +248,8 @@ class _Session:
             ],
             "software": software_versions(),
         }
-        text = json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+        whole = sealed(content, self._software)
+        text = json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
         write_atomically(self._out / MANIFEST, text, durable=True)
 
 
@@ -243,3 +270,7 @@ def estimate(planned: Plan, options: StudyOptions) -> tuple[float, dict[str, flo
             taken = math.nan if record.failed else record.computing.seconds
             seconds[cell] = float(np.fmin(seconds.get(cell, math.nan), taken))  # the first warms up
     return float(np.nansum([*seconds.values()])) * len(seeds) / workers, seconds
+
+
+def _to_stderr(line: str) -> None:
+    sys.stderr.write(f"note: {line}\n")

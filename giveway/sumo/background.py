@@ -1,14 +1,9 @@
 """SUMO's own vehicles at one instant."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
@@ -28,6 +23,11 @@ class BackgroundVehicles:
     def numbers(self) -> tuple[NDArray[np.float64], ...]:
         """All columns but ids and types."""
         return self.x, self.y, self.heading, self.speed, self.length, self.width
+
+    @property
+    def bodies(self) -> NDArray[np.float64]:
+        """(m, 5) their rectangles: x, y, heading, length, width."""
+        return np.column_stack([self.x, self.y, self.heading, self.length, self.width])
 
 
 NO_VEHICLES = BackgroundVehicles((), (), *(np.empty(0) for _ in range(6)))

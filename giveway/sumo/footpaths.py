@@ -1,17 +1,13 @@
 """The lanes of the running network that people walk on, edge by edge."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from giveway.sumo.lanes import admits
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 _IN_JUNCTION = re.compile(r"^:(.*)_[wc]?\d+$")  # the edge of a crossing, walkingarea or turn
 _HALF_BODY = 0.25  # [m] a person keeps this far from its lane's edge

@@ -15,13 +15,10 @@ wrong, found by experiment and in its sources:
 * a fresh walk is as fast as the person likes, whatever speed the scenario gave to the former one.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from giveway.sumo.footpaths import Foot
+from giveway.sumo.footpaths import Foot
 
 _WALKING = 2  # SUMO's stage type
 NOWHERE = -1000.0  # [m] on its lane: where a held person is in SUMO's books

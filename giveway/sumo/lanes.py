@@ -1,22 +1,16 @@
 """The lanes of the loaded network: the path along a route, and the outlines to draw."""
 
-from __future__ import annotations
-
 import itertools
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from giveway.errors import ScenarioError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from giveway.geometry.kernel import Array
-
+from giveway.geometry.kernel import Array
 
 CHANGE_LENGTH = 30.0  # [m] over which a vehicle changes to the next lane
 _WALKINGAREA = re.compile(r"^:.*_w\d+_0$")  # SUMO's names; their shape is the outline itself
@@ -44,6 +38,8 @@ class LanePath:
 
     points: Array  # (k, 2) [m]
     lights: tuple[Light, ...]
+    first: str  # the lane that it begins on
+    edges: tuple[float, ...]  # station [m] at which each edge of the route begins
 
 
 class Lanes:
@@ -64,7 +60,13 @@ class Lanes:
         self._onwards: dict[tuple[str, str], tuple[str, ...]] = {}
 
     def along(
-        self, edges: Sequence[str], lane: int | None, *, kind: str = "passenger", start: float = 0.0
+        self,
+        edges: Sequence[str],
+        lane: int | None,
+        *,
+        kind: str = "passenger",
+        start: float = 0.0,
+        by: Mapping[int, int] | None = None,
     ) -> LanePath:
         """The lane path along ``edges``, junctions included, with as few lane changes as possible.
 
@@ -73,6 +75,8 @@ class Lanes:
             lane: index of the lane to start on; None: the best one.
             kind: SUMO's vehicle class.
             start: where on the first lane the vehicle starts [m]; it changes lanes after that.
+            by: the lane on which to leave an edge, by the edge's place in the route, as far as the
+                way can go on from there.
 
         Raises:
             ScenarioError: an edge or lane does not exist or is not for such vehicles, or the
@@ -84,13 +88,15 @@ class Lanes:
                     f"{self._config_file}: ego route: no edge '{edge}' in the network"
                 )
         first = self._start_lanes(edges[0], lane, kind)
-        pairs, links = self._cheapest(edges, first, kind)
+        pairs, links = self._cheapest(edges, first, kind, by or {})
         points: list[Array] = []
         lights: list[Light] = []
+        begins: list[float] = []
         driven = 0.0
         for number, (entry, leave) in enumerate(pairs):
             shape = self._changing(edges[number], entry, leave, start if number == 0 else 0.0)
             points.append(shape)
+            begins.append(driven)
             driven += _length(shape)
             if number < len(links):
                 link = links[number]
@@ -102,7 +108,8 @@ class Lanes:
                 onwards = np.concatenate([shape[-1:], *inside, following[:1]])
                 points.extend(inside)
                 driven += _length(onwards)
-        return LanePath(np.concatenate(points), tuple(lights))
+        first_lane = f"{edges[0]}_{pairs[0][0]}"
+        return LanePath(np.concatenate(points), tuple(lights), first_lane, tuple(begins))
 
     def shape(self, lane: str) -> Array:
         """(k, 2) [m] centre line of a lane."""
@@ -117,6 +124,27 @@ class Lanes:
         if length is None:
             length = self._lengths[lane] = _length(self.shape(lane))
         return length
+
+    def point(self, lane: str, position: float) -> tuple[float, float]:
+        """x, y [m] of SUMO's ``position`` [m] on a lane, whose nominal length may be another."""
+        share = position / max(float(self._sumo.lane.getLength(lane)), 1e-3)
+        x, y = _at(self.shape(lane), np.array([share]))[0]
+        return float(x), float(y)
+
+    def edges_after(self, edge: str, kind: str) -> list[str]:
+        """The edges to which vehicles of SUMO's class ``kind`` can go on from ``edge``."""
+        lanes = [f"{edge}_{i}" for i in self._drivable(edge, kind)]
+        targets = [link[0] for lane in lanes for link in self._sumo.lane.getLinks(lane)]
+        return [
+            str(self._sumo.lane.getEdgeID(target))
+            for target in targets
+            if admits(self._sumo, target, kind)
+        ]
+
+    def edges_before(self, edge: str) -> frozenset[str]:
+        """The edges that end where ``edge`` begins."""
+        junction = self._sumo.edge.getFromJunction(edge)
+        return frozenset(self._sumo.junction.getIncomingEdges(junction))
 
     def onwards(self, lane: str, edge: str) -> tuple[str, ...]:
         """The lanes right after ``lane``, of the junction or behind it, towards ``edge``."""
@@ -160,15 +188,19 @@ class Lanes:
         return [i for i in range(count) if admits(self._sumo, f"{edge}_{i}", kind)]
 
     def _cheapest(
-        self, edges: Sequence[str], first: list[int], kind: str
+        self, edges: Sequence[str], first: list[int], kind: str, by: Mapping[int, int]
     ) -> tuple[list[tuple[int, int]], list[Link]]:
         """The lanes on which to enter and leave each edge, and the links between them."""
         # best[lane]: changes so far, (entry, leave) of each edge before, links taken
         best: dict[int, tuple[int, list[tuple[int, int]], list[Link]]]
         best = {lane: (0, [], []) for lane in first}
-        for edge, following in itertools.pairwise(edges):
+        for number, (edge, following) in enumerate(itertools.pairwise(edges)):
             reached: dict[int, tuple[int, list[tuple[int, int]], list[Link]]] = {}
-            for leave in self._drivable(edge, kind) or sorted(best):
+            lanes = self._drivable(edge, kind) or sorted(best)
+            wanted = by.get(number)
+            if wanted in lanes and self._links(f"{edge}_{wanted}", following):
+                lanes = [wanted]
+            for leave in lanes:
                 for link in self._links(f"{edge}_{leave}", following):
                     target = int(link.lane.rpartition("_")[2])
                     for entry, (changes, pairs, links) in best.items():
@@ -183,7 +215,9 @@ class Lanes:
                 )
             best = reached
         lane, (_, pairs, links) = min(best.items(), key=lambda item: (item[1][0], item[0]))
-        return [*pairs, (lane, lane)], links
+        last = by.get(len(edges) - 1)
+        leave = last if last in self._drivable(edges[-1], kind) else lane
+        return [*pairs, (lane, leave)], links
 
     def _links(self, lane: str, edge: str) -> list[Link]:
         """The links from ``lane`` over the junction to ``edge``."""

@@ -1,9 +1,8 @@
 """The one file that imports libsumo."""
 
-from __future__ import annotations
-
 from typing import Any
 
+from giveway._environment import out_of_memory
 from giveway.errors import InstallationError
 
 
@@ -16,9 +15,10 @@ def import_libsumo() -> Any:
     try:
         import libsumo
     except ImportError as error:
-        raise InstallationError(
-            f"libsumo cannot be imported ({error}); reinstall with: pip install giveway"
-        ) from error
+        remedy = "reinstall with: pip install giveway"
+        if out_of_memory(error):
+            remedy = "free memory, or raise the limit (ulimit -v)"
+        raise InstallationError(f"libsumo cannot be imported ({error}); {remedy}") from error
     return libsumo
 
 

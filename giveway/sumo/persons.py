@@ -6,28 +6,23 @@ outside of its lane: otherwise SUMO's pedestrians would walk round the spot wher
 and vehicles would wait for ever at a crossing that it has long left.
 """
 
-from __future__ import annotations
-
 import contextlib
 import enum
 import itertools
 import math
 from collections import Counter
+from collections.abc import Container, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from giveway.geometry.angles import angle_to_heading
+from giveway.geometry.path import angle_to_heading
 from giveway.sumo.footpaths import Foot, FootPaths
 from giveway.sumo.handover import Handover, Route
 from giveway.sumo.library import direct
 from giveway.sumo.walk_speeds import WalkSpeeds
-
-if TYPE_CHECKING:
-    from collections.abc import Container, Sequence
-
-    from numpy.typing import NDArray
 
 _WALKING = 2  # SUMO's stage type
 _SLOWEST = 0.1  # [m/s] nobody wants to walk more slowly

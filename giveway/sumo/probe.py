@@ -3,8 +3,6 @@
 It is a process of its own, because SUMO may crash or hang, and holds one simulation per process.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import tempfile
@@ -12,16 +10,26 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from giveway.errors import GivewayError
 from giveway.scenario_files import StartOptions, prepare_start, read_scenario
+from giveway.sumo.encounters import Encounters
+from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import import_libsumo
 from giveway.sumo.types import ROAD_CLASSES
 
 _LOOK = 3.0  # [s] of wall clock: long enough to see vehicles depart, short enough to wait for
 _ENOUGH = 3  # vehicles seen
+_WATCH = 10.0  # [s] of wall clock in which meetings with people are counted
+_LONGEST_WATCH = 600.0  # [s] of the scenario
 
 
-def look(config_file: Path) -> dict[str, Any]:
-    """Load the scenario as a run would and let it run for a moment."""
+def look(config_file: Path, people: bool = False) -> dict[str, Any]:
+    """Load the scenario as a run would and let it run for a moment.
+
+    Args:
+        config_file: the .sumocfg.
+        people: let it run for longer, and count which vehicles meet people on foot.
+    """
     sumo = import_libsumo()
     began = perf_counter()
     vehicles: dict[str, list[str]] = {}
@@ -31,20 +39,29 @@ def look(config_file: Path) -> dict[str, Any]:
         sumo.start(list(start.command))
         loaded = perf_counter() - began
         end = sumo.simulation.getEndTime()
-        began = perf_counter()
-        while perf_counter() - began < _LOOK and len(vehicles) < _ENOUGH:
+        began, begins = perf_counter(), sumo.simulation.getTime()
+        encounters, enough = Encounters(sumo), False
+        while perf_counter() - began < (_LOOK if not enough else _LOOK + _WATCH):
             if 0.0 <= end <= sumo.simulation.getTime():
                 break
             if sumo.simulation.getMinExpectedNumber() == 0:
+                break
+            if enough and not (people and sumo.simulation.getTime() < begins + _LONGEST_WATCH):
                 break
             sumo.simulationStep()
             persons = max(persons, len(sumo.person.getIDList()))
             for name in sumo.simulation.getDepartedIDList():
                 vehicle_class = sumo.vehicle.getVehicleClass(name)
-                if vehicle_class in ROAD_CLASSES:
+                encounters.departed(name, vehicle_class, sumo.vehicle.getRoute(name))
+                if vehicle_class in ROAD_CLASSES and not enough:
                     vehicles[name] = [vehicle_class, *sumo.vehicle.getRoute(name)]
+            enough = len(vehicles) >= _ENOUGH
+            if people:
+                encounters.look()
         answer = {
             "loaded_in": loaded,
+            "meetings": {"from": begins, **encounters.ranking},
+            "way": _way(Lanes(sumo, config_file), vehicles),
             "time": sumo.simulation.getTime(),
             "vehicles": vehicles,
             "persons": persons,
@@ -57,14 +74,25 @@ def look(config_file: Path) -> dict[str, Any]:
     return answer
 
 
-def main(config_file: Path) -> None:
+def _way(lanes: Lanes, vehicles: dict[str, list[str]]) -> list[list[float]]:
+    """x, y [m] of the way of the first vehicle that has departed; empty: there is none."""
+    for kind, *route in vehicles.values():
+        try:
+            points: list[list[float]] = lanes.along(route, None, kind=kind).points.tolist()
+        except GivewayError:
+            continue
+        return points
+    return []
+
+
+def main(config_file: Path, people: bool) -> None:
     """Print what SUMO made of the scenario, or why it refused."""
     try:
-        answer = look(config_file)
+        answer = look(config_file, people)
     except Exception as error:  # libsumo's, or ours; the rest of the reason is on stderr
         answer = {"refused": " ".join(str(error).split())}
     sys.stdout.write("\n" + json.dumps(answer) + "\n")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), "--people" in sys.argv)

@@ -11,33 +11,29 @@ found by experiment on SUMO 1.28:
   between the moves and ``simulationStep``.
 """
 
-from __future__ import annotations
-
 import collections
 import contextlib
 import itertools
 import math
+import os
+import sys
 import tempfile
+from collections.abc import Container, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import IO, Any, Self
 
 from giveway.errors import ScenarioError, SumoError
-from giveway.geometry.angles import heading_to_angle
-from giveway.scenario_files import prepare_start
+from giveway.geometry.path import Pose, heading_to_angle
+from giveway.scenario_files import ScenarioFiles, StartOptions, prepare_start
+from giveway.scenario_files.outputs import is_file
+from giveway.sumo.first_reading import read_first
 from giveway.sumo.footpaths import FootPaths
 from giveway.sumo.handover import NOWHERE
 from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import direct, import_libsumo
 from giveway.sumo.persons import ScenarioPersons
-from giveway.sumo.stderr import NativeStderr
 from giveway.sumo.types import PEDESTRIAN_TYPE
 from giveway.sumo.vehicles import SumoVehicles
-
-if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Sequence
-
-    from giveway.geometry.path import Pose
-    from giveway.scenario_files import ScenarioFiles, StartOptions
 
 POSITION_TOLERANCE = 1e-6  # [m] between our state and SUMO's after each step
 _DEPART_NOW = -3  # libsumo's constant for "in the next step"
@@ -55,6 +51,7 @@ class SumoSession:
         options: how SUMO is to be run.
         types: an additional file's text with the types of whatever is going to be added.
         native_log: file for what SUMO prints; None: a temporary one.
+        careful: let a child read the scenario first if a crash of this process costs everything.
 
     Raises:
         ScenarioError: an input file is missing or cannot be read.
@@ -71,6 +68,7 @@ class SumoSession:
         types: str,
         *,
         native_log: Path | None = None,
+        careful: bool = False,
     ) -> None:
         if SumoSession._running:
             raise SumoError(
@@ -83,6 +81,8 @@ class SumoSession:
         self._scratch = tempfile.TemporaryDirectory(prefix="giveway-")
         try:
             self.start = prepare_start(scenario, options, Path(self._scratch.name), types=types)
+            if careful and not _calls_somebody(scenario):
+                read_first(self._config_file, self.start.command, self.start.read)
             self._load()
         except BaseException:
             self._scratch.cleanup()
@@ -302,3 +302,60 @@ def _compare(
             f"{kind} '{name}' at {time:.3f} s: SUMO has it {deviation:.3g} m away from our state; "
             f"expected at most {POSITION_TOLERANCE:g} m; is it moved by somebody else?"
         )
+
+
+class NativeStderr:
+    """Redirects file descriptor 2 into a file while a native call runs.
+
+    Use the object itself as the context manager, round one call at a time; ``close`` at the end.
+
+    Args:
+        path: of the file, for whoever wants to read it after this process has died; None: a
+            temporary file without a name.
+    """
+
+    def __init__(self, path: Path | None = None) -> None:
+        self._log: IO[bytes]
+        if path is None:
+            self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the session
+        else:
+            self._log = path.open("w+b")
+        self._file_descriptor = self._log.fileno()
+        try:
+            self._saved = os.dup(2)
+        except OSError:  # closed by whoever started us: what is printed there goes nowhere
+            self._saved = os.open(os.devnull, os.O_WRONLY)
+
+    def __enter__(self) -> None:
+        if sys.stderr is not None:
+            sys.stderr.flush()
+        os.dup2(self._file_descriptor, 2)
+
+    def __exit__(self, *_: object) -> None:
+        os.dup2(self._saved, 2)
+
+    def text(self) -> str:
+        """Everything printed so far."""
+        self._log.seek(0)
+        return self._log.read().decode("utf-8", "replace")
+
+    def errors(self) -> str:
+        """The reasons in what was printed, on one line."""
+        lines = [line.strip() for line in self.text().splitlines()]
+        reasons = [
+            line.removeprefix("Error:").strip()
+            for line in lines
+            if line and not line.startswith(("Warning", "Quitting", "Loading"))
+        ]
+        return "; ".join(dict.fromkeys(reasons))
+
+    def close(self) -> None:
+        """Forget what was printed."""
+        os.close(self._saved)
+        self._log.close()
+
+
+def _calls_somebody(scenario: ScenarioFiles) -> bool:
+    """Whether an output goes to a network address, where a child would be taken for the run."""
+    names = [name for files in scenario.outputs.values() for name in files]
+    return any(":" in name and not is_file(name) for name in names)

@@ -1,16 +1,11 @@
 """What giveway adds to a scenario: the types of its egos and pedestrians."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping
+from typing import Final
 from xml.sax.saxutils import quoteattr
 
 from giveway.errors import ScenarioError
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.bodies import VehicleShape
 
 EGO_TYPE = "giveway_ego"
 PEDESTRIAN_TYPE = "giveway_pedestrian"

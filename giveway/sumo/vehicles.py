@@ -1,24 +1,22 @@
 """SUMO's vehicles: read, taken over, inserted, slowed down."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from giveway.errors import ScenarioError, SumoError
-from giveway.geometry.angles import angle_to_heading, angles_to_headings
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import angle_to_heading, angles_to_headings
 from giveway.sumo.background import NO_VEHICLES, BackgroundVehicles
+from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import direct
 from giveway.sumo.types import ego_type, inserted_type
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from giveway.geometry.bodies import VehicleShape
-    from giveway.geometry.kernel import Array
-    from giveway.sumo.lanes import Lanes
+_PARKING_AREA = 64  # SUMO's flag of a stop
+_ALL_CHECKS, _WITHOUT_SAFE_SPEED = 31, 30  # SUMO's speed modes
 
 
 @dataclass(frozen=True)
@@ -37,6 +35,17 @@ class VehicleState:
     speed: float  # [m/s]
     length: float  # [m]
     width: float  # [m]
+
+
+class PlannedStop(NamedTuple):
+    """A stop of one of SUMO's vehicles."""
+
+    lane: str
+    start: float  # [m] on the lane
+    end: float  # [m] where the front bumper is to be
+    duration: float  # [s]; at most 0: not given
+    until: float  # [s] on SUMO's clock; negative: not given
+    beside: bool  # in a parking area, off the lane
 
 
 class SumoVehicles:
@@ -62,7 +71,6 @@ class SumoVehicles:
         self._lane_position = direct(sumo, "vehicle", "getLanePosition")
         self._route_id = direct(sumo, "vehicle", "getRouteID")
         self.egos: set[str] = set()  # driven by giveway
-        self.dropped_stops: dict[str, int] = {}  # of egos that were taken over
 
     # --- reading ------------------------------------------------------------------------------
 
@@ -76,11 +84,19 @@ class SumoVehicles:
 
     def background(self) -> BackgroundVehicles:
         """Every vehicle of the scenario except the egos, as of SUMO's clock."""
-        vehicle = self._vehicle
         everybody = self._id_list()
         if self.egos.issuperset(everybody):
             return NO_VEHICLES
-        ids = tuple(sorted(name for name in everybody if name not in self.egos))
+        return self._bodies(sorted(name for name in everybody if name not in self.egos))
+
+    def everybody_but(self, name: str) -> BackgroundVehicles:
+        """Every vehicle on the road except the one named, egos included, as of SUMO's clock."""
+        others = sorted(set(self._id_list()) - {name})
+        return self._bodies(others) if others else NO_VEHICLES
+
+    def _bodies(self, names: Sequence[str]) -> BackgroundVehicles:
+        """Where the vehicles are, at least one, and what they are like."""
+        vehicle, ids = self._vehicle, tuple(names)
         for name in ids:
             if name not in self._shapes:
                 size = vehicle.getLength(name), vehicle.getWidth(name)
@@ -121,6 +137,38 @@ class SumoVehicles:
         """Whether the vehicle is on a lane outside of junctions."""
         road = self._vehicle.getRoadID(name)
         return bool(road) and not road.startswith(":")
+
+    def stops(self, name: str) -> list[PlannedStop]:
+        """The stops that are ahead of the vehicle, in order."""
+        return [
+            PlannedStop(
+                stop.lane,
+                stop.startPos,
+                stop.endPos,
+                stop.duration,
+                stop.until,
+                bool(stop.stopFlags & _PARKING_AREA),
+            )
+            for stop in self._vehicle.getStops(name)
+        ]
+
+    def parked(self, name: str) -> bool:
+        """Whether the vehicle stands beside the road."""
+        return bool(self._vehicle.isStoppedParking(name))
+
+    def edges_of_entry(self, but: Collection[str]) -> set[str]:
+        """Where SUMO's next step may insert a vehicle that it knows of, ``but`` for these."""
+        vehicle = self._vehicle
+        return {
+            vehicle.getRoute(name)[0]
+            for name in vehicle.getLoadedIDList()
+            if name not in but and vehicle.getDeparture(name) < 0.0 <= vehicle.getDepartDelay(name)
+        }
+
+    def first_edge(self, route: str) -> str:
+        """The first edge of a route that the scenario names; empty: it names none of this id."""
+        known = route in self._sumo.route.getIDList()
+        return str(self._sumo.route.getEdges(route)[0]) if known else ""
 
     def whereabouts(self, name: str) -> tuple[str, str, float]:
         """The vehicle's lane (empty: none), its route's id, and its position [m] on the lane."""
@@ -167,6 +215,11 @@ class SumoVehicles:
         """SUMO's length of a lane [m], which need not be its centre line's."""
         return float(self._sumo.lane.getLength(lane))
 
+    def leader(self, name: str, distance: float) -> str:
+        """Whom the vehicle's driver follows within ``distance`` [m]; empty: nobody."""
+        found = self._vehicle.getLeader(name, distance)
+        return str(found[0]) if found else ""
+
     def deceleration(self, name: str) -> float:
         """How hard the vehicle's driver brakes [m/s^2]."""
         return float(self._vehicle.getDecel(name))
@@ -180,6 +233,38 @@ class SumoVehicles:
 
         The speed is the FMU's business: SUMO is told at most what the lane permits.
         """
+        permitted = min(speed, self._sumo.lane.getMaxSpeed(f"{edges[0]}_{lane}"))
+        self._add(ego_id, edges, departPos=f"{position:.3f}", departSpeed=f"{permitted:.3f}")
+        self.egos.add(ego_id)
+
+    def queue(
+        self, ego_id: str, edges: Sequence[str], *, lane: str, position: float, speed: float
+    ) -> None:
+        """Let SUMO insert an ego as soon as its own check finds room there; see :meth:`claim`.
+
+        Args:
+            ego_id: of the ego.
+            edges: its route.
+            lane: SUMO's id of the lane.
+            position: [m] of the front bumper along the lane's centre line.
+            speed: [m/s], of which no more is taken than the lane permits.
+        """
+        nominal = self.lane_length(lane)
+        there = min(position * nominal / self._lanes.length(lane), nominal)
+        self._add(
+            ego_id,
+            edges,
+            departLane=lane.rpartition("_")[2],
+            departPos=f"{there:.3f}",
+            departSpeed=f"{min(speed, self._sumo.lane.getMaxSpeed(lane)):.3f}",
+        )
+
+    def claim(self, ego_id: str) -> None:
+        """Drive an ego that SUMO has inserted from now on."""
+        self.egos.add(ego_id)
+
+    def _add(self, ego_id: str, edges: Sequence[str], **departure: str) -> None:
+        """Hand an ego to SUMO, to depart with its next step."""
         route = f"giveway_route_{ego_id}"
         self._call(self._sumo.route.add, route, list(edges))
         try:
@@ -189,8 +274,7 @@ class SumoVehicles:
                 route,
                 typeID=inserted_type(ego_id),
                 depart="now",
-                departPos=f"{position:.3f}",
-                departSpeed=f"{min(speed, self._sumo.lane.getMaxSpeed(f'{edges[0]}_{lane}')):.3f}",
+                **departure,
             )
         except SumoError as error:
             if "already exists" not in str(error):
@@ -199,7 +283,6 @@ class SumoVehicles:
                 f"ego id '{ego_id}': the scenario already has this vehicle; choose another id, or "
                 f"take it over with --ego {ego_id}"
             ) from error
-        self.egos.add(ego_id)
 
     def adopt(self, state: VehicleState, shape: VehicleShape) -> None:
         """Drive one of SUMO's own vehicles from now on, with the body ``shape``."""
@@ -215,14 +298,20 @@ class SumoVehicles:
         self.egos.add(name)
 
     def _drop_stops(self, name: str) -> None:
-        """Remove its stops: SUMO would park it beside the road while the FMU drives on."""
+        """Remove its stops: SUMO would park it beside the road while the FMU drives on.
+
+        SUMO would also look for them anew, and fail, where the ego drives a step beyond the end of
+        its route; so the route goes on there.
+        """
         if self._vehicle.isStopped(name):
             self._call(self._vehicle.resume, name)
-        stops = len(self._vehicle.getStops(name))
-        for _ in range(stops):
+        if self._vehicle.getStops(name, 1):
+            route = tuple(self._vehicle.getRoute(name))
+            beyond = self._lanes.edges_after(route[-1], self._vehicle.getVehicleClass(name))
+            if beyond:
+                self._call(self._vehicle.setRoute, name, [*route, beyond[0]])
+        for _ in range(len(self._vehicle.getStops(name))):
             self._call(self._vehicle.replaceStop, name, 0, "")
-        if stops:
-            self.dropped_stops[name] = stops
 
     def dismiss(self, name: str) -> None:
         """Take an ego that has reached its goal off the road."""
@@ -232,6 +321,16 @@ class SumoVehicles:
     def limit(self, name: str, speed: float) -> None:
         """Let SUMO's driver go no faster than ``speed`` [m/s]."""
         self._call(self._vehicle.setSpeed, name, speed)
+
+    def pull_away(self, name: str, speed: float) -> None:
+        """Let SUMO's driver go at ``speed`` [m/s], whoever it takes for its leader."""
+        self._call(self._vehicle.setSpeedMode, name, _WITHOUT_SAFE_SPEED)
+        self._call(self._vehicle.setSpeed, name, speed)
+
+    def heed_leaders(self, name: str) -> None:
+        """End :meth:`pull_away`."""
+        self._call(self._vehicle.setSpeedMode, name, _ALL_CHECKS)
+        self._call(self._vehicle.setSpeed, name, -1.0)
 
     def release(self, name: str) -> None:
         """Let SUMO's driver go as it wants again."""

@@ -4,19 +4,15 @@
 speed. They are read from the scenario's files, for the persons that have them only.
 """
 
-from __future__ import annotations
-
 import io
 import math
 import xml.etree.ElementTree as ET
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 from giveway.scenario_files.reading import opened
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
 
 _OPTIONS = ("route-files", "additional-files")
 _PERSONS = frozenset({"person", "personFlow"})

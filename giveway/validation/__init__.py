@@ -2,15 +2,20 @@
 
 from giveway.validation.calibrating import Calibration, calibrate
 from giveway.validation.clips import Clip, read_clip, read_clips
+from giveway.validation.dataset import CITR, DUT, Dataset, dataset_of
 from giveway.validation.protocol import Protocol
 from giveway.validation.validating import Validation, validate
 
 __all__ = [
+    "CITR",
+    "DUT",
     "Calibration",
     "Clip",
+    "Dataset",
     "Protocol",
     "Validation",
     "calibrate",
+    "dataset_of",
     "read_clip",
     "read_clips",
     "validate",

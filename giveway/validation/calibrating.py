@@ -1,28 +1,22 @@
 """``giveway calibrate``: some of the model's parameters, fitted to recorded trajectories."""
 
-from __future__ import annotations
-
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from giveway.config.presets import NAMES, require_parameter
 from giveway.errors import ConfigError, DatasetError
-from giveway.validation.contacts import contact_table
+from giveway.validation.clips import Clip
+from giveway.validation.contacts import DATA, contact_table, people_apart
 from giveway.validation.fitting import Objective, Search, average
 from giveway.validation.intervals import TAILS, ClipBootstrap
 from giveway.validation.predictors import VCI
-from giveway.validation.validating import CITR, SEED, cut_windows
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from giveway.validation.clips import Clip
-    from giveway.validation.protocol import Protocol
-    from pedestrian_model import VciParameters
+from giveway.validation.protocol import Protocol
+from giveway.validation.validating import SEED, cut_windows, protocol_of
+from pedestrian_model import LONGEST_STEP, ParameterError, VciParameters, require_steady
 
 DEFAULT = (
     "destination_gain",
@@ -64,6 +58,8 @@ class Calibration:
         training, held_out: the clips' names.
         train, test: the objective on each; ``test`` is nan throughout without held-out clips.
         touching: (before, after) pedestrians that touch a vehicle in replays of all clips.
+        apart: [m] the smallest distance between two people's centres, in the data and in replays
+            of all clips (before, after).
         at_bound: the parameters that ended at the end of their range.
         evaluations: of the objective.
         converged: whether the optimiser arrived before it ran out of evaluations.
@@ -77,6 +73,7 @@ class Calibration:
     train: Fit
     test: Fit
     touching: tuple[int, int]
+    apart: tuple[float, float, float]
     at_bound: tuple[str, ...]
     evaluations: int
     converged: bool
@@ -91,7 +88,7 @@ def calibrate(
     seed: int = 0,
     own_pace: bool = True,
     evaluations: int = 400,
-    protocol: Protocol = CITR,
+    protocol: Protocol | None = None,
     progress: Callable[[int, int, float], None] = lambda _done, _all, _best: None,
 ) -> Calibration:
     """Fit the parameters ``names`` to some of the clips, and judge them on the others.
@@ -104,19 +101,26 @@ def calibrate(
         seed: of the choice of these clips.
         own_pace: each pedestrian's desired speed is its present speed; else the parameters'.
         evaluations: of the objective, at most.
-        protocol: how the clips are cut and judged.
+        protocol: how the clips are cut and judged; None: as :func:`protocol_of` has it.
         progress: called with evaluations done, at most, and the least error so far.
 
     Raises:
-        ConfigError: a name is no parameter's, or one that cannot be fitted.
+        ConfigError: a name is no parameter's or cannot be fitted, or people would tremble by the
+            parameters at the start.
         DatasetError: too few clips are there, or none is long enough.
     """
     names = _checked(names, start)
+    try:
+        require_steady(start, LONGEST_STEP)
+    except ParameterError as error:
+        raise ConfigError(f"--preset: {error}; start from another one, like SIM") from error
+    protocol = protocol or protocol_of(clips)
     train, test = split(clips, held_out, seed)
     judge = partial(_judged, protocol=protocol, own_pace=own_pace)
     objective = Objective(cut_windows(train, protocol), protocol, len(train), own_pace=own_pace)
     search = Search(objective, start, names, evaluations, progress)
     best = search.run()
+    before = people_apart(clips, start, protocol)
     return Calibration(
         start=start,
         parameters=best,
@@ -126,6 +130,7 @@ def calibrate(
         train=judge(train, start, best),
         test=judge(test, start, best),
         touching=(_touching(clips, start, protocol), _touching(clips, best, protocol)),
+        apart=(before[DATA], before[VCI], people_apart(clips, best, protocol)[VCI]),
         at_bound=search.at_bound,
         evaluations=search.done,
         converged=search.converged,

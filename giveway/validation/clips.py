@@ -1,27 +1,21 @@
-"""Clips of real pedestrians and vehicles: the CITR dataset's CSV files, as arrays in our frame.
+"""Clips of real pedestrians and vehicles: CSV files like those of CITR, as arrays in our frame.
 
-The dataset: Yang, Li, Redmill & Özgüner, "Top-view Trajectories: A Pedestrian Dataset of
-Vehicle-Crowd Interaction from Controlled Experiments and Crowded Campus" (arXiv 1902.00487). Its
+CITR and DUT: Yang, Li, Redmill & Özgüner, "Top-view Trajectories: A Pedestrian Dataset of
+Vehicle-Crowd Interaction from Controlled Experiments and Crowded Campus" (arXiv 1902.00487). Their
 users are asked to cite that paper.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from pathlib import Path
+from typing import Final
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from giveway.errors import DatasetError
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
-    from giveway.geometry.kernel import Array
-
+from giveway.geometry.kernel import Array
+from giveway.validation.dataset import Dataset
 
 PEDESTRIANS: Final = "_traj_ped_filtered.csv"
 VEHICLES: Final = "_traj_veh_filtered.csv"
@@ -29,6 +23,8 @@ _PEDESTRIAN_COLUMNS: Final = ("x_est", "y_est", "vx_est", "vy_est")
 _VEHICLE_COLUMNS: Final = ("x_est", "y_est", "psi_est", "vel_est")
 _FARTHEST = 1e5  # [m] no camera sees so far
 _LONGEST = 200_000  # frames: nearly two hours
+_WALKING = 0.5  # [m/s] who is slower says little of the frame rate
+_RATES_APART = 0.1  # share by which the frame rate may differ from what the speeds say
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +33,7 @@ class Clip:
 
     Attributes:
         name: of its files, like ``front_interaction_01``.
+        dataset: what its files do not say.
         first_frame: the dataset's number of frame 0 here.
         ids: (n,) of the pedestrians.
         position: (T, n, 2) [m]; nan where somebody is not seen.
@@ -45,6 +42,7 @@ class Clip:
     """
 
     name: str
+    dataset: Dataset
     first_frame: int
     ids: NDArray[np.int64]
     position: Array
@@ -73,19 +71,19 @@ class Clip:
         return self.position[self.last_seen, np.arange(len(self.ids))]
 
 
-def read_clips(folder: Path) -> tuple[Clip, ...]:
+def read_clips(folder: Path, dataset: Dataset) -> tuple[Clip, ...]:
     """Every clip below ``folder``, in the order of their paths.
 
     Args:
         folder: the dataset's, or any part of it; clips are known by the names of their files.
+        dataset: what the files do not say.
 
     Raises:
-        DatasetError: there is no such folder, no clip in it, or a file cannot be used.
+        DatasetError: there is no such folder, no clip in it, a file cannot be used, or people's
+            speeds and steps belong to another frame rate.
     """
     if not folder.is_dir():
-        raise DatasetError(
-            f"{folder}: no such folder; expected the CITR dataset's, or a part of it"
-        )
+        raise DatasetError(f"{folder}: no such folder; expected a data set's, or a part of it")
     files = sorted(folder.rglob(f"*{PEDESTRIANS}"))
     for file in sorted(folder.rglob(f"*{VEHICLES}")):
         partner = file.with_name(file.name.removesuffix(VEHICLES) + PEDESTRIANS)
@@ -97,17 +95,46 @@ def read_clips(folder: Path) -> tuple[Clip, ...]:
         raise DatasetError(
             f"{folder}: no clip found; expected files *{PEDESTRIANS} in it or its folders"
         )
-    clips = [read_clip(file) for file in files]
+    clips = [read_clip(file, dataset) for file in files]
     names: dict[str, Path] = {}
     for clip, file in zip(clips, files, strict=True):
         if names.setdefault(clip.name, file) != file:
             raise DatasetError(
                 f"{file}: a clip of this name is in {names[clip.name].parent} too; keep one"
             )
+    _require_rate(folder, clips, dataset)
     return tuple(clips)
 
 
-def read_clip(file: Path) -> Clip:
+def _require_rate(folder: Path, clips: list[Clip], dataset: Dataset) -> None:
+    """Make sure that people go from frame to frame as far as their speeds say.
+
+    Raises:
+        DatasetError: the frame rate is another one.
+    """
+    rates = np.array([rate for clip in clips if (rate := _rate_of(clip)) is not None])
+    if not len(rates):
+        return
+    found = float(np.median(rates))
+    if abs(found / dataset.frame_rate - 1.0) > _RATES_APART:
+        raise DatasetError(
+            f"{folder}: people's speeds and their steps from frame to frame belong to {found:.1f} "
+            f"frames per second, --dataset {dataset.name} has {dataset.frame_rate:g}; name the "
+            "data set that it is, or correct its description"
+        )
+
+
+def _rate_of(clip: Clip) -> float | None:
+    """The frame rate [1/s] that the walkers' speeds and steps amount to; None without walkers."""
+    step = np.linalg.norm(np.diff(clip.position, axis=0), axis=2)
+    speed = np.linalg.norm(clip.velocity, axis=2)
+    speed = 0.5 * (speed[1:] + speed[:-1])
+    with np.errstate(invalid="ignore"):
+        walking = (speed > _WALKING) & (step > 0.0)
+    return float(np.median(speed[walking] / step[walking])) if walking.any() else None
+
+
+def read_clip(file: Path, dataset: Dataset) -> Clip:
     """The clip of a file of pedestrians, with the vehicles' file in its folder if there is one.
 
     Raises:
@@ -125,11 +152,12 @@ def read_clip(file: Path) -> Clip:
     poses = np.empty((last - first + 1, 0, 4))
     if vehicles is not None:
         poses = _spread(vehicles, _VEHICLE_COLUMNS, first, last)[1]
-    # The image's y axis points down: in our frame y, headings and lateral velocities change sign.
-    rows[:, :, [1, 3]] *= -1.0
-    poses[:, :, [1, 2]] *= -1.0
+    if dataset.y_axis == "down":  # in our frame y, headings and lateral velocities change sign
+        rows[:, :, [1, 3]] *= -1.0
+        poses[:, :, [1, 2]] *= -1.0
     position = np.ascontiguousarray(rows[:, :, :2])
-    return Clip(name, first, ids, position, np.ascontiguousarray(rows[:, :, 2:]), poses)
+    velocity = np.ascontiguousarray(rows[:, :, 2:])
+    return Clip(name, dataset, first, ids, position, velocity, poses)
 
 
 def _spread(

@@ -1,25 +1,17 @@
 """How far predictions are from what happened: one row per window, pedestrian and horizon."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
-from giveway.validation.predictors import CV
-from giveway.validation.protocol import to_vehicle_frame
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from giveway.geometry.kernel import Array
-    from giveway.validation.intervals import ClipBootstrap
-    from giveway.validation.predictors import TrackPredictor
-    from giveway.validation.protocol import Protocol, Window
+from giveway.geometry.kernel import Array
+from giveway.validation.intervals import ClipBootstrap
+from giveway.validation.predictors import CV, TrackPredictor
+from giveway.validation.protocol import Protocol, Window, to_vehicle_frame
 
 EVERYWHERE = "all"
 NEAR = "near"

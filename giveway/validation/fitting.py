@@ -3,29 +3,29 @@
 The objective is the ADE [m] at each horizon, averaged over all pedestrians who are seen for that
 long, and then over the horizons. It is minimised by Nelder & Mead's simplex (The Computer Journal
 1965) as scipy has it, with the coefficients of Gao & Han (Comput. Optim. Appl. 2012), over the
-logarithm of each parameter's ratio to its start. It is a descent that needs no derivatives, since
+logarithm of each parameter's ratio to its start. Parameters by which people would tremble at the
+crowd's longest step are refused. It is a descent that needs no derivatives, since
 contacts and limits make the objective rough, and that stays near published numbers.
 """
 
-from __future__ import annotations
-
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
 
+from giveway.geometry.kernel import Array
 from giveway.validation.evaluation import displacement
 from giveway.validation.predictors import VciPredictor
-from pedestrian_model import ParameterError, PedestrianModelError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from giveway.geometry.kernel import Array
-    from giveway.validation.protocol import Protocol, Window
-    from pedestrian_model import VciParameters
+from giveway.validation.protocol import Protocol, Window
+from pedestrian_model import (
+    LONGEST_STEP,
+    ParameterError,
+    PedestrianModelError,
+    VciParameters,
+    require_steady,
+)
 
 FACTOR = 10.0  # a parameter stays between start / 10 and 10 start
 _SPREAD = 0.2  # in the logarithm: the size of the first simplex
@@ -138,7 +138,9 @@ class Search:
 
     def _error(self, x: Array) -> float:
         try:
-            error = self._objective(self._parameters(x))
+            parameters = self._parameters(x)
+            require_steady(parameters, LONGEST_STEP)  # a camera's frames are shorter than that
+            error = self._objective(parameters)
         except ParameterError:  # beyond the model's own bounds
             error = math.inf
         self.done += 1

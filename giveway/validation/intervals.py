@@ -7,12 +7,10 @@ clips are drawn (Davison & Hinkley 1997, "Bootstrap Methods and their Applicatio
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from giveway.geometry.kernel import Array
+from giveway.geometry.kernel import Array
 
 CONFIDENCE = 0.95
 TAILS = ((1.0 - CONFIDENCE) / 2.0, (1.0 + CONFIDENCE) / 2.0)

@@ -1,26 +1,19 @@
 """What ``giveway validate`` leaves in its folder: tables and pictures."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from giveway.errors import ResultsError
 from giveway.figures.style import save_figure
 from giveway.figures.validation import Body, Curve, growth_figure, places_figure, tracks_figure
 from giveway.validation.evaluation import EVERYWHERE, NEAR
 from giveway.validation.predictors import CV, NO_VEHICLE, OWN_PACE, VCI, predictors
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from giveway.validation.protocol import Window
-    from giveway.validation.validating import Validation
-    from pedestrian_model import VciParameters
+from giveway.validation.protocol import Window
+from giveway.validation.validating import Validation
+from pedestrian_model import VciParameters
 
 TABLES = ("errors.csv", "contacts.csv")
 PICTURES = ("growth", "tracks", "places")

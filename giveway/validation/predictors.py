@@ -1,18 +1,13 @@
 """The predictors: the model, with and without the vehicle's force, and two baselines."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
-from pedestrian_model import Crowd, Predictor
-
-if TYPE_CHECKING:
-    from giveway.geometry.kernel import Array
-    from giveway.validation.protocol import Window
-    from pedestrian_model import VciParameters
+from giveway.geometry.kernel import Array
+from giveway.validation.protocol import Window
+from pedestrian_model import Crowd, Predictor, VciParameters
 
 VCI = "VCI"
 CV = "CV"

@@ -5,36 +5,49 @@ Errors are ADE and FDE, the mean and the final displacement between predicted an
 LSTM", CVPR 2016).
 """
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from giveway.geometry.kernel import Array
+from giveway.validation.clips import Clip
+from giveway.validation.dataset import CITR, Dataset
 
-    from numpy.typing import NDArray
-
-    from giveway.geometry.kernel import Array
-    from giveway.validation.clips import Clip
-
+_PAUSE = 0.5  # [s] skipped at the start, and from window to window
+_HORIZONS = (0.75, 2.0, 4.0)  # [s]
 _NOWHERE = 1e6  # [m] where a vehicle stands in frames in which it is not seen
 
 
 @dataclass(frozen=True)
 class Protocol:
-    """How clips are cut and judged; the defaults are CITR's camera and golf cart."""
+    """How clips are cut and judged; without arguments, those of CITR."""
 
-    frame_rate: float = 29.97  # [1/s], arXiv 1902.00487
+    frame_rate: float = CITR.frame_rate  # [1/s]
     skip: int = 15  # frames at the start, in which the dataset's filter settles
     stride: int = 15  # frames from window to window
     horizons: tuple[int, ...] = (22, 60, 120)  # frames ahead: 0.75, 2 and 4 s
     near: float = 2.0  # [m] from a pedestrian's centre to the vehicle's body
-    front: float = 1.0  # [m] from the cart's tracked point to its front
-    rear: float = 1.2  # [m] from the cart's tracked point to its rear
-    width: float = 1.2  # [m]
+    front: float = CITR.vehicle.front  # [m] from the tracked point to the front
+    rear: float = CITR.vehicle.rear  # [m] from the tracked point to the rear
+    width: float = CITR.vehicle.width  # [m]
+
+    @classmethod
+    def of(cls, dataset: Dataset) -> "Protocol":
+        """The same times [s] in this data set's frames, and its vehicle's body."""
+        rate, body = dataset.frame_rate, dataset.vehicle
+        pause = max(1, round(_PAUSE * rate))
+        horizons = tuple(max(1, round(seconds * rate)) for seconds in _HORIZONS)
+        return cls(
+            frame_rate=rate,
+            skip=pause,
+            stride=pause,
+            horizons=horizons,
+            front=body.front,
+            rear=body.rear,
+            width=body.width,
+        )
 
     @property
     def time_step(self) -> float:

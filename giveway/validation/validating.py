@@ -1,30 +1,22 @@
 """``giveway validate``: the pedestrian model against recorded trajectories."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+
+import pandas as pd
 
 from giveway.errors import DatasetError
-from giveway.validation.contacts import contact_table
+from giveway.validation.clips import Clip
+from giveway.validation.contacts import contact_table, people_apart
 from giveway.validation.evaluation import Evaluation, error_table, evaluate
 from giveway.validation.intervals import ClipBootstrap
 from giveway.validation.predictors import predictors
-from giveway.validation.protocol import Protocol, windows
+from giveway.validation.protocol import Protocol, Window, windows
+from pedestrian_model import VciParameters
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    import pandas as pd
-
-    from giveway.validation.clips import Clip
-    from giveway.validation.protocol import Window
-    from pedestrian_model import VciParameters
-
-    Progress = Callable[[int, int], None]  # done, in all
+Progress = Callable[[int, int], None]  # done, in all
 
 SEED = 0  # of the bootstrap's draws
-CITR = Protocol()
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +26,7 @@ class Validation:
     Attributes:
         errors: see :func:`giveway.validation.evaluation.error_table`.
         contacts: see :func:`giveway.validation.contacts.contact_table`.
+        apart: see :func:`giveway.validation.contacts.people_apart`.
     """
 
     clips: tuple[Clip, ...]
@@ -43,6 +36,7 @@ class Validation:
     found: Evaluation
     errors: pd.DataFrame
     contacts: pd.DataFrame
+    apart: dict[str, float]
 
     @property
     def pedestrians(self) -> int:
@@ -54,7 +48,7 @@ def validate(
     clips: Sequence[Clip],
     parameters: VciParameters,
     *,
-    protocol: Protocol = CITR,
+    protocol: Protocol | None = None,
     progress: Progress = lambda _done, _all: None,
 ) -> Validation:
     """Predict all windows of the clips, and play whole clips again.
@@ -62,13 +56,14 @@ def validate(
     Args:
         clips: as :func:`giveway.validation.read_clips` reads them.
         parameters: of the pedestrian model.
-        protocol: how the clips are cut and judged.
+        protocol: how the clips are cut and judged; None: as :func:`protocol_of` has it.
         progress: called with how much is done, and of how much.
 
     Raises:
         DatasetError: no clip is long enough.
     """
     clips = tuple(clips)
+    protocol = protocol or protocol_of(clips)
     cut = cut_windows(clips, protocol)
     replays = sum(clip.poses.shape[1] > 0 for clip in clips)
     done = 0
@@ -83,7 +78,21 @@ def validate(
     draws = ClipBootstrap.of(len(clips), SEED)
     errors = error_table(found, protocol, draws)
     contacts = contact_table(clips, parameters, protocol, advance)
-    return Validation(clips, cut, protocol, draws, found, errors, contacts)
+    apart = people_apart(clips, parameters, protocol)
+    return Validation(clips, cut, protocol, draws, found, errors, contacts, apart)
+
+
+def protocol_of(clips: Sequence[Clip]) -> Protocol:
+    """The protocol of the data set that the clips are from.
+
+    Raises:
+        DatasetError: they are from several, or there is none.
+    """
+    datasets = list(dict.fromkeys(clip.dataset for clip in clips))
+    if len(datasets) != 1:
+        names = ", ".join(dataset.name for dataset in datasets) or "none"
+        raise DatasetError(f"clips: from the data sets {names}; expected those of one at a time")
+    return Protocol.of(datasets[0])
 
 
 def cut_windows(clips: tuple[Clip, ...], protocol: Protocol) -> tuple[Window, ...]:

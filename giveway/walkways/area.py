@@ -1,19 +1,13 @@
 """The walkable area of a network as polygons, and its edge as walls."""
 
-from __future__ import annotations
-
 from collections import defaultdict
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
+from giveway.walkways.gates import Array
 from giveway.walkways.inside import polygon_of, rings
-
-if TYPE_CHECKING:
-    from giveway.walkways.gates import Array
-    from giveway.walkways.reading import PedLane, Survey
-
+from giveway.walkways.reading import PedLane, Survey
 
 _GAP = 0.15  # [m] half the width of a gap between neighbours that is closed
 _SLIVER = 0.1  # [m] half the width of a spit that is cut off

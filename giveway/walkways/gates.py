@@ -10,16 +10,11 @@ that many share. The columns are the middle x, y [m]; the spread x, y [m] from t
 left end; the unit direction of passage x, y; the signal that people wait for here, or -1.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
+Place = tuple[float, float]
 
 BODY_RADIUS = 0.27  # [m] of a pedestrian: half of a shoulder breadth of 0.54 m
 TRACKS = 2  # to either side of the middle: people on one track go round the same corners

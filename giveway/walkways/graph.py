@@ -5,25 +5,18 @@ inside a walkingarea, and along a crossing from its one portal to the other. Lan
 junctions are no edges of this graph, so that a route found in it never leaves its junction.
 """
 
-from __future__ import annotations
-
 import heapq
 import itertools
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from giveway.walkways.gates import TRACKS, gate, turned
+from giveway.walkways.gates import TRACKS, Array, gate, turned
 from giveway.walkways.inside import Interior
 from giveway.walkways.polyline import Polyline, usable_half_width
-from giveway.walkways.reading import Signal
-
-if TYPE_CHECKING:
-    from giveway.walkways.gates import Array
-    from giveway.walkways.reading import Link, PedLane, Survey
-
+from giveway.walkways.reading import Link, PedLane, Signal, Survey
 
 _KERB = 0.4  # [m] from the roadway, where people wait for green
 

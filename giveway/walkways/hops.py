@@ -1,22 +1,16 @@
 """The route along a sequence of edges: their bends, and the hops over the junctions between."""
 
-from __future__ import annotations
-
 import itertools
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from giveway.walkways import gates as g
-from giveway.walkways.graph import End
+from giveway.walkways.gates import Array
+from giveway.walkways.graph import End, WalkGraph
 from giveway.walkways.polyline import usable_half_width
-
-if TYPE_CHECKING:
-    from giveway.walkways.gates import Array
-    from giveway.walkways.graph import WalkGraph
-    from giveway.walkways.reading import Survey
-
+from giveway.walkways.reading import Survey
 
 _AT_END = 1.0  # [m] lanes whose ends are this near to each other meet
 

@@ -1,24 +1,16 @@
 """The shortest route inside a walkingarea, which need not be convex."""
 
-from __future__ import annotations
-
 import heapq
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 import shapely.ops
+from numpy.typing import NDArray
 
-from giveway.walkways.gates import BODY_RADIUS, NO_GATES, places
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.walkways.reading import PedLane
-
-    Array = NDArray[np.float64]
+from giveway.walkways.gates import BODY_RADIUS, NO_GATES, Array, places
+from giveway.walkways.reading import PedLane
 
 _TOLERANCE = 0.05  # [m] that a route may lie outside of the area
 _SLIGHT = math.sin(math.radians(0.5))  # a corner that juts in by less is none

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import shapely
 
 from giveway.walkways.area import walkable_area, walls
+from giveway.walkways.gates import Array
 from giveway.walkways.graph import WalkGraph
 from giveway.walkways.reading import Signal, Survey, survey
 from giveway.walkways.route import Router, WalkRoute
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from giveway.walkways.gates import Array
 
 
 class NearestLane(NamedTuple):
@@ -97,6 +94,15 @@ class WalkNetwork:
         position = station / line.length * lane.length if line.length > 0.0 else 0.0
         distance = shapely.LineString(line.points).distance(shapely.Point(x, y))
         return NearestLane(edge, lane.id, position, float(distance))
+
+    def nearest_place(self, x: float, y: float) -> tuple[float, float] | None:
+        """x, y [m] of the nearest place on the centre line of a lane for people; None: none is."""
+        edges, tree = self._index
+        if not edges:
+            return None
+        line = tree.geometries[int(tree.nearest(shapely.Point(x, y)))]
+        found = line.interpolate(line.project(shapely.Point(x, y)))
+        return float(found.x), float(found.y)
 
     @cached_property
     def _index(self) -> tuple[list[str], shapely.STRtree]:

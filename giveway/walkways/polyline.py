@@ -1,21 +1,15 @@
 """Centre lines: stations along them, and the gates of a route that follows them."""
 
-from __future__ import annotations
-
 import bisect
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
-from giveway.walkways.gates import BODY_RADIUS
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from giveway.walkways.gates import BODY_RADIUS, Array
 
 _STRAIGHT = 0.05  # [m] a vertex nearer to its neighbours' line is no bend
 _SHARPEST = 0.5  # cosine of half the sharpest bend at which a walkway keeps its full width

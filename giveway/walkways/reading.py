@@ -4,23 +4,17 @@ The file is streamed through expat and only what concerns pedestrians is kept, s
 50 MB takes seconds and little memory.
 """
 
-from __future__ import annotations
-
 import gzip
 import zlib
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Protocol
+from pathlib import Path
+from typing import Protocol
 from xml.parsers import expat
 
 import numpy as np
 
 from giveway.errors import ScenarioError
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from giveway.walkways.gates import Array
-
+from giveway.walkways.gates import Array
 
 _PEDESTRIAN = "pedestrian"
 _CAR = "passenger"

@@ -1,27 +1,19 @@
 """The route of one person: way-points from where the person is to where its walk ends."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from giveway.walkways import gates as g
+from giveway.walkways.gates import Array, Place
+from giveway.walkways.graph import WalkGraph
 from giveway.walkways.hops import Pieces, Stretch
 from giveway.walkways.polyline import usable_half_width
+from giveway.walkways.reading import Survey
 from giveway.walkways.starts import Starts
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
-
-    from numpy.typing import NDArray
-
-    from giveway.walkways.graph import WalkGraph
-    from giveway.walkways.reading import Survey
-
-    Array = NDArray[np.float64]
-    Place = tuple[float, float]
 
 _TOGETHER = 0.05  # [m] way-points nearer to each other than this are one
 

@@ -4,25 +4,17 @@ The person goes on from there: nobody is sent back to a kerb, and whoever is on 
 does not wait for its light.
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 from giveway.walkways import gates as g
-from giveway.walkways.graph import End
+from giveway.walkways.gates import Array, Place
+from giveway.walkways.graph import End, Tree, WalkGraph
 from giveway.walkways.polyline import usable_half_width
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from giveway.walkways.gates import Array
-    from giveway.walkways.graph import Tree, WalkGraph
-    from giveway.walkways.reading import Survey
-
-    Place = tuple[float, float]
+from giveway.walkways.reading import Survey
 
 
 class Start(NamedTuple):

@@ -1,5 +1,6 @@
 """The search for the fastest motion: exact on its lattice, and it minds what it must."""
 
+import functools
 import importlib.util
 import itertools
 import sys
@@ -35,6 +36,12 @@ def motion(people, price, *, goal=40.0, limits=None, rules=None, speed=4.0):
     return search.fastest(flags, lattice, speed, price)
 
 
+@functools.cache
+def past_who_leaves(price):
+    """Somebody stands at 20 m until 15 s."""
+    return motion(standing(20.0, 0.0, 15.0), price)
+
+
 def test_nobody_in_the_way_is_full_speed_all_the_way():
     found = motion(standing(20.0, 5.0, 5.0), TOUCH)
     assert found.completion_time == pytest.approx(10.0, abs=1e-5)
@@ -48,14 +55,14 @@ def test_from_a_standstill_driving_off_costs_what_the_limits_say():
 
 
 def test_who_knows_that_somebody_will_leave_arrives_at_full_speed_just_then():
-    # At 20 m until 15 s: the front is R short of there just before, 20.27 m before the goal.
-    found = motion(standing(20.0, 0.0, 15.0), TOUCH)
+    # The front is R short of 20 m just before, 20.27 m before the goal.
+    found = past_who_leaves(TOUCH)
     assert found.completion_time == pytest.approx(15.0 - 0.1 + 20.27 / 4.0, abs=0.02)
     assert found.contact_time == 0.0
 
 
 def test_keeping_d_safe_costs_the_way_that_is_kept():
-    near, far = (motion(standing(20.0, 0.0, 15.0), price) for price in (TOUCH, KEEP))
+    near, far = past_who_leaves(TOUCH), past_who_leaves(KEEP)
     assert far.time_below == 0.0
     assert near.time_below == pytest.approx((8.0 - 0.27) / 4.0, abs=0.11)
     assert far.completion_time - near.completion_time == pytest.approx((8.0 - 0.27) / 4, abs=0.02)

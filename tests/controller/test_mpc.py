@@ -53,10 +53,10 @@ def check(mpc, problem, edge):
 def test_thousands_of_problems_are_solved_exactly(solver, draw, edge):
     model, parameters = LongitudinalModel(), MpcParameters(solver=solver)
     mpc, generator = Mpc(model, parameters), np.random.default_rng(1)
-    judged = [check(mpc, draw(generator, model, parameters), edge) for _ in range(6000)]
-    assert judged.count(True) > 2000
-    assert judged.count(False) > 2000
-    assert judged.count(None) < 30
+    judged = [check(mpc, draw(generator, model, parameters), edge) for _ in range(2100)]
+    assert judged.count(True) > 700
+    assert judged.count(False) > 700
+    assert judged.count(None) < 10
 
 
 @pytest.mark.parametrize(
@@ -119,7 +119,7 @@ def test_agrees_with_a_solver_of_another_family(draw):
     model = LongitudinalModel()
     mpc, generator = Mpc(model, MpcParameters()), np.random.default_rng(5)
     compared = 0
-    while compared < 200:
+    while compared < 80:
         problem = draw(generator, model, MpcParameters())
         if not problem.margin() > 1e-3:
             continue

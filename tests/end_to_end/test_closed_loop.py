@@ -166,6 +166,18 @@ def test_an_empty_plaza_takes_the_pid_its_steady_state_error_longer() -> None:
     assert result.summary["completion_time"] == pytest.approx(10.39, abs=0.01)
 
 
+def test_without_the_detour_people_cross_a_standing_cars_way_otherwise() -> None:
+    """The car stops; who cannot see a way round it does not walk before it, and it waits less."""
+    settings = {"controller": "pid-paper", "seed": 3, "time_limit": 20.0}
+    waits = [
+        giveway.run({**settings, "crowd": {"pedestrians": 30, "detour": detour}}).summary[
+            "longest_wait"
+        ]
+        for detour in (True, False)
+    ]
+    assert waits[0] > waits[1] > 1.0
+
+
 def test_the_ledger_adds_up_and_who_arrives_leaves(run_once: Run) -> None:
     crowd = {"pedestrians": 12, "walk": (0.0, 6.0)}
     result = run_once(crowd=crowd, seed=2)

@@ -126,7 +126,7 @@ def test_an_impatient_ctrl_c_is_noted_and_python_goes_on() -> None:
 
 
 def test_angles_convert_between_the_conventions() -> None:
-    from giveway.geometry.angles import angle_to_heading, heading_to_angle
+    from giveway.geometry.path import angle_to_heading, heading_to_angle
 
     assert heading_to_angle(0.0) == 90.0
     assert heading_to_angle(math.pi / 2) == pytest.approx(0.0)

@@ -13,8 +13,10 @@ import pytest
 
 import giveway
 
-REAR = {"ego": {"id": "rear", "depart_position": 22.5}}
-FRONT = {"ego": {"id": "front", "depart_position": 34.0}}
+# They heed only people: who follows another vehicle has less to search.
+ALONE = {"vehicles": False}
+REAR = {"ego": {"id": "rear", "depart_position": 22.5}, "regulation": ALONE}
+FRONT = {"ego": {"id": "front", "depart_position": 34.0}, "regulation": ALONE}
 
 
 def tracks(egos: tuple[dict[str, Any], ...], seed: int) -> dict[str, Any]:

@@ -13,7 +13,15 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from giveway.api import run_checked
+from giveway.config.loading import as_layer, load
+from giveway.cosimulation.preflight import preflight
+from giveway.errors import ResultsError
 from giveway.processes.heartbeat import Heartbeat
+from giveway.processes.locks import locked
+from giveway.processes.supervisor import Verdict
+from giveway.recording.journal import MAGIC, RECORD, Kind
+from giveway.recovery import recover, recover_left
 
 MANY = 600
 LONG = ["--pedestrians", str(MANY), "--spawn-area", "20,-200,120,-10", "--no-pictures"]
@@ -99,3 +107,119 @@ def test_former_results_survive_a_crash_before_the_first_row(
     os.kill(child_of(process), signal.SIGKILL)
     process.communicate(timeout=60)
     assert {path.name: path.read_bytes() for path in (tmp_path / "r").iterdir()} == before
+
+
+def test_sigterm_while_loading_is_the_users_and_no_crash(tmp_path: Path) -> None:
+    process = start(tmp_path, *LONG)
+    child_of(process)
+    process.send_signal(signal.SIGTERM)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors == "error: ended by SIGTERM before the run began\n"
+    assert not (tmp_path / "r").exists()
+
+
+def test_a_run_that_the_user_has_killed_is_no_crash(tmp_path: Path) -> None:
+    """Its native code did not heed the first signal, and the second one killed it."""
+    journal = journalled(tmp_path)
+    pulse = Heartbeat(journal).read()
+    verdict = Verdict(143, True, True, "killed by a second interrupt", pulse, "", "")
+    error = recover(journal, verdict)
+    assert "the user has ended the run: killed by a second interrupt" in str(error)
+    assert "doctor" not in str(error)
+    manifest = json.loads((tmp_path / "r" / "manifest.json").read_text())
+    assert (manifest["ending"], manifest["error"]) == ("interrupted", None)
+
+
+def journalled(folder: Path) -> Path:
+    """The journal of a run of three persons into r, as SIGKILL leaves it, and r."""
+    journal = folder / "giveway-journal-of-a-killed-run"
+    journal.mkdir()
+    settings = {"crowd": {"pedestrians": 3}, "time_limit": 2.0}
+    checked = preflight(*load([as_layer(settings)]))
+    run_checked(checked, results=folder / "r", journal=journal, pictures=False)
+    for file in (folder / "r").iterdir():
+        if file.name != "ego.csv":
+            file.unlink()
+    (folder / "r" / "ego.csv").rename(folder / "whole.csv")
+    (folder / "r" / "manifest.json").write_text('{"ending": "running"}\n')
+    return journal
+
+
+def test_what_sigkill_has_left_becomes_tables(
+    tmp_path: Path,
+    type_here: Callable[..., subprocess.CompletedProcess[str]],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    journal = journalled(tmp_path)
+    listed = type_here("recover")
+    assert f"{journal}  " in listed.stdout
+    assert "shared_space: 41 steps, up to" in listed.stdout
+    with locked(journal):
+        refused = type_here("recover", journal)
+    assert refused.returncode == 2
+    assert "its run is still at work" in refused.stderr
+
+    done = type_here("recover", journal)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "r" / "ego.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+    manifest = json.loads((tmp_path / "r" / "manifest.json").read_text())
+    assert manifest["ending"] == "crashed"
+    assert "killed, with its supervisor," in manifest["error"]
+    assert not journal.exists()
+    assert "No run that was killed" in type_here("recover").stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [("meta.json", b"[1]"), ("meta.json", b"{"), ("rows", b"giveway0"), ("rows", None)],
+)
+def test_what_is_no_journal_is_named(
+    tmp_path: Path,
+    type_here: Callable[..., subprocess.CompletedProcess[str]],
+    name: str,
+    content: bytes | None,
+) -> None:
+    (tmp_path / "j").mkdir()
+    Heartbeat(tmp_path / "j")
+    (tmp_path / "j" / "meta.json").write_text('{"config": "", "results": null}')
+    if content is None:  # a row of a table that was never declared
+        content = MAGIC + RECORD.pack(Kind.ROWS, 7, 8) + bytes(8) + RECORD.pack(Kind.COMMIT, 0, 0)
+    (tmp_path / "j" / name).write_bytes(content)
+    done = type_here("recover", "j")
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert line.startswith(f"error: j/{name}: is ")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a full disk")
+def test_a_full_disk_keeps_the_journal_and_a_manifest(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    journal = tmp_path / "journal"
+    journal.mkdir()
+    real = pd.DataFrame.to_csv
+
+    def full(self: pd.DataFrame, path: Path, **options: object) -> None:
+        if path.name == "trajectories.csv":
+            path.write_text("half a file")
+            path = Path("/dev/full")
+        real(self, path, **options)
+
+    monkeypatch.setattr(pd.DataFrame, "to_csv", full)
+    checked = preflight(*load([as_layer({"crowd": {"pedestrians": 3}, "time_limit": 2.0})]))
+    command = f"'giveway recover {journal} --force'"
+    with pytest.raises(
+        ResultsError, match=rf"trajectories\.csv: cannot be written \(No space.*{command}"
+    ):
+        run_checked(checked, results=tmp_path / "r", journal=journal, pictures=False)
+    assert Heartbeat(journal).kept  # the supervisor leaves it
+    assert not (tmp_path / "r" / "trajectories.csv").exists()
+    manifest = json.loads((tmp_path / "r" / "manifest.json").read_text())
+    assert "trajectories.csv: cannot be written" in manifest["incomplete"]
+    monkeypatch.undo()
+    result, folder = recover_left(journal, force=True)
+    assert (folder, len(result.time)) == (tmp_path / "r", 41)
+    assert (folder / "trajectories.csv").is_file()

@@ -146,3 +146,22 @@ def test_whoever_is_inside_the_car_or_wants_in_just_gets_a_finite_way(walkers):
     crowd = walkers([(0.3, 0.2), (0.0, -5.0)], [(0.0, 9.0), (0.1, 0.1)])
     target = forces_apart(CrowdModel(), crowd, car).target
     np.testing.assert_array_equal(target, [(0.0, 9.0), (0.1, 0.1)])
+
+
+def test_without_the_detour_a_walker_stays_at_the_side_of_a_standing_car(walkers):
+    """The published forces alone have a local minimum there; the switch is the detour and no more.
+
+    Where no car stands, both models take the same step to the bit.
+    """
+    crowd = walkers([(0.0, -6.0)], [(0.0, 12.0)])
+    parked, driving = (Vehicles.create(0.0, 0.0, 0.0, speed) for speed in (0.0, 2.0))
+    ends = {}
+    for detour in (True, False):
+        model, walker = CrowdModel(detour=detour), crowd.copy()
+        for _ in range(600):
+            model.advance(walker, parked)
+        ends[detour] = walker.position[0, 1]
+    assert ends[True] > 10.0
+    assert ends[False] < -1.0
+    steps = [CrowdModel(detour=detour).step(crowd, driving) for detour in (True, False)]
+    assert steps[0].velocity.tobytes() == steps[1].velocity.tobytes()

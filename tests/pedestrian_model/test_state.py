@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import FrozenInstanceError, replace
+from dataclasses import FrozenInstanceError, fields, replace
 
 import numpy as np
 import pytest
@@ -173,3 +173,26 @@ def test_presets_are_frozen_and_differ_in_the_strengths_only():
 def test_parameters_out_of_range_are_refused_by_name_and_value(change, message):
     with pytest.raises(ParameterError, match=message):
         replace(SIM, **change)
+
+
+SHARES = {"repulsion_anisotropy", "navigation_anisotropy", "vehicle_anisotropy"}
+
+
+@pytest.mark.parametrize("name", [field.name for field in fields(SIM)])
+def test_no_parameter_takes_a_number_that_is_no_quantity_of_a_person(name):
+    """A force of 1e9 N, a gap of 1e-9 m: what was meant is another unit, or another key."""
+    with pytest.raises(ParameterError, match=rf"{name} = 1000000000.0, expected .*: \w+"):
+        replace(SIM, **{name: 1e9})
+    if name not in SHARES:
+        with pytest.raises(ParameterError, match=rf"{name} = 1e-09, expected .*: \w+"):
+            replace(SIM, **{name: 1e-9})
+
+
+def test_a_parameter_that_may_be_zero_says_so_and_why_its_range_is_that():
+    with pytest.raises(ParameterError) as refused:
+        replace(SIM, navigation_strength=1e9)
+    assert str(refused.value) == (
+        "navigation_strength = 1000000000.0, expected 0 or a number >= 0.01 and <= 10000: people "
+        "are moved by some hundred newtons, and 400 N are a_max for 80 kg already"
+    )
+    assert replace(SIM, navigation_strength=0.0, vehicle_clearance=0).navigation_strength == 0.0

@@ -16,6 +16,7 @@ from pedestrian_model import (
     CrowdModel,
     DivergenceError,
     ParameterError,
+    Predictor,
     Vehicles,
     arrived,
 )
@@ -147,3 +148,28 @@ def test_a_vehicle_that_is_not_finite_is_named(random_crowd):
 def test_the_time_step_is_checked(time_step):
     with pytest.raises(ParameterError, match="time_step"):
         CrowdModel(time_step=time_step)
+
+
+@pytest.mark.parametrize("gain_by_step", [0.99, 1.01, 1.9, 3.4])
+def test_a_step_that_makes_speeds_swing_is_refused_and_no_other(gain_by_step):
+    """The limit is where the error of the speed changes its sign from step to step."""
+    dt = 0.05
+    parameters = replace(SIM, destination_gain=gain_by_step * SIM.mass / dt)
+    factor = 1.0 - gain_by_step
+    if factor < 0.0:
+        for kind in (CrowdModel, Predictor):
+            with pytest.raises(ParameterError, match=r"destination_gain = .* swing .* 1600 N s/m"):
+                kind(parameters, dt)
+        CrowdModel(parameters, dt * 0.9 / gain_by_step)  # a finer step will do
+        return
+    crowd = Crowd.create([(0.0, 0.0)], [(0.0, 0.0)], 1.3, [[(1e6, 0.0)]])
+    model, short = CrowdModel(parameters, dt), []
+    for _ in range(40):
+        model.advance(crowd, Vehicles.empty())
+        short.append(1.3 - crowd.velocity[0, 0])
+    assert min(short) > -1e-9
+
+
+def test_a_destination_too_sharp_for_the_step_is_refused():
+    with pytest.raises(ParameterError, match=r"= 0\.05 m: .* more than v_max dt/2 = 0\.06"):
+        CrowdModel(replace(SIM, destination_smoothing=0.05))

@@ -17,6 +17,7 @@ from contextlib import suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final, Self
 
+from giveway.studies.execution.cluster_probe import reason_against
 from giveway.studies.execution.cluster_runs import ClusterRuns
 from giveway.studies.execution.executor import WorkerError
 
@@ -29,13 +30,15 @@ if TYPE_CHECKING:
 Client = Any  # Dask's classes, whose methods mostly have no types
 Cluster = Any
 
-PATIENCE: Final = 300.0  # [s] to wait for a scheduler or worker to come back
+PATIENCE: Final = 300.0  # [s] to wait for a worker to come back
+_SCHEDULER_PATIENCE: Final = 5.0  # [s] to wait for the scheduler to do so, which knows nothing then
 _LOCAL: Final = re.compile(r"local(?::([1-9]\d*))?")
 _REMOTE: Final = re.compile(r"(?!local:)([\w.+-]+://\S+|[\w.-]+:\d+)")
 _LOCAL_WORKERS: Final = 2
 _LOOK: Final = 1.0  # [s] between two looks at the cluster
 _CONNECT: Final = 5.0  # [s] for one attempt
 _CLOSING: Final = 5.0  # [s] for the workers to end the study's processes
+_LEAVING: Final = 1.0  # [s] for a cluster that does not answer any more
 
 
 class ClusterExecutor:
@@ -45,7 +48,7 @@ class ClusterExecutor:
         address: of the scheduler; ``local`` or ``local:N``.
         limits: of each run.
         tell: takes one line when the cluster has to be waited for; None: to standard error.
-        patience: [s] to wait for it.
+        patience: [s] to wait for its workers; for its scheduler, 5 s at most.
 
     Raises:
         WorkerError: Dask is not installed, or the address is none.
@@ -96,9 +99,10 @@ class ClusterExecutor:
         client, self._client = self._client, None
         cluster, self._cluster = self._cluster, None
         if client is not None:
+            limit = _CLOSING if client.status == "running" else _LEAVING
             if cluster is None:  # a local cluster ends its processes itself
-                _try_briefly(lambda: client.run(close_pool, self._study, on_error="ignore"))
-            _try_briefly(lambda: client.close(timeout=_CLOSING))
+                _try_briefly(lambda: client.run(close_pool, self._study, on_error="ignore"), limit)
+            _try_briefly(lambda: client.close(timeout=limit), limit)
         if cluster is not None:
             _try_briefly(lambda: cluster.close(timeout=_CLOSING))
 
@@ -135,16 +139,16 @@ class ClusterExecutor:
         if now - self._looked < _LOOK and not self._missed:
             return True
         self._looked = now
-        missing = self._missing()
+        missing, patience = self._missing()
         if not missing:
             self._missed = 0.0
             return True
         if not self._missed:
             self._missed = now
-            self._tell(f"{missing}; waiting {self._patience:g} s for it, nothing is lost")
-        if now - self._missed > self._patience:
+            self._tell(f"{missing}; waiting {patience:g} s for it, nothing is lost")
+        if time.monotonic() - self._missed > patience:
             raise WorkerError(
-                f"{missing}, for {self._patience:g} s; start it again and go on with --resume"
+                f"{missing}, for {patience:g} s; start it again and go on with --resume"
             )
         return False
 
@@ -158,8 +162,8 @@ class ClusterExecutor:
             _try_briefly(lambda: client.run(close_pool, self._study, on_error="ignore"))
             self._study = uuid.uuid4().hex
 
-    def _missing(self) -> str:
-        """What the cluster lacks; empty if it can work."""
+    def _missing(self) -> tuple[str, float]:
+        """What the cluster lacks, empty if it can work; and how long [s] that is waited for."""
         client = self._client
         try:
             if client is None or client.status == "closed":
@@ -167,10 +171,12 @@ class ClusterExecutor:
                 client = self._open()
             if client.status == "running":
                 self._threads = sum(client.nthreads().values())
-                return "" if self._threads else f"cluster {self._address}: it has no worker"
+                lacking = "" if self._threads else f"cluster {self._address}: it has no worker"
+                return lacking, self._patience
         except (OSError, ValueError, WorkerError):
             pass
-        return f"cluster {self._address}: its scheduler does not answer"
+        lacking = f"cluster {self._address}: its scheduler does not answer"
+        return lacking, min(self._patience, _SCHEDULER_PATIENCE)
 
     def _open(self) -> Client:
         return self._client or self._connect()
@@ -181,6 +187,11 @@ class ClusterExecutor:
         from giveway.studies.execution.cluster_task import ignore_interrupts
 
         dask: Any = distributed
+        # What it would print of a lost connection, we say ourselves.
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
+        reason = "" if self._local else reason_against(self._address, _CONNECT)
+        if reason:
+            raise self._unreachable(reason)
         try:
             if self._local and self._cluster is None:
                 self._cluster = dask.LocalCluster(
@@ -196,10 +207,13 @@ class ClusterExecutor:
             self._threads = sum(self._client.nthreads().values())
         except (OSError, ValueError, RuntimeError) as error:
             reason = " ".join(str(error).split()) or type(error).__name__
-            raise WorkerError(
-                f"cluster '{self._address}': cannot be reached ({reason}); is 'dask scheduler' up?"
-            ) from error
+            raise self._unreachable(reason) from error
         return self._client
+
+    def _unreachable(self, reason: str) -> WorkerError:
+        return WorkerError(
+            f"cluster '{self._address}': cannot be reached ({reason}); is 'dask scheduler' up?"
+        )
 
 
 def _require_dask() -> None:
@@ -211,8 +225,8 @@ def _require_dask() -> None:
         ) from error
 
 
-def _try_briefly(call: Callable[[], Any]) -> None:
-    """Make a call, and wait only briefly: the other side may be in any state."""
+def _try_briefly(call: Callable[[], Any], limit: float = _CLOSING) -> None:
+    """Make a call, and wait only for ``limit`` [s]: the other side may be in any state."""
 
     def attempt() -> None:
         with suppress(Exception):
@@ -220,7 +234,7 @@ def _try_briefly(call: Callable[[], Any]) -> None:
 
     thread = threading.Thread(target=attempt, daemon=True)
     thread.start()
-    thread.join(_CLOSING)
+    thread.join(limit)
 
 
 def _to_stderr(line: str) -> None:

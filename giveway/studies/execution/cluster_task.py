@@ -4,8 +4,6 @@ The processes form a pool like that of a single machine, so that a crash never e
 worker. Arguments and results are plain values, as the other side may run another giveway.
 """
 
-from __future__ import annotations
-
 import signal
 import threading
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The workers' temporary folder: heartbeats, what they print, temporary files."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import os

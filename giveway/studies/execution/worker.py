@@ -1,7 +1,5 @@
 """A worker: a process that makes one run after the other, for as long as its study lives."""
 
-from __future__ import annotations
-
 import contextlib
 import faulthandler
 import json

@@ -3,8 +3,6 @@
 docs/statistics.md says in words what is computed here.
 """
 
-from __future__ import annotations
-
 from giveway.studies.columns import (
     COMPARISON_COLUMNS,
     LEVEL_COLUMNS,

@@ -3,25 +3,17 @@
 Efron 1987, "Better bootstrap confidence intervals", J. Am. Stat. Assoc. 82, 171-185.
 """
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy  # scipy.stats is loaded where it is first used: that takes a second
 
+from giveway.geometry.kernel import Array
 from giveway.studies.statistics.rounding import in_units
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 BCA = "BCa"
 PERCENTILE = "percentile"

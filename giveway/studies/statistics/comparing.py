@@ -1,33 +1,23 @@
 """The table of differences: every metric in every situation of every context."""
 
-from __future__ import annotations
-
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from giveway.geometry.kernel import Array
 from giveway.studies.columns import COMPARISON_COLUMNS, numbers_of
 from giveway.studies.contexts import other_factors
+from giveway.studies.definition import Comparison, Situation
+from giveway.studies.design import Design
 from giveway.studies.statistics.bootstrap import Interval, mean_interval, seed_of
-from giveway.studies.statistics.metrics import METRICS
-from giveway.studies.statistics.pairs import paired
+from giveway.studies.statistics.metrics import METRICS, Metric
+from giveway.studies.statistics.pairs import Pairs, paired
 from giveway.studies.statistics.rounding import mean, median, tabulated, to_decimals
 from giveway.studies.statistics.signed_rank import SignedRank, q_values, signed_rank
 from giveway.studies.statistics.situations import SITUATIONS, share, within
-
-if TYPE_CHECKING:
-    from collections.abc import Hashable, Mapping
-
-    from numpy.typing import NDArray
-
-    from giveway.studies.definition import Comparison, Situation
-    from giveway.studies.design import Design
-    from giveway.studies.statistics.metrics import Metric
-    from giveway.studies.statistics.pairs import Pairs
-
-    Array = NDArray[np.float64]
 
 BETTER = "better"
 WORSE = "worse"

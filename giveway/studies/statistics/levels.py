@@ -1,25 +1,16 @@
 """Every level's own numbers: the mean of each metric over the runs of each cell."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pandas as pd
 
+from giveway.geometry.kernel import Array
 from giveway.studies.columns import LEVEL_COLUMNS, numbers_of
+from giveway.studies.definition import Comparison
+from giveway.studies.design import Cell, Design
 from giveway.studies.statistics.bootstrap import mean_interval, seed_of
 from giveway.studies.statistics.metrics import METRICS
 from giveway.studies.statistics.pairs import cleaned, without_result
 from giveway.studies.statistics.rounding import mean, tabulated
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.studies.definition import Comparison
-    from giveway.studies.design import Cell, Design
-
-    Array = NDArray[np.float64]
 
 
 def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.DataFrame:

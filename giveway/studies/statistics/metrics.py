@@ -1,7 +1,5 @@
 """The numbers of a run of which a difference makes sense, and which way is better."""
 
-from __future__ import annotations
-
 import difflib
 from dataclasses import dataclass
 from typing import Literal
@@ -61,6 +59,7 @@ METRICS = (
     _lower("share_below_ttc", "share in conflict"),
     _higher("minimum_pet", "minimum post-encroachment time"),
     _lower("maximum_drac", "maximum deceleration to avoid a crash"),
+    _higher("minimum_ttc_moving", "minimum time to collision while moving"),
 )
 
 

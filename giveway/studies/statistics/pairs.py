@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
-from giveway.studies.contexts import baseline_level, contexts
+from giveway.geometry.kernel import Array
+from giveway.studies.contexts import Context, baseline_level, contexts
+from giveway.studies.definition import Comparison
+from giveway.studies.design import Design
 from giveway.studies.record import CRASHED, FAILED, Scalar
 from giveway.studies.statistics.metrics import METRICS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from numpy.typing import NDArray
-
-    from giveway.studies.contexts import Context
-    from giveway.studies.definition import Comparison
-    from giveway.studies.design import Design
-
-    Array = NDArray[np.float64]
 
 _NAMES = tuple(metric.name for metric in METRICS)
 

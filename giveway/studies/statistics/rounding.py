@@ -1,19 +1,12 @@
 """Numbers as tables hold them, and means and medians that no large number makes overflow."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 import numpy as np
+import pandas as pd
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    import pandas as pd
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from giveway.geometry.kernel import Array
 
 DECIMALS = 6
 _PER_ONE = 10.0**DECIMALS

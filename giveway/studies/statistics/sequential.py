@@ -6,26 +6,19 @@ only, at k = minimum, minimum + batch, ..., so that neither the number of worker
 which runs end can move the stop.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
 
 from giveway.studies.columns import PRECISION_COLUMNS, numbers_of
 from giveway.studies.contexts import other_factors
+from giveway.studies.definition import Comparison, Precision
+from giveway.studies.design import Design
 from giveway.studies.statistics.comparing import differences, interval
 from giveway.studies.statistics.metrics import metric
-from giveway.studies.statistics.pairs import paired
+from giveway.studies.statistics.pairs import Pairs, paired
 from giveway.studies.statistics.rounding import mean, tabulated
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from giveway.studies.definition import Comparison, Precision
-    from giveway.studies.design import Design
-    from giveway.studies.statistics.pairs import Pairs
 
 
 def looks(precision: Precision, replications: int) -> Iterator[int]:

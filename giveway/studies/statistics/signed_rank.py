@@ -1,17 +1,11 @@
 """Whether differences lie to one side of zero: Wilcoxon's signed-rank test, of scipy."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy  # scipy.stats is loaded where it is first used: that takes a second
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from giveway.geometry.kernel import Array
 
 _EXACT = 50  # differences up to which every assignment of signs is counted
 

@@ -1,25 +1,18 @@
 """Whether the vehicle had to stop: the three situations of Yang & Özgüner 2019, section 4."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, get_args
+from typing import get_args
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from giveway.studies.columns import SITUATION_COLUMNS
 from giveway.studies.contexts import other_factors
-from giveway.studies.definition import Situation
-from giveway.studies.statistics.pairs import paired
+from giveway.studies.definition import Comparison, Situation
+from giveway.studies.design import Design
+from giveway.studies.statistics.pairs import Pairs, paired
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from giveway.studies.definition import Comparison
-    from giveway.studies.design import Design
-    from giveway.studies.statistics.pairs import Pairs
-
-    Mask = NDArray[np.bool_]
+Mask = NDArray[np.bool_]
 
 SITUATIONS: tuple[Situation, ...] = get_args(Situation)
 

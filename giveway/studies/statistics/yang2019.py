@@ -1,16 +1,11 @@
 """The paper's Table 2 compared with ours: Yang & Özgüner 2019 (arXiv 1907.05178), section 5.2."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import pandas as pd
 
 from giveway.studies.columns import COMPARISON_COLUMNS, TABLE_2_COLUMNS
-
-if TYPE_CHECKING:
-    from giveway.studies.definition import Situation
+from giveway.studies.definition import Situation
 
 PEDESTRIANS = (30, 20, 10)
 METRIC_OF: dict[Situation, str] = {

@@ -225,6 +225,10 @@ def test_the_ego_keeps_behind_the_vehicle_in_front(
     gap = result.ego["vehicle_gap"]
     assert 1.0 < gap.min() < 12.0  # it came near, and not too near
     assert result.ego_track.speed[-1] < 5.0
+    if controller == "mpc":
+        assert result.summary["hard_brakes"] == 0  # it closes in comfortably
+    standing = result.ego[result.ego["speed"] < 0.2]
+    assert set(standing["waits_for"]) <= {"vehicle", ""}
 
 
 # --- who never departs --------------------------------------------------------------------------
@@ -251,16 +255,7 @@ def test_an_ego_that_never_finds_room_to_depart_is_reported(
         giveway.run({"scenario": str(config), "ego": {"take_over": ("late",)}})
 
 
-@pytest.mark.parametrize(
-    "controller",
-    [
-        "mpc",
-        pytest.param(
-            "mpc-paper",
-            marks=pytest.mark.xfail(reason="it foresees 0.75 s: it turns too late"),
-        ),
-    ],
-)
+@pytest.mark.parametrize("controller", ["mpc", "mpc-paper"])
 def test_a_left_turn_gives_way_to_oncoming_traffic(
     drive: Drive, scenario: Callable[..., Path], controller: str
 ) -> None:

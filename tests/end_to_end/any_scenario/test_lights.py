@@ -21,7 +21,7 @@ def test_walkers_cross_at_green_and_wait_at_red(
     drive: Drive, city: Callable[[float], Path]
 ) -> None:
     crowd = {"zone": "everywhere"}
-    result, look = drive(city(0.1), ego={"none": True}, crowd=crowd, time_limit=90.0)
+    result, look = drive(city(0.1), ego={"none": True}, crowd=crowd, time_limit=70.0)
     ours = set(result.crowd_track.ids)
     at_green, at_red = look.entered(ours)
     assert at_green > 50

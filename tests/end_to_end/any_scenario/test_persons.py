@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -37,6 +38,25 @@ def share_within(area: shapely.Geometry, margin: float, result: RunResult) -> fl
     return float(shapely.contains_xy(grown, crowd.x, crowd.y).mean())
 
 
+@pytest.fixture(scope="module")
+def departed_alone(
+    city: Callable[[float], Path],
+    call_sumo: Callable[..., str],
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Callable[[float], set[str]]:
+    """Who sets out on foot up to a time [s] in a city that SUMO runs without us; run once each."""
+    folder = tmp_path_factory.mktemp("alone")
+
+    @functools.cache
+    def people(until: float) -> set[str]:
+        fcd = folder / "fcd.xml"
+        plain = ("sumo", "-c", city(0.1), "--end", f"{until}", "--fcd-output", fcd)
+        call_sumo(*plain, "--no-step-log", "--no-warnings", cwd=folder)
+        return set(re.findall(r'<person id="([^"]+)"', fcd.read_text()))
+
+    return people
+
+
 @pytest.mark.parametrize(
     ("zone", "ego"),
     [("everywhere", "car10"), ("40", "car10"), (SQUARE, "car10"), (SQUARE, ""), ("none", "")],
@@ -44,8 +64,7 @@ def share_within(area: shapely.Geometry, margin: float, result: RunResult) -> fl
 def test_nobody_is_lost_frozen_or_there_twice(
     drive: Drive,
     city: Callable[[float], Path],
-    call_sumo: Callable[..., str],
-    tmp_path: Path,
+    departed_alone: Callable[[float], set[str]],
     zone: str,
     ego: str,
 ) -> None:
@@ -60,11 +79,7 @@ def test_nobody_is_lost_frozen_or_there_twice(
     assert max(look.departed.values()) == max(look.arrived.values(), default=1) == 1
     present = set(look.people[-1])
     assert present == set(look.departed) - set(look.arrived)
-    fcd = tmp_path / "fcd.xml"
-    plain = ("sumo", "-c", city(0.1), "--end", f"{look.times[-1]}", "--fcd-output", fcd)
-    call_sumo(*plain, "--no-step-log", "--no-warnings", cwd=tmp_path)
-    alone = set(re.findall(r'<person id="([^"]+)"', fcd.read_text()))
-    assert alone == set(look.departed)
+    assert departed_alone(look.times[-1]) == set(look.departed)
     assert look.ours[-1] == ledger["walking"] <= len(present)
     # Whom we have walked for 40 s has come somewhere.
     for name, (x, y) in look.people[-401].items():

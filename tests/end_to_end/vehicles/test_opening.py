@@ -101,5 +101,5 @@ def test_it_starts_at_the_speed_of_the_ego_without_a_parameter_for_it(zoo, run):
 
 def test_an_fmu_whose_force_has_the_wrong_sign_is_refused_before_the_run(zoo, run):
     car = zoo.car(spoken={"force": (-1.0, 0.0)})
-    with pytest.raises(VehicleError, match=r"gain = -1\.0 to \[inputs\.force\]"):
+    with pytest.raises(VehicleError, match=r"gain = -1\.0 in \[inputs\.force\]"):
         run(car)

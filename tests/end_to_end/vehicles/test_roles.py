@@ -166,7 +166,7 @@ def test_each_role_from_the_command_line(zoo, giveway, tmp_path, role):
     options = PEDALS if role == "throttle_brake" else {"role": role}
     car = zoo.car(**options)
     words = ["run", "shared_space", "--seed", SEED, "--ego-initial-speed", 2, "--out", "r"]
-    words += ["--no-pictures"]
+    words += ["--no-pictures", "--controller", "mpc-paper"]
     done = giveway(*words, "--vehicle", car, "--profile", car.with_suffix(".toml"))
     assert done.returncode == 0, done.stderr
     require_physics(pd.read_csv(tmp_path / "r" / "ego.csv"), options, 1e-5)

@@ -11,7 +11,7 @@ import zipfile
 import pytest
 
 from fmus import bundled_fmu
-from fmus.archive.gate import open_archive
+from fmus.archive.gate import extract, open_archive
 from fmus.errors import FmuArchiveError, FmuFileError
 
 DESCRIPTION = b'<?xml version="1.0"?><fmiModelDescription fmiVersion="2.0"/>'
@@ -192,6 +192,30 @@ def test_the_same_name_twice(archive, refused):
     path = archive(("modelDescription.xml", b"<other/>"))
     with refused(FmuArchiveError, path, "modelDescription.xml", "twice"):
         open_archive(path)
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_the_same_file_twice_is_that_file(archive, tmp_path):
+    members = [("resources/a.txt", b"one"), ("resources/a.txt", b"one")]
+    opened = open_archive(archive(*members, ("modelDescription.xml", DESCRIPTION)))
+    (tmp_path / "out").mkdir()
+    extract(opened, tmp_path / "out", ("resources/",))
+    assert (tmp_path / "out/resources/a.txt").read_bytes() == b"one"
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+@pytest.mark.parametrize("other", [b"two", b"one\0", b"", b"o" * 3_000_000])
+def test_one_name_for_two_contents(archive, refused, other):
+    path = archive(("resources/a.txt", b"one"), ("resources/a.txt", other))
+    with refused(FmuArchiveError, path, "resources/a.txt", "different contents"):
+        open_archive(path)
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_a_bomb_of_equal_files(archive, refused):
+    part = b"\0" * (4 << 20)
+    with refused(FmuArchiveError, "zip bomb"):
+        open_archive(archive(*(("resources/same", part) for _ in range(8))))
 
 
 def test_a_file_that_is_also_a_folder(archive, refused):

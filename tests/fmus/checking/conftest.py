@@ -30,6 +30,8 @@ class Car:
     brake_limit: float = np.inf
     noise: float = 0.0
     sign: float = 1.0
+    brake_gain: float = 1.0  # of the brake forces that arrive
+    brake_lag: float | None = None  # [s]; None: that of the drive
     step_size: float = 0.05
     warnings: list[str] = field(default_factory=list)
     path: Path = Path("car.fmu")
@@ -42,14 +44,16 @@ class Car:
 
     def step(self, force: float) -> None:
         force = min(max(self.sign * force, -self.brake_limit), self.drive_limit)
+        force *= self.brake_gain if force < 0.0 else 1.0
+        lag = self.lag if force >= 0.0 and self._force >= 0.0 else self.late_brake
         before = self._true
-        keep = np.exp(-FINE / self.lag) if self.lag else 0.0
+        keep = np.exp(-FINE / lag) if lag else 0.0
         for _ in range(round(self.step_size / FINE)):
             self._late.append(force)
             arrived = self._late.popleft()
             mean = arrived
-            if self.lag:
-                mean += (self._force - arrived) * self.lag / FINE * (1.0 - keep)
+            if lag:
+                mean += (self._force - arrived) * lag / FINE * (1.0 - keep)
             self._force = arrived + (self._force - arrived) * keep
             v = self._true
             moving = self.constant if v > 0.0 or mean > self.constant else 0.0
@@ -59,6 +63,10 @@ class Car:
             self._true = after
         self.acceleration = (self._true - before) / self.step_size
         self.speed = self._true + self.noise * self._random.standard_normal()
+
+    @property
+    def late_brake(self) -> float:
+        return self.lag if self.brake_lag is None else self.brake_lag
 
     def close(self) -> None: ...
 

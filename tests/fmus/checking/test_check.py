@@ -8,13 +8,13 @@ from fmus.profile.bundled import BUNDLED_PROFILE
 from fmus.profile.vehicle_profile import make_profile
 
 
-def checked(zoo, path, isolated=False, **changes):
+def checked(zoo, path, isolated=False, known=None, **changes):
     profile = make_profile(zoo.profile(path) | changes, "test")
     guarded, unguarded = (
         opener_of(path, step_size=0.05, profile=chosen, isolated=isolated)
         for chosen in (profile, without_guards(profile))
     )
-    return check(guarded, step_size=0.05, profile=profile, unguarded=unguarded)
+    return check(guarded, step_size=0.05, profile=profile, unguarded=unguarded, **known or {})
 
 
 def finding(report, name):
@@ -74,6 +74,20 @@ def test_the_wrong_sign_of_the_force(zoo):
     assert "[inputs.force]" in found.remedy
 
 
+def test_a_gain_that_is_there_already_is_not_advised(zoo):
+    """The car is driven forwards by a positive force, and its profile turns the sign."""
+    path = zoo.car()
+    inputs = {"force": {"variable": "force", "gain": -1.0}}
+    found = finding(checked(zoo, path, inputs=inputs), "drives")
+    assert found.verdict == "fail"
+    assert "`gain = 1.0` in place of `gain = -1.0` in [inputs.force]" in found.remedy
+    path = zoo.car(spoken={"position": (-0.5, 0.0)})
+    outputs = zoo.profile(path)["outputs"]
+    outputs["position"]["gain"] = 2.0
+    found = finding(checked(zoo, path, outputs=outputs), "speed and position")
+    assert "set `gain = -0.5` in place of `gain = 2.0` in [outputs.position]" in found.remedy
+
+
 def test_a_car_that_is_not_in_gear(zoo):
     report = checked(zoo, zoo.car(values={"engaged": 0.0}))
     found = finding(report, "drives")
@@ -97,13 +111,88 @@ def test_another_mass_is_a_warning_that_leads_to_identify(zoo):
     assert "giveway fmu identify" in found.remedy
 
 
-def test_a_profile_with_the_model_passes_it(zoo):
-    model = {
-        "mass": 1804.5, "friction": 100.0, "r_squared": 1.0, "speed_error": 0.0,
+def a_model(mass):
+    return {
+        "mass": mass, "friction": 100.0, "r_squared": 1.0, "speed_error": 0.0,
         "position_error": 0.0, "horizon": 0.75, "time_step": 0.05,
     }  # fmt: skip
-    report = checked(zoo, zoo.car(values={"mass": 1800.0}), model=model)
+
+
+def test_a_profile_with_the_model_passes_it(zoo):
+    report = checked(zoo, zoo.car(values={"mass": 1800.0}), model=a_model(1804.5))
     assert finding(report, "controller's model").verdict == "pass"
+
+
+# ---- errors of factor ----
+
+
+def per_cent(zoo):
+    """A car whose pedals take per cent, and say that 1 is fully pressed."""
+    spoken = {"throttle": (0.01, 0.0), "brake": (0.01, 0.0)}
+    return zoo.car(role="throttle_brake", spoken=spoken)
+
+
+@pytest.mark.parametrize(
+    ("known", "changes", "origin"),
+    [
+        ({"mass": 1000.0}, {}, "1000 kg (--mass)"),
+        ({"mass": 1400.0}, {}, "1400 kg (--mass)"),
+        ({"vehicle_class": "passenger"}, {}, "500 to 3500 kg (--ego-class passenger)"),
+        ({}, {"model": a_model(1000.0)}, "1000 kg ([model] of the profile)"),
+        ({"mass": 1000.0}, {"model": a_model(1e5)}, "1000 kg (--mass)"),
+    ],
+)
+def test_pedals_in_per_cent_that_say_otherwise_fail_by_what_the_car_weighs(
+    zoo, known, changes, origin
+):
+    found = finding(checked(zoo, per_cent(zoo), known=known, **changes), "controller's model")
+    assert found.verdict == "fail"
+    assert origin in found.text
+    assert "100 times too weak" in found.text
+    assert found.remedy == 'set `unit = "%"` in [inputs.throttle]'
+
+
+def test_without_anything_to_compare_with_it_is_a_question(zoo):
+    report = checked(zoo, per_cent(zoo))
+    found = finding(report, "controller's model")
+    assert found.verdict == "ask"
+    assert "does it weigh 1e+05 kg?" in found.text
+    assert "--mass" in found.remedy
+
+
+@pytest.mark.parametrize(
+    ("role", "spoken", "words", "remedy"),
+    [
+        ("force", {"force": (9.80665, 0.0)}, "9.81", 'unit = "kgf"'),
+        ("force", {"force": (1 / 9.80665, 0.0)}, "9.81", 'unit = "N"'),
+        ("force", {"force": (1e-2, 0.0)}, "factor of 100", "see `unit` and `gain`"),
+        ("force", {"force": (0.2, 0.0)}, "5.0", "see `unit` and `gain`"),
+        ("acceleration", {"wanted_acceleration": (9.80665, 0.0)}, "9.81", 'unit = "g0"'),
+        ("force", {"speed": (1 / 3.6, 0.0), "initial_speed": (1 / 3.6, 0.0)}, "3.6", "km/h"),
+        ("force", {"speed": (3.6, 0.0), "initial_speed": (3.6, 0.0)}, "3.6", 'unit = "m/s"'),
+    ],
+)
+def test_a_factor_has_a_name(zoo, role, spoken, words, remedy):
+    """Without a position nothing but the mass tells that the speed is in another unit."""
+    path = zoo.car(role=role, spoken=spoken, outputs=("speed",))
+    found = finding(checked(zoo, path, known={"mass": 1000.0}), "controller's model")
+    assert found.verdict == "fail"
+    assert words in found.text
+    assert remedy in found.remedy
+
+
+def test_a_set_point_without_its_lead_fails_with_the_lead(zoo):
+    path = zoo.car(role="speed_setpoint")
+    inputs = {"speed_setpoint": {"variable": "speed_setpoint"}}
+    found = finding(checked(zoo, path, inputs=inputs), "controller's model")
+    assert found.verdict == "fail"
+    assert "`lead = 0.5" in found.remedy
+
+
+@pytest.mark.parametrize("known", [{"mass": 1000.0}, {"vehicle_class": "passenger"}])
+def test_another_load_is_no_factor(zoo, known):
+    report = checked(zoo, zoo.car(values={"mass": 2400.0}), known=known)
+    assert report.passed
 
 
 def test_lag_and_limits_are_seen(car):

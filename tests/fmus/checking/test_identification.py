@@ -143,3 +143,43 @@ def test_progress_counts_every_drive(car):
     assert told[0] == (0, told[-1][1])
     assert told[-1][0] == told[-1][1] == 3 * 4 + 2
     assert told == sorted(told)
+
+
+# ---- drive and brake apart ----
+
+
+def remarks_of(found, words):
+    return [remark for remark in found.remarks if words in remark]
+
+
+def pedals(throttle=4000.0, brake=8000.0):
+    inputs = {
+        "throttle": {"variable": "t", "full_force": throttle},
+        "brake": {"variable": "b", "full_force": brake},
+    }
+    return make_profile({"inputs": inputs, "outputs": {"speed": {"variable": "v"}}}, "test")
+
+
+@pytest.mark.parametrize(("lag", "brake_lag"), [(0.4, 0.1), (0.05, 0.3)])
+def test_drive_and_brake_have_a_lag_each(car, lag, brake_lag):
+    found = identified(car(lag=lag, brake_lag=brake_lag))
+    for side, true in ((found.sides.drive, lag), (found.sides.brake, brake_lag)):
+        assert side.lag + side.delay == pytest.approx(true, rel=0.15, abs=0.02)
+        assert side.mass == pytest.approx(1000.0, rel=0.03)
+    (remark,) = remarks_of(found, "and brakes")
+    assert remark.startswith("it drives ")
+
+
+def test_a_brake_pedal_that_is_weaker_than_its_full_force_says_is_told_with_the_line(car):
+    found = identified(car(brake_gain=0.5), profile=pedals())
+    assert found.sides.drive.mass == pytest.approx(1000.0, rel=0.02)
+    assert found.sides.brake.mass == pytest.approx(2000.0, rel=0.03)
+    (remark,) = remarks_of(found, "brakes like")
+    strength, other = map(float, re.findall(r"full_force = ([\d.]+)", remark))
+    assert strength == pytest.approx(4000.0, rel=0.05)
+    assert other == pytest.approx(8000.0, rel=0.05)
+
+
+def test_equal_sides_are_not_worth_a_word(car):
+    found = identified(car(lag=0.2, drag=0.5, constant=100.0), profile=pedals())
+    assert not remarks_of(found, "brakes")

@@ -107,6 +107,21 @@ def test_what_does_not_start_is_tried_once(zoo):
     assert opened == [None]
 
 
+def test_a_vehicle_is_opened_once_for_each_size_of_steps(zoo):
+    """And drives from rest and from its start speed as a fresh one does."""
+    path = zoo.car()
+    opened = []
+
+    def counting(step):
+        opened.append(step)
+        return opener(zoo, path)(step)
+
+    result = convergence(counting, STEP, start_speed=4.0)
+    assert opened == [None, STEP / 2]
+    fresh = drive(opener(zoo, path), manoeuvre(4000.0), speed=4.0)
+    assert result.traces[0].same_motion(fresh)
+
+
 def test_the_comparison_sees_a_tenth_of_the_speed_and_the_way(car):
     light, heavy = (drive(car(mass=mass), manoeuvre(4000.0)) for mass in (800.0, 1000.0))
     found = compare(light, heavy)

@@ -91,7 +91,7 @@ def test_the_shipped_fmus_run_on_every_platform(version):
     [
         ({}, "binaries for: none"),
         ({"binaries/win64/car_cs.dll": b""}, "binaries for: win64; export it for x86_64-linux"),
-        ({"sources/car.c": b""}, "fmpy compile"),
+        ({"sources/car.c": b""}, "and C sources; compile them: giveway fmu compile"),
         ({"binaries/linux64/car.so": elf(62)}, "but binaries/linux64/car.so"),
         ({"binaries/linux64/car_cs.so": elf(183)}, "car_cs.so is for aarch64"),
         ({"binaries/linux64/car_cs.so": pe(0x8664)}, "car_cs.so is for windows"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from support.fmus.cars import Fault
 
 from fmus import FmuOutputError, FmuStateError, FmuStepError
 
@@ -72,8 +73,8 @@ def test_a_first_state_is_judged_too(zoo, open_car):
     ],
 )
 def test_the_limits_are_the_profiles(zoo, open_car, limits, said):
-    """5 cm per step are no fault by the usual limits: the position's unit is another one."""
-    path = zoo.car(spoken={"position": (0.8, 0.0)})
+    """3 cm per step are no fault by the usual limits: wheels may slip by as much."""
+    path = zoo.car(spoken={"position": (0.85, 0.0)})
     ordinary, strict = open_car(path), open_car(path, limits=limits)
     for car in (ordinary, strict):
         car.start(speed=4.0)
@@ -118,6 +119,17 @@ def test_a_frozen_car_is_warned_of_once(zoo, open_car):
     )
     car.start()
     assert car.warnings == []
+
+
+@pytest.mark.parametrize("outputs", [("speed", "position"), ("speed",)])
+def test_a_frozen_car_whose_speed_trembles_by_a_rounding_error_is_warned_of(zoo, open_car, outputs):
+    path = zoo.car(behaviour=[Fault("frozen", at=0.0), Fault("trembles", at=0.0)], outputs=outputs)
+    car = open_car(path)
+    car.start()
+    drive(car, force=400.0)
+    drive(car, force=3000.0, steps=50)
+    assert abs(car.speed) < 1e-15
+    assert frozen(car)
 
 
 def test_the_time_until_that_warning_is_the_profiles(zoo, open_car):

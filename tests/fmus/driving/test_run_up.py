@@ -243,14 +243,22 @@ def test_a_car_that_no_force_moves_names_the_inputs_that_nobody_sets(zoo):
         vehicle.start(speed=4.0)
 
 
-def test_a_car_with_the_sign_of_its_force_turned_is_told_the_line(zoo):
-    car = zoo.car(initial=(), spoken={"force": (-1.0, 0.0)})
+@pytest.mark.parametrize(
+    ("factor", "gain", "line"),
+    [
+        (-1.0, None, r"gain = -1.0 in \[inputs.force\]"),
+        (1.0, -1.0, r"gain = 1.0 in place of gain = -1.0 in \[inputs.force\]"),
+        (0.32, -3.125, r"gain = 3.125 in place of gain = -3.125 in \[inputs.force\]"),
+    ],
+)
+def test_a_car_with_the_sign_of_its_force_turned_is_told_the_line(zoo, factor, gain, line):
+    car = zoo.car(initial=(), spoken={"force": (factor, 0.0)})
     values = zoo.profile(car)
     values.pop("initial", None)
+    if gain is not None:
+        values["inputs"]["force"]["gain"] = gain
     with (
         VehicleFmu(car, step_size=0.05, profile=make_profile(values, "test")) as vehicle,
-        pytest.raises(
-            FmuStartError, match=r"drive it backwards .* gain = -1.0 in \[inputs.force\]"
-        ),
+        pytest.raises(FmuStartError, match=rf"drive it backwards .* with {line}, or"),
     ):
         vehicle.start(speed=4.0)

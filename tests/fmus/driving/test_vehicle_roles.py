@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from fmus import FmuStartError
+
 H = 0.05  # [s]
 FORCES = [2000.0] * 10 + [0.0] * 5 + [-1500.0] * 10 + [300.0] * 5  # it never stands
 KMH, MPH, KN = ("km/h", 1 / 3.6, 0.0), ("mph", 0.44704, 0.0), ("kN", 1000.0, 0.0)
@@ -155,3 +157,31 @@ def test_an_fmu_whose_brakes_hold_may_have_all_forces(zoo, open_car):
         car.step(-3000.0)
     assert car.speed == 0.0
     assert car.warnings == []
+
+
+@pytest.mark.parametrize("block", [True, False])
+def test_a_brake_force_on_a_bare_mass_does_not_drive_it_backwards(zoo, open_car, block):
+    car = open_car(
+        zoo.car(role="drive_brake", values={"holds": 0.0}), inputs={"block_reverse": block}
+    )
+    car.start()
+    for _ in range(40):
+        car.step(-3000.0)
+    assert car.speed == 0.0 if block else car.speed < -1.0
+
+
+@pytest.mark.parametrize(
+    ("fmi", "kind"),
+    [("1.0", "co-simulation"), ("2.0", "co-simulation"), ("3.0", "co-simulation"),
+     ("2.0", "model-exchange"), ("3.0", "model-exchange")],
+)  # fmt: skip
+def test_an_fmu_that_wants_a_stop_time_is_told_the_profiles(zoo, open_car, fmi, kind):
+    path = zoo.car(fmi=fmi, kind=kind, needs_stop_time=60.0)
+    with pytest.raises(FmuStartError, match="no stop time, or too early"):
+        open_car(path).start()
+    with pytest.raises(FmuStartError, match="no stop time, or too early"):
+        open_car(path, fmu={"stop_time": 59.0}).start()
+    car = open_car(path, fmu={"stop_time": 60.0})
+    car.start()
+    car.step(1000.0)
+    assert car.speed > 0.0

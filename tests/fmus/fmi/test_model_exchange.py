@@ -293,3 +293,15 @@ def test_a_point_that_cannot_be_passed_ends_the_integration(kind):
             integrated(solver, 2.0)
     finally:
         solver.close()
+
+
+@pytest.mark.parametrize("version", ["2.0", "3.0"])
+def test_a_completed_step_is_final(zoo, version, run):
+    """The state is never set back to before it: noSetFMUStatePriorToCurrentPoint is true."""
+    path = zoo.car(
+        fmi=version, kind="model-exchange", calls=True, file=f"completed{version[0]}",
+        flags={"completedIntegratorStepNotNeeded": "false"} if version == "2.0" else {},
+    )  # fmt: skip
+    run(path, {"force": 700.0}, 3)
+    lines = path.with_suffix(".calls").read_text().splitlines()
+    assert {line for line in lines if line.startswith("completed")} == {"completed 1"}

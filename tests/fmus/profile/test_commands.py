@@ -61,7 +61,8 @@ def apply(command, force: float, speed: float) -> tuple[float, float]:
         ("force", -1500.0, 3.0, (-1500.0,)),
         ("split", 1500.0, 3.0, (1500.0, 0.0)),
         ("split", -1500.0, 3.0, (0.0, 1500.0)),
-        ("split", -1500.0, 0.0, (0.0, 1500.0)),  # its own brakes hold
+        ("split", -1500.0, 0.1, (0.0, 1500.0)),
+        ("split", -1500.0, 0.0, (0.0, 0.0)),  # a bare mass would be driven backwards
         ("acceleration", 1500.0, 5.0, ((1500.0 - 80.0 * 5.0) / 1400.0,)),
         ("acceleration", -2800.0, 5.0, (-3200.0 / 1400.0,)),
         ("pedals", 1000.0, 5.0, (0.25, 0.0)),
@@ -84,6 +85,13 @@ def test_a_standing_car_is_not_pushed_backwards(kind, speed):
     assert apply(command(kind), -500.0, speed)[0] == 0.0
     assert apply(command(kind), 500.0, speed)[0] > 0.0
     assert apply(command(kind, block_reverse=False), -500.0, speed)[0] < 0.0
+
+
+@pytest.mark.parametrize("speed", [0.0, -0.02])
+def test_a_standing_car_is_not_braked_backwards(speed):
+    assert apply(command("split"), -500.0, speed) == (0.0, 0.0)
+    assert apply(command("split"), 500.0, speed) == (500.0, 0.0)
+    assert apply(command("split", block_reverse=False), -500.0, speed) == (0.0, 500.0)
 
 
 def test_friction_alone_does_not_push_a_reversing_car_either():

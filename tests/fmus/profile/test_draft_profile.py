@@ -80,8 +80,6 @@ def test_our_own_fmu_leaves_no_doubt(version):
         *((name, "force") for name in ("force_cmd [N]", "longitudinalForce [N]", "in1 [N]")),
         *((name, "acceleration") for name in ("a_ref [m/s2]", "accel [m/s2]", "u [m/s2]")),
         *((name, "acceleration") for name in ("desiredAcceleration [m.s-2]", "acc_cmd [g0]")),
-        *((name, "speed_setpoint") for name in ("v_ref [m/s]", "speedSetpoint [km/h]")),
-        *((name, "speed_setpoint") for name in ("target_speed [mph]", "vSet [m/s]", "u [km/h]")),
     ],
 )
 def test_one_input_by_name_and_unit(name, role):
@@ -89,6 +87,84 @@ def test_one_input_by_name_and_unit(name, role):
     assert draft.confident
     (way,) = draft.values["inputs"]
     assert (way, draft.values["inputs"][way]["variable"]) == (role, name.partition(" [")[0])
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["v_ref [m/s]", "speedSetpoint [km/h]", "target_speed [mph]", "vSet [m/s]", "u [km/h]"],
+)
+def test_how_fast_a_set_point_is_followed_is_a_question(name):
+    """With another lead than the FMU's own time constant the car hardly brakes, or too hard."""
+    draft = drafted([name], ["v [m/s]"])
+    assert not draft.confident
+    variable = name.partition(" [")[0]
+    assert draft.values["inputs"] == {"speed_setpoint": {"variable": variable}}
+    assert "[inputs.speed_setpoint] the FMU does not say how fast it follows" in questions(draft)
+    text = re.sub(r"# \? (lead)", r"\1", draft.toml)
+    assert make_profile(tomllib.loads(text), "edited draft").inputs.speed_setpoint.lead == 0.5
+
+
+@pytest.mark.parametrize(
+    ("inputs", "question"),
+    [
+        ([("F [N]", 0.0, 5000.0)], "'F' is never negative (min = 0): what brakes?"),
+        ([("a_ref [m/s2]", 0.0, None)], "'a_ref' is never negative (min = 0): what brakes?"),
+        ([("F_x [N]", None, None), ("brake", None, None)], "'brake' is an input, too: does 'F_x'"),
+        ([("a_ref [m/s2]", None, None), ("brk_cmd [%]", None, None)], "'brk_cmd' is an input, too"),
+        ([("F_drive [N]", None, None)], "'F_drive' is named after a drive: does it brake"),
+        ([("F_drive [N]", 0.0, None), ("F_brake [N]", -9e3, 0.0)], "'F_brake' is never positive"),
+    ],
+)
+def test_what_decides_about_braking_is_a_question(inputs, question):
+    variables = [variable(t, "input", minimum=low, maximum=high) for t, low, high in inputs]
+    assert question in questions(drafted(variables, ["v [m/s]"]))
+
+
+@pytest.mark.parametrize(
+    ("text", "gain"),
+    [("F_brake [N]", "gain = -1.0"), ("throttle [1]", "gain = the force at 1"),
+     ("brake_pedal [%]", "gain = minus the force at 1"), ("brakeForce", "gain = -1.0")],
+)  # fmt: skip
+def test_the_only_input_may_be_drive_and_brake_by_its_sign(text, gain):
+    draft = drafted([text], ["speed [m/s]"])
+    message = questions(draft)
+    assert "is it both, by its sign?" in message
+    assert gain in message
+    assert f'# ? variable = "{text.partition(" [")[0]}"' in draft.toml
+    if "= -1.0" in gain:
+        edited = draft.toml.replace("# ? ", "")
+        assert make_profile(tomllib.loads(edited), "edited draft").inputs.force.gain == -1.0
+
+
+@pytest.mark.parametrize(
+    ("names", "role", "chosen"),
+    [
+        (["der(s) [m/s]"], "speed", "der(s)"),
+        (["der(vehicle.position) [m/s]"], "speed", "der(vehicle.position)"),
+        (["v [m/s]", "der(s) [m/s]"], "speed", "v"),
+        (["v [m/s]", "der(v) [m/s2]"], "acceleration", "der(v)"),
+        (["v [m/s]", "der(wind.v) [m/s2]"], "acceleration", None),
+    ],
+)
+def test_a_derivative_is_named_after_what_it_is_the_derivative_of(names, role, chosen):
+    outputs = drafted(["force [N]"], names).values["outputs"]
+    assert outputs.get(role, {}).get("variable") == chosen
+
+
+@pytest.mark.parametrize(
+    ("description", "unit"),
+    [
+        ("speed of the car [km/h]", "km/h"),
+        ("speed (mph), as shown", "mph"),
+        ("longitudinal speed in km/h.", "km/h"),
+        ("speed (of the car), in a tunnel [3]", "?"),
+        ("speed [rad]", "?"),
+    ],
+)
+def test_a_unit_in_the_description_is_offered(description, unit):
+    draft = drafted(["force [N]"], [variable("speed", "output", description=description)])
+    assert not draft.confident
+    assert f'# ? unit = "{unit}"' in draft.toml
 
 
 @pytest.mark.parametrize(
@@ -292,7 +368,7 @@ def test_whatever_the_fmu_says_the_file_is_toml(one, other, third, unit, descrip
     [
         (["force [N]"], ["speed [m/s]", "x [km]", "a [m/s2]"]),
         (["driveForce [N]", "brakeForce [N]"], ["speed [m/s]"]),
-        (["vehicle.v_ref [m/s]"], ["vehicle.v [m/s]"]),
+        (["vehicle.a_ref [m/s2]"], ["vehicle.v [m/s]"]),
         (['odd "name\\' + " [N]"], ["speed [m/s]"]),
     ],
 )

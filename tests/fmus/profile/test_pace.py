@@ -186,3 +186,39 @@ def test_a_fixed_internal_step_that_means_nothing_is_none(zoo, open_car, redescr
     car.start()
     car.step(1000.0)
     assert car.speed > 0.0
+
+
+# ---- an FMU that does steps of one length only, and tells it by its default experiment ----
+
+
+@pytest.mark.parametrize("only", [0.01, 0.05, 0.1])
+@pytest.mark.parametrize("fmi", ["2.0", "3.0"])
+def test_a_profile_without_a_step_has_that_of_the_default_experiment(
+    zoo, open_car, redescribed, fmi, only
+):
+    path = zoo.car(fmi=fmi, only_step=only)
+    plain = path
+    if fmi == "3.0":
+        plain = redescribed(path, f'fixedInternalStepSize="{only!r}"', "")
+    car = open_car(plain, like=path, fmu={"step": None})
+    assert car.prepared.pace.step == pytest.approx(only)
+    car.start()
+    for _ in range(4):
+        car.step(1000.0)
+    assert car.speed > 0.0
+
+
+def test_a_default_step_that_does_not_fit_is_refused_at_set_up(zoo, open_car):
+    path = zoo.car(only_step=0.03)
+    with pytest.raises(FmuProfileError, match=r"0\.03 s, does not fit the control step of 0\.05 s"):
+        open_car(path, fmu={"step": None})
+    open_car(path, step=0.06, fmu={"step": None})
+
+
+def test_the_default_step_of_an_fmu_that_can_do_any_is_none(zoo, open_car):
+    assert open_car(zoo.car(step=0.03)).prepared.pace.step == H
+
+
+def test_a_step_of_the_profile_comes_first(zoo, open_car):
+    car = open_car(zoo.car(only_step=0.03), fmu={"step": 0.025})
+    assert car.prepared.pace.step == 0.025

@@ -108,3 +108,18 @@ def test_the_mass_and_damper_of_openmodelica_is_no_success(checked, tmp_path):
     code, out, _err = checked(path, "--profile", profile)
     assert code == 1
     assert "50 ms do not converge" in " ".join(out.split())
+
+
+def test_a_wrong_unit_of_the_pedals_fails_by_the_class_of_the_ego(checked, zoo):
+    spoken = {"throttle": (0.01, 0.0), "brake": (0.01, 0.0)}
+    path = zoo.car(role="throttle_brake", spoken=spoken)
+    profile = path.with_suffix(".toml")
+    code, out, _ = checked(path, "--profile", profile, "--ego-class", "passenger")
+    assert code == 1
+    assert 'set `unit = "%"` in [inputs.throttle]' in out
+
+
+def test_a_class_that_sumo_does_not_know_is_one_line(giveway, zoo):
+    code, _, err = giveway("fmu", "check", zoo.car(), "--ego-class", "spaceship")
+    assert code == 2
+    assert err.startswith("error: --ego-class spaceship: expected one of passenger, ")

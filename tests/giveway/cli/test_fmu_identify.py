@@ -84,3 +84,13 @@ def test_what_cannot_be_identified_is_one_line(identify, zoo, tmp_path, car, wor
     assert err.count("\n") == 1
     assert any(part in err for part in words.replace("\\", "").split("|"))
     assert not (tmp_path / "x.toml").exists()
+
+
+def test_a_sign_that_the_profile_turns_already_is_turned_back(identify, zoo, tmp_path):
+    path = zoo.car()
+    text = path.with_suffix(".toml").read_text(encoding="utf-8")
+    turned = tmp_path / "turned.toml"
+    turned.write_text(text.replace("[inputs.force]\n", "[inputs.force]\ngain = -1\n"), "utf-8")
+    code, _out, err = identify(path, "--profile", turned)
+    assert code == 1
+    assert "`gain = 1.0` in place of `gain = -1.0` in [inputs.force]" in err

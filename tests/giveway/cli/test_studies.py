@@ -112,6 +112,7 @@ def test_runs_that_fail_make_the_exit_code_1(type_here, tmp_path):
     assert done.returncode == 1
     assert "1 of 2 runs has no result (cell 2), see failures.csv" in done.stdout
     assert "nobody" in done.stdout
+    assert "--resume --retry-failed makes them again" in " ".join(done.stdout.split())
     again = type_here("rerun", "results/study_f", "c2-s1")
     assert "nobody" in one_line(again, again.returncode)
 

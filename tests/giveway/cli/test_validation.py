@@ -16,6 +16,8 @@ from pedestrian_model import SIM
 if TYPE_CHECKING:
     from pathlib import Path
 
+AS_CITR = ("--dataset", "citr")
+
 
 @pytest.fixture
 def dataset(tmp_path, write_clip, straight_walks) -> Path:
@@ -36,7 +38,7 @@ def giveway(*words: object) -> int:
 
 def test_validate_prints_both_tables_and_writes_csvs_and_pictures(dataset, tmp_path, capsys):
     out = tmp_path / "out"
-    assert giveway("validate", dataset, "--preset", "TABLE2", "--out", out) == 0
+    assert giveway("validate", dataset, *AS_CITR, "--preset", "TABLE2", "--out", out) == 0
     said = capsys.readouterr().out
     assert "3 clips, 1 with a vehicle, 9 pedestrians" in said
     for words in ("goalCV", "VCI without f_v", "within 2 m of the vehicle", "closest [m]"):
@@ -50,7 +52,7 @@ def test_validate_prints_both_tables_and_writes_csvs_and_pictures(dataset, tmp_p
     cv = errors.query("predictor == 'CV' and subset == 'all'")
     assert cv["mean"].abs().max() < 1e-5
     again = tmp_path / "again"
-    giveway("validate", dataset, "--preset", "TABLE2", "--out", again, "--quiet")
+    giveway("validate", dataset, *AS_CITR, "--preset", "TABLE2", "--out", again, "--quiet")
     for name in ("errors.csv", "contacts.csv", "growth.png"):
         assert (again / name).read_bytes() == (out / name).read_bytes()
 
@@ -59,16 +61,16 @@ def test_results_are_not_replaced_unasked(dataset, tmp_path, capsys) -> None:
     out = tmp_path / "out"
     out.mkdir()
     (out / "errors.csv").write_text("old\n")
-    assert giveway("validate", dataset, "--out", out, "--quiet") == 2
+    assert giveway("validate", dataset, *AS_CITR, "--out", out, "--quiet") == 2
     assert "replace them with --force" in capsys.readouterr().err
-    assert giveway("validate", dataset, "--out", out, "--quiet", "--force") == 0
+    assert giveway("validate", dataset, *AS_CITR, "--out", out, "--quiet", "--force") == 0
     (out / "thesis.tex").write_text("")
-    assert giveway("validate", dataset, "--out", out, "--quiet", "--force") == 2
+    assert giveway("validate", dataset, *AS_CITR, "--out", out, "--quiet", "--force") == 2
     assert "holds 'thesis.tex'" in capsys.readouterr().err
 
 
 def test_a_wrong_folder_is_one_line(tmp_path, capsys) -> None:
-    assert giveway("validate", tmp_path / "nowhere") == 2
+    assert giveway("validate", tmp_path / "nowhere", *AS_CITR) == 2
     error = capsys.readouterr().err
     assert error.startswith("error: ")
     assert error.count("\n") == 1
@@ -77,10 +79,17 @@ def test_a_wrong_folder_is_one_line(tmp_path, capsys) -> None:
 
 def test_calibrate_writes_a_preset_that_can_be_validated_with(dataset, tmp_path, capsys) -> None:
     file = tmp_path / "mine.toml"
-    words = ("calibrate", dataset, "--parameters", "repulsion_strength, navigation_strength")
+    words = (
+        "calibrate",
+        dataset,
+        *AS_CITR,
+        "--parameters",
+        "repulsion_strength, navigation_strength",
+    )
     assert giveway(*words, "--out", file, "--evaluations", 10) == 0
     said = capsys.readouterr().out
     assert "held-out error" in said
+    assert "The closest two people, centre to centre: " in said
     assert "Not converged after 10 evaluations" in said
     fitted = parameters_of(str(file))
     assert fitted.repulsion_strength != SIM.repulsion_strength
@@ -88,15 +97,70 @@ def test_calibrate_writes_a_preset_that_can_be_validated_with(dataset, tmp_path,
     origin = tomllib.loads(file.read_text())["provenance"]
     assert origin["fitted"] == ["repulsion_strength", "navigation_strength"]
     assert len(origin["training_clips"]) + len(origin["held_out_clips"]) == 3
+    assert origin["dataset"] == "CITR"
+    assert origin["closest_people_before"] > 0.0
     assert origin["training_error_after"] <= origin["training_error_before"]
     assert giveway(*words, "--out", file) == 2
     assert "replace it with --force" in capsys.readouterr().err
-    assert giveway("validate", dataset, "--preset", file, "--out", tmp_path / "o", "-q") == 0
+    assert (
+        giveway("validate", dataset, *AS_CITR, "--preset", file, "--out", tmp_path / "o", "-q") == 0
+    )
 
 
 def test_calibrate_refuses_an_unknown_parameter(dataset, tmp_path, capsys) -> None:
     out = tmp_path / "mine.toml"
-    assert giveway("calibrate", dataset, "--parameters", "vehicle_force", "--out", out) == 2
+    assert (
+        giveway("calibrate", dataset, *AS_CITR, "--parameters", "vehicle_force", "--out", out) == 2
+    )
     assert "--parameters vehicle_force: unknown parameter" in capsys.readouterr().err
-    assert giveway("calibrate", dataset, "--out", tmp_path / "mine.txt") == 2
+    assert giveway("calibrate", dataset, *AS_CITR, "--out", tmp_path / "mine.txt") == 2
     assert "expected the name of a preset file" in capsys.readouterr().err
+
+
+MINE = """
+name = "MINE"
+frame_rate = {rate}
+[vehicle]
+front = 2.25
+rear = {rear}
+width = 1.8
+"""
+
+
+def test_clips_that_nobody_describes_are_refused(dataset, tmp_path, capsys) -> None:
+    for command in (("validate", dataset), ("calibrate", dataset, "--out", tmp_path / "m.toml")):
+        assert giveway(*command) == 2
+        error = capsys.readouterr().err
+        assert "--dataset: missing; expected citr or dut, or a TOML file" in error
+        assert error.count("\n") == 1
+
+
+def test_a_frame_rate_that_is_not_the_clips_own_is_refused(dataset, tmp_path, capsys) -> None:
+    mine = tmp_path / "mine.toml"
+    mine.write_text(MINE.format(rate=23.976, rear=2.25))
+    for name in ("dut", mine):
+        assert giveway("validate", dataset, "--dataset", name, "--out", tmp_path / "o") == 2
+        assert "belong to 30.0 frames per second, --dataset" in capsys.readouterr().err
+    assert not (tmp_path / "o").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("name = 'x'", "frame_rate is missing"),
+        (MINE.format(rate=1e9, rear=2), "frame_rate = 1000000000.0: should be less than or equal"),
+        (MINE.format(rate=25, rear=-2), "vehicle.rear = -2: should be greater than or equal to 0"),
+        (MINE.format(rate=25, rear=2) + "heigth = 2\n", "vehicle.heigth: expected a table like"),
+        ("vehicle = 3", "name is missing"),
+        ("a =", "not valid TOML"),
+    ],
+)
+def test_a_wrong_description_is_one_line(dataset, tmp_path, capsys, text, said) -> None:
+    mine = tmp_path / "mine.toml"
+    mine.write_text(text)
+    assert giveway("validate", dataset, "--dataset", mine) == 2
+    error = capsys.readouterr().err
+    assert f"--dataset {mine}: {said}" in error
+    assert error.count("\n") == 1
+    assert giveway("validate", dataset, "--dataset", "citrus") == 2
+    assert "--dataset citrus: expected citr or dut" in capsys.readouterr().err

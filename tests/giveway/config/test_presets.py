@@ -130,3 +130,10 @@ def test_a_studys_key_knows_the_files_content_not_its_place(preset, tmp_path) ->
         Path(there).write_text(preset_text("mine", TABLE2, {}))
         assert key(there, table) != before
         preset(SIM, "elsewhere/mine.toml")
+
+
+@pytest.mark.parametrize("table", ["crowd", "perception"])
+def test_a_run_refuses_a_preset_by_which_people_tremble(preset, table) -> None:
+    file = preset(replace(SIM, destination_gain=5453.0), "shaky.toml")
+    with pytest.raises(ConfigError, match=rf"\[{table}\] preset .*shaky.toml: .* = 3.4 > 1"):
+        giveway.run({table: {"preset": file}})

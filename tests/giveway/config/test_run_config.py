@@ -7,10 +7,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import giveway
 from giveway.config import RunConfig
-from giveway.config.layers import Layer, build_config, dump_toml, flag_of, options, read_toml
+from giveway.config.layers import (
+    Layer,
+    Option,
+    build_config,
+    dump_toml,
+    flag_of,
+    options,
+    read_toml,
+)
 from giveway.config.loading import as_layer, load
-from giveway.errors import ConfigError, ScenarioError
+from giveway.errors import ConfigError, GivewayError, ScenarioError
 
 
 def explain(values: dict, *, flags: bool = False) -> str:
@@ -45,7 +54,7 @@ def test_toml_round_trip_is_exact() -> None:
 
 @given(
     seed=st.integers(0, 2**31 - 1),
-    mass=st.floats(1e-3, 1e6),
+    mass=st.floats(10, 1e6),
     speed=st.floats(0, 70),
     two_sided=st.booleans(),
 )
@@ -103,6 +112,59 @@ def test_a_bad_value_is_explained_in_one_line(values: dict, parts: list[str]) ->
     message = explain(values)
     for part in parts:
         assert part in message
+
+
+def nonsense() -> list[tuple[Option, float]]:
+    """Every option with a bound, and a value far beyond it."""
+    found = []
+    for option in options():
+        limits = option.field.metadata
+        if any(hasattr(limit, "gt") or hasattr(limit, "ge") for limit in limits):
+            found.append((option, -1.0))
+        if any(hasattr(limit, "lt") or hasattr(limit, "le") for limit in limits):
+            found.append((option, 1e12))
+        if option.extra["least"] is not None:
+            found.append((option, 1e-9))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [pytest.param(*pair, id=f"{pair[0].flag}={pair[1]}") for pair in nonsense()],
+)
+def test_a_value_that_makes_no_sense_is_refused_with_the_reason(
+    option: Option, value: float
+) -> None:
+    settings: dict = {option.location[-1]: int(value) if abs(value) >= 1 else value}
+    for table in reversed(option.location[:-1]):
+        settings = {table: settings}
+    assert f": {option.extra['because']} (" in explain(settings)
+
+
+def test_no_length_or_duration_or_force_may_be_a_billionth() -> None:
+    free = {  # where next to nothing is as good as nothing
+        "depart_time", "depart_position", "friction", "calm_time", "reaction_time", "near",
+        "effort_weight", "jerk_weight", "proportional_gain", "integral_gain", "derivative_gain",
+        "position_noise", "initial_speed", "speed_min", "desired_speed_sd",
+        "acceleration_noise", "margin_growth",
+    }  # fmt: skip
+    for option in options():
+        bound = any(hasattr(limit, "gt") or hasattr(limit, "ge") for limit in option.field.metadata)
+        if bound and option.unit and option.location[-1] not in free:
+            lowest = [getattr(limit, "ge", 0) for limit in option.field.metadata]
+            assert option.extra["least"] or max(lowest) > 0 or option.unit == "persons", option.flag
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"vehicle": {"friction": 1e6}}, "friction alone would turn the vehicle round within one"),
+        ({"crowd": {"spawn_area": (0, 0, 1e-9, 5)}}, "1e-09 by 5 m: expected sides of at least"),
+        ({"crowd": {"walk": (1e-9, 0)}}, "a shorter way is no walk"),
+    ],
+)
+def test_values_that_make_no_sense_together_are_refused_too(values: dict, said: str) -> None:
+    assert said in explain(values)
 
 
 def test_a_bad_flag_is_named_as_a_flag() -> None:
@@ -198,6 +260,7 @@ def test_several_vehicles_of_the_scenario_become_several_egos() -> None:
     [
         ({"crowd": {"pedestrians": 3}}, r"egos\[0\]: unknown key 'crowd'"),
         ({"vehicle": {"mass": -1}}, r"egos\[0\]: vehicle.mass = -1"),
+        ({"vehicle": {"mass": 1e-9}}, r"vehicle.mass = 1e-09: should be at least 10 \[kg\]: the"),
         ({"ego": {"initial_speed": 30}}, r"expected within \[mpc\] speed_min"),
     ],
 )
@@ -245,3 +308,26 @@ def test_an_ego_taken_over_leaves_nothing_of_the_scenarios_route():
     config, _ = load([Layer("user", {"scenario": "shared_space", "ego": {"take_over": ["car"]}})])
     assert config.ego.route == ()
     assert load([Layer("again", config.model_dump())])[0] == config
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"vehicle": {"fmu": "v" * 3000 + ".fmu"}},
+        {"vehicle": {"profile": "v" * 3000 + ".toml"}},
+        {"crowd": {"preset": "p" * 3000 + ".toml"}},
+        {"scenario": "s" * 3000 + ".sumocfg"},
+    ],
+)
+def test_a_file_name_that_is_too_long_is_one_line(settings: dict, tmp_path: Path) -> None:
+    file = tmp_path / "run.toml"
+    lines = [
+        f"{key} = {value!r}"
+        if isinstance(value, str)
+        else f"{key}.{next(iter(value))} = {next(iter(value.values()))!r}"
+        for key, value in settings.items()
+    ]
+    file.write_text("\n".join(lines))
+    with pytest.raises(GivewayError) as refused:
+        giveway.run(file)
+    assert "\n" not in str(refused.value)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import gzip
+import shlex
 import signal
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -65,6 +66,48 @@ def test_it_names_vehicles_to_take_and_edges_to_drive(of_city: list[Finding]) ->
     assert "cars" in ego.text
     assert ego.remedy.startswith("--ego=cars")
     assert "--ego-route=" in ego.remedy
+
+
+def test_it_ranks_egos_routes_and_zones_by_the_people_whom_they_meet(
+    of_city: list[Finding], small_city: Path
+) -> None:
+    assert "counted from 10 to 80 s" in about(of_city, "people met").text
+    for subject, flag in (
+        ("best egos", "--ego=cars"),
+        ("best routes", "--ego-route="),
+        ("best zones", "--zone="),
+    ):
+        ranked = [finding for finding in of_city if finding.subject == subject]
+        assert 1 <= len(ranked) <= 3
+        for finding in ranked:
+            words = shlex.split(finding.remedy)
+            assert words[:3] == ["giveway", "run", str(small_city)]
+            assert any(word.startswith(flag) for word in words)
+    best = [finding for finding in of_city if finding.subject == "best egos"]
+    people = [int(finding.text.split(" meets ")[1].partition(",")[0]) for finding in best]
+    assert people == sorted(people, reverse=True)
+    assert people[-1] > 0
+
+
+def test_its_command_runs_and_the_ego_meets_people(
+    of_city: list[Finding], type_here: Callable[..., Any], tmp_path: Path
+) -> None:
+    best = next(finding for finding in of_city if finding.subject == "best egos")
+    words = shlex.split(best.remedy)[1:]
+    out = ("--no-pictures", "--out", tmp_path / "out", "--time-limit", 15)
+    done = type_here(*words, *out, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out" / "pedestrians.csv").read_text().count("\n") > 1
+
+
+def test_a_scenario_without_people_gets_a_place_for_some(
+    small_scenario: Callable[..., Path],
+) -> None:
+    finding = about(examine_scenario(small_scenario()), "spawn area")
+    assert "the way of car" in finding.text
+    words = shlex.split(finding.remedy)
+    assert words[3:6] == ["--ego=car", "--pedestrians", "20"]
+    assert [word.partition("=")[0] for word in words[6:]] == ["--spawn-area", "--walk"]
 
 
 def test_what_a_run_would_change_is_noted(small_scenario: Callable[..., Path]) -> None:

@@ -57,6 +57,7 @@ def drive_through_crowd(pedestrians: int, seed: int, controller: str, goal: floa
         acting=acting,
         reason=np.where(acting == "mpc", "optimal", "infeasible"),
         solver_status=np.full(acting.size, ""),
+        waits_for=np.full(acting.size, ""),
         solver_iterations=np.zeros(acting.size, dtype=np.int64),
     )
     crowd = CrowdTrack(

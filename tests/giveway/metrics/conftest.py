@@ -46,6 +46,7 @@ def make_ego(
         "acting": np.full(count, "mpc"),
         "reason": np.full(count, "optimal"),
         "solver_status": np.full(count, "solved"),
+        "waits_for": np.full(count, ""),
         "solver_iterations": np.zeros(count, dtype=np.int64),
     }
     return EgoTrack(**(filled | {name: np.asarray(column) for name, column in columns.items()}))

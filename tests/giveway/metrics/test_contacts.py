@@ -160,6 +160,23 @@ def test_who_walks_up_to_a_standing_car_is_no_conflict(ego, crowd, walking):
     assert conflicts(ego(TIME, speed=0.21), track, CAR, R, 0.2).pedestrians == 1
 
 
+def test_the_smallest_time_to_collision_of_the_moving_ego_tells_the_two_apart(ego, crowd, walking):
+    """It stands for the first half, in which somebody walks up to it, and then drives off."""
+    speed = np.where(np.arange(TIME.size) < TIME.size // 2, 0.2, 2.0)
+    up_to = walking(TIME, (2.0, 0.0), (-1.4, 0.0))
+    far = walking(TIME, (30.0, 0.0), (0.0, 0.0))
+    standing = conflicts(ego(TIME, speed=0.2), crowd(up_to), CAR, R, 0.2)
+    assert np.isnan(standing.minimum_ttc)
+    drives = ego(TIME, speed=speed)
+    found = conflicts(drives, crowd(far), CAR, R, 0.2)
+    ttc = proximity(drives, crowd(far), CAR, R).time_to_collision
+    assert found.minimum_ttc == ttc[TIME.size // 2 :].min() > 1.5
+    assert found.pedestrians == 0
+    both = conflicts(ego(TIME, speed=2.0), crowd(up_to, far), CAR, R, 0.2)
+    assert both.minimum_ttc < 1.5
+    assert both.pedestrians == 1
+
+
 def test_two_at_once_are_two_persons_but_one_share(driving, crowd, walking):
     ego = driving(TIME, 4.0)
     one = walking(TIME, (5.0, 0.0), (0.0, 0.0))

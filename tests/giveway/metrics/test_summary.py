@@ -113,6 +113,29 @@ def summary_of(track, table=NOBODY, critical=Critical(0, 0.0), **arguments):  # 
     return summarise(track, table, critical, **arguments)
 
 
+@pytest.mark.parametrize(
+    ("case", "near", "without_cause"),
+    [
+        ("nobody", {}, 2),
+        ("somebody far ahead", {"gap": 16.0}, 2),
+        ("somebody", {"gap": 15.0}, 0),
+        ("a vehicle", {"vehicle_gap": 9.0}, 0),
+        ("a red light", {"stop_gap": 2.0}, 0),
+    ],
+)
+def test_a_hard_brake_has_a_cause_if_something_is_near_in_front(ego, case, near, without_cause):
+    acceleration = np.zeros(60)
+    acceleration[10:14] = -4.1
+    acceleration[17] = -5.0  # 0.2 s later: the same brake
+    acceleration[40] = -4.1
+    acceleration[50] = -4.0  # not harder than 4 m/s^2
+    fields = {name: np.full(60, value) for name, value in near.items()}
+    track = ego(0.05 * np.arange(60), acceleration=acceleration, **fields)
+    summary = summary_of(track)
+    assert summary.hard_brakes == 2, case
+    assert summary.hard_brakes_without_cause == without_cause, case
+
+
 def test_the_summary_of_a_drive(ego):
     time = 2.0 + 0.5 * np.arange(5)
     track = ego(
@@ -154,6 +177,7 @@ def test_what_never_occurred_is_empty(ego):
         "minimum_gap",
         "minimum_clearance",
         "minimum_ttc",
+        "minimum_ttc_moving",
         "minimum_pet",
         "maximum_drac",
     }

@@ -3,13 +3,17 @@
 import os
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
+import psutil
 import pytest
 
 from giveway.processes.child import JOURNAL_VARIABLE, take_journal_folder
-from giveway.processes.supervisor import journal_folder, own_command, supervise
+from giveway.processes.heartbeat import Heartbeat
+from giveway.processes.locks import in_use
+from giveway.processes.supervisor import journal_folder, journals, own_command, supervise
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the deaths here are Unix's")
 
@@ -37,12 +41,27 @@ def test_the_folder_of_a_journal_is_gone_afterwards(
         assert folder.parent == tmp_path
 
 
+def test_a_journal_whose_rows_are_nowhere_else_stays(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    with journal_folder() as folder:
+        (folder / "rows").touch()
+        (folder / "tmp").mkdir()
+        assert in_use(folder)
+        Heartbeat(folder).keep()
+    assert sorted(path.name for path in folder.iterdir()) == ["heartbeat", "rows"]
+    assert not in_use(folder)
+    assert journals() == [folder]
+
+
 def test_journals_of_killed_supervisors_do_not_pile_up(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", None)
-    for name, age in (("giveway-journal-old", 2 * 86400), ("giveway-journal-new", 60)):
+    for name, age in (("giveway-journal-old", 8 * 86400), ("giveway-journal-new", 60)):
         (tmp_path / name).mkdir()
         (tmp_path / name / "rows").touch()
         os.utime(tmp_path / name / "rows", (time.time() - age,) * 2)
@@ -82,3 +101,18 @@ def test_supervising_imports_nothing_heavy() -> None:
     )
     for heavy in ("numpy", "numba", "pandas", "typer", "pydantic", "libsumo", "ctypes"):
         assert f"'{heavy}'" not in done.stdout
+
+
+def test_a_child_that_cannot_be_watched_does_not_stay(
+    monkeypatch: pytest.MonkeyPatch, journal: Path
+) -> None:
+    """It would find its journal gone, and supervise a child of its own, and so on."""
+
+    def no_thread(_: threading.Thread) -> None:
+        raise RuntimeError("can't start new thread")
+
+    before = set(psutil.Process().children())
+    monkeypatch.setattr(threading.Thread, "start", no_thread)
+    with pytest.raises(OSError, match="Resource temporarily unavailable"):
+        supervise([sys.executable, "-c", "import time; time.sleep(60)"], journal)
+    assert set(psutil.Process().children()) == before

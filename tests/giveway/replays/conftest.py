@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -113,31 +112,6 @@ class Watched:
         read = "n => getComputedStyle(document.documentElement).getPropertyValue('--' + n).trim()"
         text = self.tab.evaluate(read, name).lstrip("#")
         return tuple(int(text[i : i + 2], 16) for i in (0, 2, 4))
-
-
-@pytest.fixture(scope="module")
-def chromium() -> Iterator[Any]:
-    """A browser; it does not stay for other tests, which send signals to whoever is near."""
-    api = pytest.importorskip("playwright.sync_api", reason="playwright: giveway[dev] has it")
-    program = next(
-        filter(None, map(shutil.which, ("chromium", "chromium-browser", "chrome"))), None
-    )
-    if program is None:
-        pytest.skip("no chromium on the PATH: the page is looked at with it")
-    with api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(
-            executable_path=program,
-            args=[
-                "--no-sandbox",
-                "--disable-gpu",
-                "--disable-background-networking",
-                "--disable-component-update",
-                "--disable-sync",
-                "--no-first-run",
-            ],
-        )
-        yield browser
-        browser.close()
 
 
 @pytest.fixture

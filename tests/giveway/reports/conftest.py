@@ -14,9 +14,11 @@ import pytest
 from giveway.studies.definition import parse_definition
 from giveway.studies.design import design
 from giveway.studies.folder import StudyFolder
+from giveway.studies.identity import software_identity
 from giveway.studies.output import write_tables
 from giveway.studies.record import CRASHED
 from giveway.studies.rerun import rerun
+from giveway.studies.sealing import SEAL, fingerprint, sealed
 from giveway.studies.store import RecordStore
 
 if TYPE_CHECKING:
@@ -61,7 +63,8 @@ def changed(study: StudyFolder, tmp_path: Path) -> Callable[..., StudyFolder]:
         folder = tmp_path / "changed"
         shutil.copytree(study.path, folder)
         (folder / "report.html").unlink(missing_ok=True)
-        store = RecordStore(folder)
+        software = software_identity()
+        store = RecordStore(folder, software)
         for _, _, record in study.records:
             store.put(edit(record))
         path = folder / "study.toml"
@@ -70,7 +73,10 @@ def changed(study: StudyFolder, tmp_path: Path) -> Callable[..., StudyFolder]:
         manifest = json.loads((folder / "manifest.json").read_text("utf-8"))
         for entry, cell in zip(manifest["cells"], cells, strict=True):
             entry["label"] = cell.label
-        (folder / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+        manifest["definition"] = fingerprint(path.read_bytes())
+        del manifest[SEAL]
+        text = json.dumps(sealed(manifest, software))
+        (folder / "manifest.json").write_text(text, encoding="utf-8")
         for name in ("comparison", "situations"):
             (folder / f"{name}.csv").unlink()
         found = StudyFolder.open(folder)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+import threading
 from dataclasses import replace
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from itertools import pairwise
 
 import pandas as pd
@@ -42,6 +44,54 @@ def test_it_needs_nothing_but_itself(report, parsed):
     assert not re.search(r"@import|url\(\s*[\"']?(?!#)", html)
     assert not re.search(r"(?:https?:)?//[\w.-]+\.\w", html)
     assert len(html.encode()) < LIMIT
+
+
+class Elsewhere(BaseHTTPRequestHandler):
+    """Somebody who would like to be told."""
+
+    def do_GET(self):
+        self.server.asked.append(self.path)
+        self.send_error(404)
+
+    def log_message(self, *_):
+        pass
+
+
+@pytest.fixture
+def elsewhere():
+    with ThreadingHTTPServer(("127.0.0.1", 0), Elsewhere) as server:
+        server.asked = []
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield server
+        server.shutdown()
+
+
+def test_in_a_browser_names_are_inert_and_nothing_is_fetched(report, chromium, tmp_path, elsewhere):
+    """The study's title holds a script; and what a slip let through could still reach nobody."""
+    host = f"http://127.0.0.1:{elsewhere.server_port}"
+    slip = f'''<img src="{host}/image"><iframe src="{host}/frame"></iframe>
+        <script>fetch("{host}/fetched").catch(() => 0)</script>
+        <script src="{host}/script"></script></main>'''
+    html = report.read_text("utf-8").replace("</main>", slip)
+    policy = re.search(r"<meta http-equiv[^>]*>", html).group()
+    asked = {}
+    for name, text in (("sealed", html), ("open", html.replace(policy, ""))):
+        page = tmp_path / f"{name}.html"
+        page.write_text(text, encoding="utf-8")
+        tab = chromium.new_page()
+        dialogs, errors = [], []
+        tab.on("dialog", lambda dialog, seen=dialogs: (seen.append(dialog), dialog.dismiss()))
+        tab.on("pageerror", lambda error, seen=errors: seen.append(error))
+        tab.goto(page.as_uri(), wait_until="load")
+        assert "<script>alert('x')</script>" in tab.title()
+        assert (dialogs, errors) == ([], [])
+        assert tab.locator("#summary").is_visible()
+        assert tab.locator("th button").count() > 0  # its own script has run
+        tab.close()
+        asked[name] = set(elsewhere.asked)
+        elsewhere.asked.clear()
+    assert asked["sealed"] == set()
+    assert {"/image", "/frame", "/script"} <= asked["open"]  # that was the policy's doing
 
 
 def test_every_link_leads_somewhere(report, parsed):

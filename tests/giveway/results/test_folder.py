@@ -11,7 +11,7 @@ import pytest
 
 import giveway
 from giveway.errors import ResultsError
-from giveway.results.folder import FILES, take_folder, write_results
+from giveway.results.folder import FILES, taken_folder, write_results
 
 CONFIG = {"seed": 4, "crowd": {"pedestrians": 8}}
 DETERMINISTIC = ("ego.csv", "trajectories.csv", "pedestrians.csv", "summary.csv", "config.toml")
@@ -150,6 +150,11 @@ def test_a_run_that_cannot_begin_leaves_no_folder(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_another_run_has_taken_is_refused(tmp_path: Path) -> None:
-    assert take_folder(tmp_path / "r", force=False)
-    with pytest.raises(ResultsError, match="--out"):
-        take_folder(tmp_path / "r", force=False)
+    with taken_folder(tmp_path / "r", force=False) as empty:
+        assert empty
+        for force in (False, True):
+            with (
+                pytest.raises(ResultsError, match=r"another run is writing there.*--out"),
+                taken_folder(tmp_path / "r", force=force),
+            ):
+                pass

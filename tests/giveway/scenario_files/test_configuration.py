@@ -130,6 +130,8 @@ def test_the_bundled_scenarios_are_complete(name: str) -> None:
         ('<c><n v="a"/><net v="b"/></c>', "net-file = 'b' stands there a second time (first 'a')"),
         ('<c><n v="a"/><b v="soon"/></c>', "begin = 'soon'; expected seconds, h:m:s or d:h:m:s"),
         ('<c><n v="a"/><e v="1:30"/></c>', "end = '1:30'; expected seconds, h:m:s or d:h:m:s"),
+        ('<c><n v="a"/><step-length v="1e308"/></c>', "step-length = '1e308'; expected seconds"),
+        ('<c><n v="a"/><end v="1e308:0:0"/></c>', "end = '1e308:0:0'; expected seconds"),
         ('<c><n v="a"/><step-length v="0"/></c>', "step-length = 0; expected more than 0 s"),
         ('<c><n v="a"/><b v="nan"/></c>', "begin = 'nan'; expected seconds"),
         ('<c><n v="a"/><seed v="1.5"/></c>', "seed = '1.5'; expected a whole number"),
@@ -198,3 +200,9 @@ def test_times_are_counted_in_seconds(days: int, hours: int, minutes: int, milli
     assert seconds(f"{days}:{hours:02}:{minutes:02}:{rest:.3f}") == pytest.approx(total)
     assert seconds(f"{24 * days + hours}:{minutes}:{rest}") == pytest.approx(total)
     assert seconds(str(total)) == total
+
+
+def test_a_name_longer_than_any_files_is_a_missing_file(config: Callable[[str], Path]) -> None:
+    scenario = read_scenario(config(f'<c><n v="{"n" * 3000}"/></c>'))
+    with pytest.raises(ScenarioError, match=r"net-file names .*nnn, which does not exist"):
+        scenario.require_inputs()

@@ -274,3 +274,27 @@ def test_the_study_of_controllers_compares_all_of_them_in_every_scene():
     ]
     assert len(planned.cells) == len(scene.levels) * 4 == 64
     assert planned.definition.table == "levels"
+
+
+def planned(text):
+    from giveway.studies.plan import plan
+
+    return plan(parsed(text), "mine.toml")
+
+
+@pytest.mark.parametrize(
+    "factor",
+    [
+        '"crowd.pedestrians" = [10, 0]',
+        '"crowd.desired_speed_mean" = [1.2, 1.5]\n[run]\ncrowd.pedestrians = 0',
+        'few = { "nobody" = { crowd = { pedestrians = 0 } }, "ten" = {} }',
+    ],
+)
+def test_a_study_of_crowds_has_somebody_in_every_cell(factor):
+    with pytest.raises(ConfigError, match=r"mine.toml: cell \d .*pedestrians = 0: expected .* 1"):
+        planned(f'name = "m"\n[factors]\n{factor}\n')
+
+
+def test_nobody_need_be_added_to_a_scenarios_own_people_or_where_no_crowd_is_compared(tmp_path):
+    planned(MINIMAL + "[run]\ncrowd.pedestrians = 0\n")
+    planned('name = "m"\n[run]\nscenario = "junction"\n[factors]\n"crowd.pedestrians" = [0, 5]\n')

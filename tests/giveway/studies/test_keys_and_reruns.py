@@ -12,6 +12,7 @@ from giveway.processes.heartbeat import Phase
 from giveway.recording.journal import Journal
 from giveway.studies.execution.perform import perform
 from giveway.studies.folder import StudyFolder
+from giveway.studies.identity import software_identity
 from giveway.studies.plan import plan
 from giveway.studies.rerun import OtherNumbersError, rerun
 from giveway.studies.store import RecordStore
@@ -68,7 +69,7 @@ def test_a_rerun_gives_the_studys_row_and_all_trajectories(small_study, tmp_path
 
 def test_a_rerun_with_other_numbers_says_which(small_study, study_of, small_study_text, tmp_path):
     study = study_of(small_study_text.replace("= 5", "= 1"), tmp_path / "forged")
-    store = RecordStore(study.path)
+    store = RecordStore(study.path, software_identity())
     record = study.record("c1-s1")
     import dataclasses
 
@@ -87,7 +88,7 @@ def test_the_folder_names_the_cells_as_they_were_run(study_of, tmp_path):
         time_limit = 0.5
         [factors.crowd_of]
         "two" = { crowd = { pedestrians = 2 } }
-        "none" = { crowd = { pedestrians = 0 } }
+        "one" = { crowd = { pedestrians = 1 } }
         [factors]
         controller = ["mpc-paper", "pid-paper"]
     """
@@ -95,12 +96,12 @@ def test_the_folder_names_the_cells_as_they_were_run(study_of, tmp_path):
     rows = study.runs.set_index("run")
     for name, crowd, controller in (
         ("c2-s1", "two", "pid-paper"),
-        ("c3-s1", "none", "mpc-paper"),
+        ("c3-s1", "one", "mpc-paper"),
     ):
         assert (rows["crowd_of"][name], rows["controller"][name]) == (crowd, controller)
         again = rerun(study, name, None)
         assert again.config.controller == controller
-        assert again.config.crowd.pedestrians == {"two": 2, "none": 0}[crowd]
+        assert again.config.crowd.pedestrians == {"two": 2, "one": 1}[crowd]
 
 
 def test_cells_with_the_same_settings_share_their_records(study_of, tmp_path):

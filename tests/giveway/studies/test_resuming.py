@@ -96,6 +96,36 @@ def test_a_killed_study_goes_on_where_it_was(small_study, small_study_text, tabl
     assert [name for name in ours if ours[name] != theirs[name]] == []
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_study_that_is_ended_by_a_signal_says_so_and_tidies_up(
+    small_study_text, tmp_path, number
+):
+    file = tmp_path / "small.toml"
+    file.write_text(small_study_text, encoding="utf-8")
+    command = [sys.executable, "-m", "giveway", "study", str(file), "--out", "out", "--jobs", "1"]
+    with subprocess.Popen(
+        [*command, "--quiet"],
+        cwd=tmp_path,
+        env=os.environ | {"TMPDIR": str(tmp_path)},
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),  # ours may be a CI runner's
+    ) as study:
+        deadline = time.monotonic() + 120.0
+        while not list(tmp_path.glob("giveway-workers-*")):
+            assert study.poll() is None
+            assert time.monotonic() < deadline
+            time.sleep(0.01)
+        study.send_signal(number)
+        _, errors = study.communicate(timeout=60)
+    assert study.returncode == 128 + number
+    (line,) = errors.splitlines()
+    assert line.startswith(f"error: ended by {number.name}; ")
+    assert line.endswith(" of 20 runs are kept in out: go on with --resume")
+    assert not list(tmp_path.glob("giveway-workers-*"))
+
+
 def test_a_record_that_somebody_broke_is_made_again(
     small_study, study_of, small_study_text, tables_of, tmp_path
 ):
@@ -206,7 +236,9 @@ def test_definition_and_manifest_of_two_studies_are_not_mixed(
     folder = study_of(small_study_text.replace("= 5", "= 1"), tmp_path / "mixed").path
     text = (folder / "study.toml").read_text(encoding="utf-8")
     (folder / "study.toml").write_text(text.replace("[3, 2]", "[2, 3]"), encoding="utf-8")
-    with pytest.raises(ResultsError, match=r"other cells than study\.toml.*--resume"):
+    with pytest.raises(
+        ResultsError, match=r"study\.toml.*manifest\.json is about another.*--resume"
+    ):
         StudyFolder.open(folder)
 
 

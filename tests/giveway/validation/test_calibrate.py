@@ -10,9 +10,10 @@ import pytest
 
 from giveway.cli.validation import _PARAMETERS
 from giveway.errors import ConfigError, DatasetError
-from giveway.validation import Clip, calibrate, read_clips
+from giveway.validation import CITR, Clip, calibrate, read_clips
 from giveway.validation.calibrating import DEFAULT, split
-from pedestrian_model import SIM, Crowd, CrowdModel, VciParameters, Vehicles
+from giveway.validation.fitting import Search
+from pedestrian_model import LONGEST_STEP, SIM, Crowd, CrowdModel, VciParameters, Vehicles
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -43,7 +44,7 @@ def clips(tmp_path: Path, write_clip) -> tuple[Clip, ...]:
     """Three clips that the model made with ``TRUTH``."""
     for number in (1, 2, 3):
         write_clip(tmp_path, f"made_{number:02}", *walk(TRUTH, number))
-    return read_clips(tmp_path)
+    return read_clips(tmp_path, CITR)
 
 
 def test_it_finds_the_parameters_that_the_clips_were_made_with(clips) -> None:
@@ -113,3 +114,24 @@ def test_too_few_clips_to_hold_one_out(clips) -> None:
 
 def test_the_command_line_offers_the_packages_own_default() -> None:
     assert tuple(_PARAMETERS.split(",")) == DEFAULT
+
+
+def test_a_fit_never_ends_where_people_tremble_in_a_run(clips) -> None:
+    """However much an error lessens with the gain, as it may where it was hardly determined."""
+    search = Search(lambda p: 1.0 / p.destination_gain, SIM, ["destination_gain"], 200, print)
+    gain = search.run().destination_gain
+    assert 0.95 * SIM.mass / LONGEST_STEP < gain <= SIM.mass / LONGEST_STEP
+    with pytest.raises(ConfigError, match=r"--preset: destination_gain = 2000"):
+        calibrate(clips, replace(SIM, destination_gain=2000.0), ["mass"])
+
+
+def test_the_closest_two_people_stand_beside_the_error(clips) -> None:
+    """Who feels neither repulsion nor the vehicle passes closer to the others."""
+    found = calibrate(clips, SIM, ("destination_gain",), evaluations=2)
+    data, before, after = found.apart
+    position = np.concatenate([clip.position[15:] for clip in clips])
+    apart = np.linalg.norm(position[:, :, None] - position[:, None], axis=3)
+    apart[:, np.arange(4), np.arange(4)] = np.inf
+    assert data == pytest.approx(np.nanmin(apart))
+    assert 0.2 < before < 4.0
+    assert after > 0.2

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from giveway.errors import DatasetError
-from giveway.validation import Protocol, read_clip, read_clips, validate
+from giveway.validation import CITR, DUT, Protocol, dataset_of, read_clip, read_clips, validate
 from giveway.validation.protocol import distance_to_bodies, vehicle_rows
 from pedestrian_model import SIM
 
@@ -25,7 +26,7 @@ def test_image_axes_are_mirrored_into_a_right_handed_frame(tmp_path: Path) -> No
     file.write_text(HEAD + "7,10,ped,3.0,-2.0,0.5,-1.0\n7,11,ped,3.0,-2.1,0.5,-1.0\n")
     beside = tmp_path / "a_01_traj_veh_filtered.csv"
     beside.write_text("id,frame,label,x_est,y_est,psi_est,vel_est\n1,11,veh,5.0,4.0,-0.5,2.0\n")
-    clip = read_clip(file)
+    clip = read_clip(file, CITR)
     assert (clip.name, clip.first_frame, clip.frames) == ("a_01", 10, 2)
     assert clip.ids.tolist() == [7]
     np.testing.assert_array_equal(clip.position[0, 0], [3.0, 2.0])
@@ -41,7 +42,7 @@ def test_clips_are_found_in_any_folder_with_and_without_vehicles(
     write_clip(tmp_path / "trajectories_filtered" / "p2p_uni", "walk_01", x, v)
     cart = np.tile([9.0, 9.0, 0.0, 1.0], (60, 1))
     write_clip(tmp_path / "trajectories_filtered" / "vci_front", "drive_01", x, v, cart)
-    clips = read_clips(tmp_path)
+    clips = read_clips(tmp_path, CITR)
     assert [(c.name, c.poses.shape[1]) for c in clips] == [("walk_01", 0), ("drive_01", 1)]
 
 
@@ -50,7 +51,7 @@ def test_who_comes_late_or_leaves_early_is_not_seen_then(
 ) -> None:
     x, v = straight_walks(60, [[0, 0], [0, 3]], [[1, 0], [1, 0]])
     x[40:, 1] = np.nan
-    clip = read_clip(write_clip(tmp_path, "walk_01", x, v))
+    clip = read_clip(write_clip(tmp_path, "walk_01", x, v), CITR)
     assert clip.seen.sum(axis=0).tolist() == [60, 40]
     np.testing.assert_allclose(clip.destination[1], x[39, 1])
 
@@ -74,7 +75,7 @@ def test_a_broken_file_is_named_with_its_line(tmp_path: Path, text: str, said: s
     file = tmp_path / "a_01_traj_ped_filtered.csv"
     file.write_text(text)
     with pytest.raises(DatasetError) as error:
-        read_clips(tmp_path)
+        read_clips(tmp_path, CITR)
     assert str(file) in str(error.value)
     assert said in str(error.value)
     assert "\n" not in str(error.value)
@@ -82,9 +83,9 @@ def test_a_broken_file_is_named_with_its_line(tmp_path: Path, text: str, said: s
 
 def test_a_wrong_folder_says_what_was_expected(tmp_path: Path) -> None:
     with pytest.raises(DatasetError, match="no such folder"):
-        read_clips(tmp_path / "nowhere")
+        read_clips(tmp_path / "nowhere", CITR)
     with pytest.raises(DatasetError, match=r"no clip found; expected files \*_traj_ped_filtered"):
-        read_clips(tmp_path)
+        read_clips(tmp_path, CITR)
 
 
 def test_a_vehicle_without_pedestrians_is_refused(tmp_path, write_clip, straight_walks) -> None:
@@ -92,7 +93,7 @@ def test_a_vehicle_without_pedestrians_is_refused(tmp_path, write_clip, straight
     cart = np.tile([9.0, 9.0, 0.0, 1.0], (60, 1))
     write_clip(tmp_path, "drive_01", x, v, cart).unlink()
     with pytest.raises(DatasetError, match="no pedestrians beside it"):
-        read_clips(tmp_path)
+        read_clips(tmp_path, CITR)
 
 
 def test_two_clips_of_one_name_are_refused(tmp_path, write_clip, straight_walks) -> None:
@@ -100,23 +101,52 @@ def test_two_clips_of_one_name_are_refused(tmp_path, write_clip, straight_walks)
     write_clip(tmp_path / "a", "walk_01", x, v)
     write_clip(tmp_path / "b", "walk_01", x, v)
     with pytest.raises(DatasetError, match="a clip of this name is in"):
-        read_clips(tmp_path)
+        read_clips(tmp_path, CITR)
 
 
 def test_a_clip_too_short_says_how_long_it_must_be(tmp_path, write_clip, straight_walks) -> None:
     x, v = straight_walks(37, [[0, 0]], [[1, 0]])
     write_clip(tmp_path, "walk_01", x, v)
     with pytest.raises(DatasetError, match="has 37 frames: expected at least 38"):
-        validate(read_clips(tmp_path), SIM)
+        validate(read_clips(tmp_path, CITR), SIM)
     x, v = straight_walks(38, [[0, 0]], [[1, 0]])
     write_clip(tmp_path, "walk_01", x, v)
-    assert len(validate(read_clips(tmp_path), SIM).cut) == 1
+    assert len(validate(read_clips(tmp_path, CITR), SIM).cut) == 1
 
 
 def test_the_distance_is_to_the_carts_own_body(tmp_path, write_clip, straight_walks) -> None:
     """1.0 m to the front, 1.2 m to the rear, 1.2 m wide, turned with its heading."""
     x, v = straight_walks(2, [[0, 3], [0, -3], [2, 0], [0.5, 0.5], [-1.6, 4.0]], [[0, 0]] * 5)
     heading_up = np.tile([0.0, 0.0, math.pi / 2, 1.0], (2, 1))
-    clip = read_clip(write_clip(tmp_path, "drive_01", x, v, heading_up))
+    clip = read_clip(write_clip(tmp_path, "drive_01", x, v, heading_up), CITR)
     distance = distance_to_bodies(clip.position, vehicle_rows(clip, Protocol()))[0]
     np.testing.assert_allclose(distance, [2.0, 1.8, 1.4, 0.0, math.hypot(1.0, 3.0)], atol=1e-12)
+
+
+def test_a_description_of_ones_own_sets_rate_axis_and_body(tmp_path, write_clip, straight_walks):
+    mine = tmp_path / "mine.toml"
+    mine.write_text(
+        'name = "MINE"\nframe_rate = 29.97\ny_axis = "up"\n'
+        "[vehicle]\nfront = 3.0\nrear = 2.0\nwidth = 1.8\n"
+    )
+    x, v = straight_walks(80, [[-4, 1.6], [3, -2]], [[1, 0], [-1, 0.3]])
+    write_clip(tmp_path, "drive_01", x, v, np.tile([0.0, 0.0, 0.0, 1.0], (80, 1)))
+    (clip,) = read_clips(tmp_path, dataset_of(str(mine)))
+    np.testing.assert_allclose(clip.position[:, :, 1], -x[:, :, 1], err_msg="y is not mirrored")
+    found = validate([clip], SIM)
+    assert found.protocol == Protocol(front=3.0, rear=2.0, width=1.8)
+    assert found.cut[0].vehicles[0, 0, 4:].tolist() == [3.0, 2.0, 1.8]
+
+
+def test_the_bundled_descriptions_keep_the_times_of_the_windows() -> None:
+    assert Protocol.of(CITR) == Protocol()
+    campus = Protocol.of(DUT)
+    assert (campus.skip, campus.stride, campus.horizons) == (12, 12, (18, 48, 96))
+    assert (campus.front + campus.rear, campus.width) == (4.5, 1.8)
+
+
+def test_clips_of_two_data_sets_are_not_judged_together(tmp_path, write_clip, straight_walks):
+    write_clip(tmp_path, "walk_01", *straight_walks(80, [[0, 0]], [[1, 0]]))
+    (clip,) = read_clips(tmp_path, CITR)
+    with pytest.raises(DatasetError, match="from the data sets CITR, DUT; expected"):
+        validate([clip, replace(clip, dataset=DUT)], SIM)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from giveway.validation import Protocol, read_clips, validate
+from giveway.validation import CITR, Protocol, read_clips, validate
 from giveway.validation.intervals import ClipBootstrap
 from giveway.validation.predictors import straight_to
 from giveway.validation.protocol import windows
@@ -31,7 +31,7 @@ def test_constant_velocity_is_exact_on_straight_tracks(
 ) -> None:
     x, v = straight_walks(180, [[0, 0], [3, 50]], [[1.2, 0.3], [-1.0, 0.0]])
     write_clip(tmp_path, "walk_01", x, v)
-    errors = validate(read_clips(tmp_path), SIM).errors
+    errors = validate(read_clips(tmp_path, CITR), SIM).errors
     for predictor in ("CV", "goalCV"):
         for metric in ("ADE", "FDE"):
             assert numbers(errors, predictor, metric) == pytest.approx([0, 0, 0], abs=1e-9)
@@ -43,7 +43,7 @@ def test_a_velocity_that_is_wrong_by_so_much_gives_so_much_error(
     """0.1 m/s too fast: after h frames 0.1 h dt off, and on average 0.1 (h + 1)/2 dt."""
     x, v = straight_walks(180, [[0, 0]], [[1.0, 0.0]])
     write_clip(tmp_path, "walk_01", x, v + [0.1, 0.0])
-    errors = validate(read_clips(tmp_path), SIM).errors
+    errors = validate(read_clips(tmp_path, CITR), SIM).errors
     h = np.array([22, 60, 120])
     assert numbers(errors, "CV", "FDE") == pytest.approx(0.1 * h * DT)
     assert numbers(errors, "CV", "ADE") == pytest.approx(0.1 * (h + 1) / 2 * DT)
@@ -54,7 +54,7 @@ def test_windows_begin_every_15_frames_after_the_first_15(
 ) -> None:
     x, v = straight_walks(100, [[0, 0]], [[1, 0]])
     write_clip(tmp_path, "walk_01", x, v)
-    clips = read_clips(tmp_path)
+    clips = read_clips(tmp_path, CITR)
     cut = windows(clips, Protocol())
     assert [w.frame for w in cut] == [15, 30, 45, 60, 75]
     seen = [int((~np.isnan(w.observed[:, 0, 0])).sum()) for w in cut]
@@ -69,7 +69,7 @@ def test_who_is_lost_on_the_way_does_not_count_from_there_on(
     x, v = straight_walks(60, [[0, 0], [0, 4]], [[1, 0], [1, 0]])
     x[30:33, 1] = np.nan  # lost for three frames
     write_clip(tmp_path, "walk_01", x, v)
-    cut = windows(read_clips(tmp_path), Protocol())
+    cut = windows(read_clips(tmp_path, CITR), Protocol())
     first = cut[0].observed
     assert np.isnan(first[14:, 1]).all()
     assert not np.isnan(first[:14, 1]).any()
@@ -79,7 +79,7 @@ def test_near_is_who_comes_near_within_the_horizon(tmp_path, write_clip, straigh
     """The walker passes a standing cart 1 m beside it; the other stays 20 m away."""
     x, v = straight_walks(200, [[-4.0, 1.6], [-4.0, 20.0]], [[1.0, 0.0], [1.0, 0.0]])
     write_clip(tmp_path, "drive_01", x, v, np.tile([0.0, 0.0, 0.0, 0.0], (200, 1)))
-    found = validate(read_clips(tmp_path), SIM)
+    found = validate(read_clips(tmp_path, CITR), SIM)
     assert not found.found.near[1::2].any()
     assert found.found.near[::2].any()
     near = found.errors.query("subset == 'near' and metric == 'FDE' and predictor == 'CV'")
@@ -97,7 +97,7 @@ def test_a_cart_that_drives_at_a_walker_touches_constant_velocity_but_not_the_mo
     cart = np.zeros((frames, 4))
     cart[:, 0], cart[:, 3] = -8.0 + 2.0 * DT * np.arange(frames), 2.0
     write_clip(tmp_path, "drive_01", x, v, cart)
-    contacts = validate(read_clips(tmp_path), SIM).contacts.set_index("predictor")
+    contacts = validate(read_clips(tmp_path, CITR), SIM).contacts.set_index("predictor")
     assert contacts["pedestrians"].tolist() == [1] * 5
     touching = contacts["touching"].to_dict()
     assert touching["CV"] == 1
@@ -111,7 +111,7 @@ def test_clips_without_a_vehicle_have_no_contacts_and_nobody_near(
 ) -> None:
     x, v = straight_walks(180, [[0, 0]], [[1, 0]])
     write_clip(tmp_path, "walk_01", x, v)
-    found = validate(read_clips(tmp_path), SIM)
+    found = validate(read_clips(tmp_path, CITR), SIM)
     assert found.contacts.empty
     assert found.errors.query("subset == 'near'")["count"].sum() == 0
 

@@ -22,7 +22,7 @@ QUANTITIES: Final = {
     "mass": "kg", "friction": "N.s/m", "drag": "N.s2/m2", "lag": "s", "response": "s",
     "full_drive": "N", "full_brake": "N", "holds": "", "gear_time": "s", "gear_speed": "m/s",
     "gear_ratio": "", "gears": "", "engaged": "", "initial_speed": "m/s",
-    "initial_position": "m", "array_size": "",
+    "initial_position": "m", "array_size": "", "position_step": "m",
 }  # fmt: skip
 REFERENCES: Final = {name: index + 1 for index, name in enumerate(QUANTITIES)}
 INPUT_ARRAY: Final = 60  # value references beyond those of single quantities
@@ -52,6 +52,7 @@ DEFAULTS: Final = {  # [SI] what the car is unless told otherwise
     "initial_speed": 0.0,
     "initial_position": 0.0,
     "array_size": 3.0,
+    "position_step": 0.0,
 }
 PARAMETERS: Final = ("mass", "friction", "lag", "engaged", "gears")  # offered by every car
 PHASES: Final = (
@@ -93,6 +94,9 @@ class Car:
         step: [s] of its default experiment.
         only_step: [s] the one communication step it accepts.
         constant_step: it refuses a step that differs from its first.
+        keeps_final_only: it keeps a step only if its state will not be set back before it.
+        needs_event_mode: FMI 3: it refuses steps before its events are handled.
+        needs_stop_time: [s] it wants to be told a stop time as late as this.
         strict_time: it refuses a step that does not begin where the last one ended.
         euler: one explicit Euler step for each communication step.
         once_per_process: a second instance in the process is refused.
@@ -121,6 +125,9 @@ class Car:
     step: float | None = 0.05
     only_step: float | None = None
     constant_step: bool = False
+    keeps_final_only: bool = False
+    needs_event_mode: bool = False
+    needs_stop_time: float | None = None
     strict_time: bool = False
     euler: bool = False
     once_per_process: bool = False
@@ -197,8 +204,11 @@ class Car:
 def settings(car: Car, token: str, calls: str) -> str:
     """The text of resources/car.txt, which the library reads about itself."""
     lines = [f"token {token}", f"role {car.role}", f"nominal {car.nominal!r}"]
-    lines += [f"{flag}" for flag in ("euler", "once_per_process", "strict_time", "constant_step")
-              if getattr(car, flag)]  # fmt: skip
+    flags = ("euler", "once_per_process", "strict_time", "constant_step", "keeps_final_only",
+             "needs_event_mode")  # fmt: skip
+    lines += [flag for flag in flags if getattr(car, flag)]
+    if car.needs_stop_time:
+        lines.append(f"needs_stop_time {car.needs_stop_time!r}")
     if car.only_step:
         lines.append(f"only_step {car.only_step!r}")
     if car.calls:

@@ -23,6 +23,7 @@ FAULTS: Final = {
     # it refuses
     "warning": "returns 'warning' with a message; goes on",
     "error": "returns 'error' with a message",
+    "error_without_events": "FMI 3: returns 'error' unless event mode is used",
     "fatal": "returns 'fatal' with a message; any call after that aborts",
     "pending": "returns 'pending'; the step is never done",
     "unknown_status": "returns 77",
@@ -45,6 +46,9 @@ FAULTS: Final = {
     "huge": "its speed is 1e300",
     "jump": "its position is 50 m further",
     "frozen": "nothing moves any more",
+    "position_stands": "its position stays where it is, its speed does not",
+    "speed_stands": "its speed stays what it is, its position goes on",
+    "trembles": "its speed jumps up and down by a rounding error",
     "chatter": "in 'event': it always needs one more event iteration",
     "memory": "takes 300 MB",
     # it talks

@@ -43,7 +43,7 @@ def faulty(zoo: Any) -> Callable[..., Task]:
         car: Path = zoo.car(behaviour=fault, at=AT)
         profile = str(car.with_suffix(".toml"))
         vehicle = {"fmu": str(car), "profile": profile, "isolation": "none"}
-        return _task(fault, seed=4, time_limit=time_limit, vehicle=vehicle)
+        return _task(fault, seed=4, time_limit=time_limit, controller="pid-paper", vehicle=vehicle)
 
     return make
 

@@ -16,7 +16,9 @@ FATES = {
     "segfault": r"SIGSEGV in the vehicle FMU's step from 4\.\d\d s \(step \d\d\)",
     "exit_0": r"exit\(0\) called by native code in the vehicle FMU's step from 4\.\d\d s \(.*\)",
     "last_words": r"SIGABRT in the vehicle FMU's step .*, after printing '[^']+'",
-    "hang": r"no progress for [34](\.\d+)? s in the vehicle FMU's step from 4\.\d\d s \(.*\)",
+    "sleep_forever": (
+        r"no progress for [34](\.\d+)? s in the vehicle FMU's step from 4\.\d\d s \(.*\)"
+    ),
 }
 
 

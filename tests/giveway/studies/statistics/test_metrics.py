@@ -17,7 +17,9 @@ def test_every_metric_is_a_column_of_the_summary_with_its_unit(each) -> None:
 
 def test_what_is_left_out_says_nothing_about_a_controller() -> None:
     left = set(UNITS) - {each.name for each in METRICS}
-    assert left == {"completed", "simulated_time", "travelled_distance", "maximum_speed"}
+    said = {"completed", "simulated_time", "travelled_distance", "maximum_speed"}
+    said |= {"vehicle_contacts", "vehicle_contact_time"}  # SUMO drives those into it
+    assert left == said | {"hard_brakes", "hard_brakes_without_cause"}  # of drives in traffic
 
 
 def test_a_name_without_any_likeness_lists_them_all(refused) -> None:

@@ -65,8 +65,13 @@ void car_start(Car *car) {
 double car_get(const Car *car, Quantity quantity) {
     double rates[MAX_STATES];
     switch (quantity) {
-        case Q_speed: return (car_is_static(car) ? car->value[Q_speed_setpoint] : car->x[1]) + car->added[Q_speed];
-        case Q_position: return car->x[0] + car->added[Q_position];
+        case Q_speed: if (car->speed_stands) return car->stood;
+            return (car_is_static(car) ? car->value[Q_speed_setpoint] : car->x[1]) + car->added[Q_speed];
+        case Q_position: {
+            double quantum = parameter(car, Q_position_step), at = car->x[0] + car->added[Q_position];
+            if (car->position_stands) return car->stood;
+            return quantum > 0.0 ? quantum * floor(at / quantum) : at;
+        }
         case Q_acceleration: rates_at(car, car->x, rates); return rates[1] + car->added[Q_acceleration];
         case Q_wheel_force: return force_at(car, car->x);
         case Q_gear: return car->shifted ? 2.0 : 1.0;

@@ -13,7 +13,7 @@
     X(rate_position) X(rate_speed) X(rate_force) X(indicator)                                       \
     X(mass) X(friction) X(drag) X(lag) X(response) X(full_drive) X(full_brake) X(holds)             \
     X(gear_time) X(gear_speed) X(gear_ratio) X(gears) X(engaged) X(initial_speed)                   \
-    X(initial_position) X(array_size)
+    X(initial_position) X(array_size) X(position_step)
 
 typedef enum {
 #define X(name) Q_##name,
@@ -36,6 +36,8 @@ typedef struct {
     bool held;            /* the brake holds the standing car */
     bool shifted;         /* into the second gear */
     bool frozen;          /* nothing moves any more */
+    bool position_stands, speed_stands; /* the output does not follow any more */
+    double stood;         /* its value */
     bool chatters;        /* every event iteration needs another */
     bool undefined;       /* after a discard that has to be undone */
     double added[QUANTITY_COUNT]; /* what a fault adds to an output: also NaN */

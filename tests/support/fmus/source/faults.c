@@ -82,6 +82,10 @@ static Status error(Instance *self, FaultEntry *fault, double time, double step)
     return ERROR;
 }
 
+static Status error_without_events(Instance *self, FaultEntry *fault, double time, double step) {
+    return self->event_mode ? OK : error(self, fault, time, step);
+}
+
 static Status fatal(Instance *self, FaultEntry *fault, double time, double step) {
     self->say(self, FATAL, "the engine is on fire");
     self->dead = true;
@@ -163,6 +167,22 @@ static Status jump(Instance *self, FaultEntry *fault, double time, double step) 
 static Status frozen(Instance *self, FaultEntry *fault, double time, double step) {
     self->car.frozen = true;
     return OK;
+}
+
+static Status position_stands(Instance *self, FaultEntry *fault, double time, double step) {
+    if (!self->car.position_stands) self->car.stood = car_get(&self->car, Q_position);
+    self->car.position_stands = true;
+    return OK;
+}
+
+static Status speed_stands(Instance *self, FaultEntry *fault, double time, double step) {
+    if (!self->car.speed_stands) self->car.stood = car_get(&self->car, Q_speed);
+    self->car.speed_stands = true;
+    return OK;
+}
+
+static Status trembles(Instance *self, FaultEntry *fault, double time, double step) {
+    return spoil(self, Q_speed, fault->count % 2 * 1e-16 * (1.0 + 4.0 * fabs(self->car.x[1])));
 }
 
 static Status chatter(Instance *self, FaultEntry *fault, double time, double step) {
@@ -393,13 +413,14 @@ static const struct {
 } FAULTS[] = {
     {"segfault", segfault}, {"abort", abort_}, {"stack_overflow", stack_overflow}, {"exit_0", exit_0},
     {"exit_3", exit_3}, {"quick_exit", quick_exit_}, {"hang", hang}, {"sleep_forever", sleep_forever},
-    {"slow", slow}, {"warning", warning}, {"error", error}, {"fatal", fatal}, {"pending", pending},
+    {"slow", slow}, {"warning", warning}, {"error", error}, {"error_without_events", error_without_events}, {"fatal", fatal}, {"pending", pending},
     {"unknown_status", unknown_status}, {"silent_null", silent_null}, {"discard_once", discard_once},
     {"discard_long", discard_long}, {"discard_spoiled", discard_spoiled}, {"discard_always", discard_always},
     {"discard_creeping", discard_creeping}, {"discard_backwards", discard_backwards}, {"discard_nan", discard_nan},
     {"terminate", terminate}, {"nan", nan_speed}, {"nan_position", nan_position},
     {"nan_acceleration", nan_acceleration}, {"nan_rate", nan_rate}, {"inf", inf_speed}, {"huge", huge_speed},
-    {"jump", jump}, {"frozen", frozen}, {"chatter", chatter}, {"refuse_start_value", refuse_start_value},
+    {"jump", jump}, {"frozen", frozen}, {"position_stands", position_stands},
+    {"speed_stands", speed_stands}, {"trembles", trembles}, {"chatter", chatter}, {"refuse_start_value", refuse_start_value},
     {"memory", memory}, {"message_latin1", message_latin1}, {"message_null", message_null},
     {"message_percent", message_percent}, {"message_arguments", message_arguments},
     {"message_control", message_control}, {"message_huge", message_huge}, {"flood_log", flood_log},

@@ -32,6 +32,7 @@ EXPORT void car_fmiFreeSlaveInstance(fmi1Component c) { instance_destroy(c); }
 EXPORT fmi1Status car_fmiSetDebugLogging(fmi1Component c, fmi1Boolean loggingOn) { return fmi1OK; }
 
 EXPORT fmi1Status car_fmiInitializeSlave(fmi1Component c, fmi1Real start, fmi1Boolean stopDefined, fmi1Real stop) {
+    ((Instance *)c)->stop_time = stopDefined ? stop : 0.0;
     return (fmi1Status)instance_initialise(c);
 }
 
@@ -43,7 +44,7 @@ EXPORT fmi1Status car_fmiTerminateSlave(fmi1Component c) {
 EXPORT fmi1Status car_fmiResetSlave(fmi1Component c) { return fmi1Error; }
 
 EXPORT fmi1Status car_fmiDoStep(fmi1Component c, fmi1Real time, fmi1Real step, fmi1Boolean newStep) {
-    return (fmi1Status)instance_step(c, time, step);
+    return (fmi1Status)instance_step(c, time, step, true);
 }
 
 EXPORT fmi1Status car_fmiCancelStep(fmi1Component c) { return fmi1Error; }

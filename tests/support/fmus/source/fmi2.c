@@ -27,6 +27,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
                                fmi2Boolean stopDefined, fmi2Real stop) {
     instance_called(c, "setup");
     ((Instance *)c)->car.time = start;
+    ((Instance *)c)->stop_time = stopDefined ? stop : 0.0;
     return fmi2OK;
 }
 
@@ -110,7 +111,7 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
 /* ---- Co-Simulation ---- */
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean noSetFMUStatePriorToCurrentPoint) {
-    return (fmi2Status)instance_step(c, time, step);
+    return (fmi2Status)instance_step(c, time, step, noSetFMUStatePriorToCurrentPoint);
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) { return fmi2Error; }
@@ -182,6 +183,7 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStatePriorToCurrentPoint,
                                        fmi2Boolean *enterEventMode, fmi2Boolean *terminateSimulation) {
     Instance *self = c;
+    instance_called(self, noSetFMUStatePriorToCurrentPoint ? "completed 1" : "completed 0");
     *enterEventMode = car_wants_event(&self->car);
     *terminateSimulation = self->ended;
     return fmi2OK;

@@ -32,7 +32,9 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
                                          const fmi3ValueReference intermediate[], size_t n,
                                          fmi3InstanceEnvironment environment, fmi3LogMessageCallback logMessage,
                                          fmi3IntermediateUpdateCallback intermediateUpdate) {
-    return instance_create(resources ? resources : "", token, say, environment, (void *)logMessage);
+    Instance *self = instance_create(resources ? resources : "", token, say, environment, (void *)logMessage);
+    if (self != NULL) self->event_mode = self->event_pending = eventModeUsed;
+    return self;
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources,
@@ -62,6 +64,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean toleranceDefi
                                        fmi3Float64 start, fmi3Boolean stopDefined, fmi3Float64 stop) {
     instance_called(c, "enter");
     ((Instance *)c)->car.time = start;
+    ((Instance *)c)->stop_time = stopDefined ? stop : 0.0;
     return fmi3OK;
 }
 
@@ -149,8 +152,11 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
                       fmi3Boolean *eventHandlingNeeded, fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn,
                       fmi3Float64 *lastSuccessfulTime) {
     Instance *self = c;
-    Status status = instance_step(self, time, step);
-    *eventHandlingNeeded = *earlyReturn = fmi3False;
+    bool handled = !self->needs_event_mode || (self->event_mode && !self->event_pending);
+    if (!handled) self->say(self, ERROR, "my events have not been handled");
+    Status status = handled ? instance_step(self, time, step, noSetFMUStatePriorToCurrentPoint) : ERROR;
+    *earlyReturn = fmi3False;
+    *eventHandlingNeeded = self->event_pending = self->needs_event_mode && self->event_mode;
     *terminateSimulation = self->ended;
     *lastSuccessfulTime = self->last_time;
     return self->ended ? fmi3OK : (fmi3Status)status;
@@ -164,6 +170,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *needUpdate, fmi
     Instance *self = c;
     instance_called(self, "update");
     Status status = misbehave(self, AT_EVENT, self->car.time, 0.0);
+    self->event_pending = false;
     double shift = self->car.value[Q_gear_time];
     *valuesChanged = car_event(&self->car);
     *needUpdate = self->car.chatters;
@@ -177,6 +184,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *needUpdate, fmi
 fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
                                        fmi3Boolean *enterEventMode, fmi3Boolean *terminateSimulation) {
     Instance *self = c;
+    instance_called(self, noSetFMUStatePriorToCurrentPoint ? "completed 1" : "completed 0");
     *enterEventMode = car_wants_event(&self->car);
     *terminateSimulation = self->ended;
     return fmi3OK;

@@ -42,6 +42,9 @@ static void read_line(Instance *self, char *line) {
     else if (strcmp(key, "once_per_process") == 0) self->once_per_process = true;
     else if (strcmp(key, "strict_time") == 0) self->strict_time = true;
     else if (strcmp(key, "constant_step") == 0) self->constant_step = true;
+    else if (strcmp(key, "keeps_final_only") == 0) self->keeps_final_only = true;
+    else if (strcmp(key, "needs_event_mode") == 0) self->needs_event_mode = true;
+    else if (strcmp(key, "needs_stop_time") == 0) self->needs_stop_time = number(&rest);
     else if (strcmp(key, "only_step") == 0) self->only_step = number(&rest);
     else if (strcmp(key, "nominal") == 0) self->nominal = number(&rest);
     else if (strcmp(key, "variable") == 0) {
@@ -150,6 +153,10 @@ Status instance_initialise(Instance *self) {
     instance_called(self, "initialise");
     Status status = misbehave(self, AT_INITIALISE, 0.0, 0.0);
     if (status >= DISCARD) return status;
+    if (self->stop_time < self->needs_stop_time) {
+        self->say(self, ERROR, "no stop time, or too early");
+        return ERROR;
+    }
     if (self->load[0] != '\0' && strcmp(self->load, "empty") != 0) {
         if (strcmp(self->load, "full") != 0) {
             self->say(self, ERROR, "load: neither empty nor full");
@@ -193,10 +200,10 @@ static Status check_step(Instance *self, double time, double step) {
     return OK;
 }
 
-Status instance_step(Instance *self, double time, double step) {
+Status instance_step(Instance *self, double time, double step, bool final) {
     if (self->calls[0] != '\0') {
         char call[80];
-        snprintf(call, sizeof call, "step %.17g %.17g", time, step);
+        snprintf(call, sizeof call, "step %.17g %.17g %d", time, step, final);
         instance_called(self, call);
     } else {
         instance_called(self, "step");
@@ -206,7 +213,9 @@ Status instance_step(Instance *self, double time, double step) {
     self->last_time = time;
     status = misbehave(self, AT_STEP, time, step);
     if (status >= DISCARD) return status;
+    Car before = self->car;
     car_step(&self->car, time, step);
+    if (self->keeps_final_only && !final) self->car = before;
     self->last_time = time + step;
     return status;
 }

@@ -34,6 +34,11 @@ struct Instance {
     FaultEntry faults[MAX_FAULTS];
     int fault_count;
     bool once_per_process, strict_time;
+    bool keeps_final_only; /* a step after which its state may be set back is not kept */
+    bool needs_event_mode; /* FMI 3: no step without it, nor before its events are handled */
+    bool event_mode, event_pending;
+    double needs_stop_time; /* [s] it has to be told one as late as this; 0: none */
+    double stop_time;
     double only_step;   /* [s] refuses every other one */
     bool constant_step; /* refuses a step that differs from the first */
     double first_step;
@@ -53,7 +58,7 @@ bool read_settings(Instance *self, const char *resources);
 /* Every call: keeps the journal of calls, and dies of a call after 'fatal'. */
 void instance_called(Instance *self, const char *function);
 Status instance_initialise(Instance *self);
-Status instance_step(Instance *self, double time, double step);
+Status instance_step(Instance *self, double time, double step, bool final);
 Status instance_get(Instance *self, unsigned reference, double values[], int *count);
 Status instance_set(Instance *self, unsigned reference, const double values[], int *count);
 Status instance_set_text(Instance *self, const char *text);

@@ -26,7 +26,8 @@ from controller import (
     TunedPidParameters,
 )
 from controller.defaults import STANDSTILL
-from controller.planning.manoeuvre import Weights, aim, stopping_need
+from controller.planning.parameters import Weights
+from controller.planning.search import aim, stopping_need
 
 MODEL = LongitudinalModel()
 N, DT, V_R = 60, MODEL.time_step, 4.0
@@ -85,7 +86,7 @@ def standing(draw):
 
 
 @given(standing())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 def test_with_closeness_beyond_all_else_a_stop_stays_possible(bystanders, case):
     drove = drive(bystanders, *case, closeness_weight=1e9)
     assert drove.lacking <= 1e-4
@@ -93,7 +94,7 @@ def test_with_closeness_beyond_all_else_a_stop_stays_possible(bystanders, case):
 
 
 @given(standing())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_with_the_usual_weight_some_centimetres_are_bought(bystanders, case):
     drove = drive(bystanders, *case)
     assert drove.lacking <= BOUGHT

@@ -8,7 +8,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from controller import ControllerError, Manoeuvre, ManoeuvreParameters, PlannerParameters
-from controller.planning.manoeuvre import Weights, aim, corridor, cost, shift, stopping_need
+from controller.planning.parameters import Weights
+from controller.planning.search import aim, copy, corridor, cost, shift, stopping_need
 
 DT = 0.05
 FREE = np.inf
@@ -92,7 +93,7 @@ def test_an_acceleration_is_approached_with_the_jerk_and_then_held():
 def test_a_shifted_plan_is_what_was_planned():
     m = aimed(4.0, 0.0, -2.5, 1.4, 4.0)
     later = Manoeuvre.empty(60)
-    later.copy_from(m)
+    copy(m, later)
     shift(m.speed[1], True, 6.0, DT, later.distance, later.speed, later.acceleration)
     assert np.array_equal(later.speed[:-1], m.speed[1:])
     assert later.speed[-1] == m.speed[-1]  # held
@@ -190,7 +191,7 @@ def test_an_admissible_plan_is_admissible_one_step_later(
     assert cost_missing(m, gap, w) <= 1e-9
     holds = gap[-1] - DT * m.speed[-1] >= need[-1]
     later = Manoeuvre.empty(N)
-    later.copy_from(m)
+    copy(m, later)
     shift(m.speed[1], holds, deceleration, DT, later.distance, later.speed, later.acceleration)
     assert cost_missing(later, person[2:] - m.distance[1] - later.distance[1:], w) <= 1e-9
 
@@ -226,3 +227,11 @@ def test_parameters_out_of_range_are_refused_by_name(changes, name):
 def test_a_planner_that_cannot_be_is_refused_by_name(changes):
     with pytest.raises(ControllerError, match=next(iter(changes))):
         PlannerParameters(**changes)
+
+
+@pytest.mark.parametrize("wanted", [2.5, 0.0])
+def test_a_speed_above_the_wanted_one_is_given_up_without_a_hard_brake(wanted):
+    m = Manoeuvre.empty(60)
+    aim(13.9, 0.0, wanted, 0.0, 4.0, 8.0, 0.05, m.distance, m.speed, m.acceleration)
+    assert -3.0 - 1e-9 <= m.acceleration.min() < -2.9
+    assert m.speed[-1] < 6.0

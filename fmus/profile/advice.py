@@ -1,0 +1,28 @@
+"""Lines to write into a profile, given what stands there already."""
+
+from fmus.profile.vehicle_profile import Axis, VehicleProfile
+
+
+def gain_line(
+    profile: VehicleProfile | None, table: str, role: str, factor: float, quote: str = "`"
+) -> str:
+    """The line that multiplies an axis's gain: ``gain = 1.0`` in place of ``gain = -1.0``.
+
+    Args:
+        profile: of the vehicle; None: without a gain.
+        table: ``inputs`` or ``outputs``.
+        role: of the table.
+        factor: by which the gain is wrong.
+        quote: before and after each line.
+    """
+    axis = getattr(getattr(profile, table), role, None) if profile is not None else None
+    present = axis.gain if isinstance(axis, Axis) else None
+    line = f"{quote}gain = {_number(factor * (present or 1.0))}{quote}"
+    place = f"in [{table}.{role}]"
+    if present is None:
+        return f"{line} {place}"
+    return f"{line} in place of {quote}gain = {_number(present)}{quote} {place}"
+
+
+def _number(value: float) -> str:
+    return repr(float(f"{value:.6g}"))

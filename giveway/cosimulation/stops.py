@@ -1,0 +1,68 @@
+"""The stops of a vehicle that is taken over, from the scenario's lanes onto the ego's path."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from giveway.ego.stops import Stop
+from giveway.geometry.path import EgoPath
+from giveway.sumo.lanes import LanePath, Lanes
+from giveway.sumo.vehicles import PlannedStop, VehicleState
+
+SERVING: tuple[str, ...] = ("bus", "coach", "tram")
+"""SUMO's vehicle classes whose egos serve their stops unless they are told otherwise."""
+
+_PASSED = 1.0  # [m] behind the vehicle a stop is over
+
+
+def placed(stops: Sequence[PlannedStop], state: VehicleState) -> dict[int, int]:
+    """The stops that lie on the rest of a vehicle's route: which stop on which edge, by number.
+
+    Args:
+        stops: in the order in which the vehicle comes to them.
+        state: of the vehicle.
+    """
+    places = {}
+    at, behind = 0, state.lane_position - _PASSED
+    for number, stop in enumerate(stops):
+        edge = stop.lane.rpartition("_")[0]
+        while at < len(state.edges) and (state.edges[at] != edge or stop.end < behind):
+            at, behind = at + 1, -math.inf
+        if at == len(state.edges):
+            break
+        if not stop.beside:
+            places[number] = at
+            behind = stop.end
+    return places
+
+
+def lanes_of(places: Mapping[int, int], stops: Sequence[PlannedStop]) -> dict[int, int]:
+    """The lane on which each edge with a stop is left, by the edge's number."""
+    return {at: int(stops[number].lane.rpartition("_")[2]) for number, at in places.items()}
+
+
+def on_path(
+    places: Mapping[int, int],
+    stops: Sequence[PlannedStop],
+    path: EgoPath,
+    lane_path: LanePath,
+    lanes: Lanes,
+) -> list[Stop]:
+    """The stops as stations of the ego's path.
+
+    Args:
+        places: of those that are served, as :func:`placed` has them.
+        stops: all of the vehicle's.
+        path: the ego's.
+        lane_path: that it was made of.
+        lanes: of the network.
+    """
+    found = []
+    for number, at in places.items():
+        stop = stops[number]
+        ends = [
+            path.locate(*lanes.point(stop.lane, along), near=lane_path.edges[at] + along)[0]
+            for along in (stop.start, stop.end)
+        ]
+        until = stop.until if stop.until >= 0.0 else -math.inf
+        found.append(Stop(min(ends), max(ends), max(0.0, stop.duration), until))
+    return found

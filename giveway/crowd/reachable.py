@@ -1,0 +1,46 @@
+"""Whether the pedestrians that giveway adds start where one can walk, and near the ego's way."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import shapely
+import shapely.affinity
+
+from giveway.config.sections import CrowdConfig
+from giveway.geometry.kernel import Array
+from giveway.walkways import WalkNetwork, beside
+
+_NEAR = 25.0  # [m] from the ego's way: who comes no nearer does not matter to the ego
+_NO_WALKWAY = 30.0  # [m] from the next lane on which people may walk
+
+
+def spawn_remark(config: CrowdConfig, ways: Sequence[Array], net_file: Path) -> str:
+    """The remark on a spawn area whose pedestrians no ego can meet; empty if one can.
+
+    Args:
+        config: where they start and how they walk.
+        ways: (k, 2) [m] of each ego, from its departure to where it is done.
+        net_file: the network's, which is read only if there is something to remark.
+    """
+    start = shapely.box(*config.spawn_area)
+    middle = (start.centroid.x, start.centroid.y)
+    walked = start.union(shapely.affinity.translate(start, *config.walk)).convex_hull
+    apart = [float(walked.distance(shapely.LineString(way))) for way in ways]
+    nearest = int(np.argmin(apart))
+    if apart[nearest] <= _NEAR:
+        return ""
+    network = WalkNetwork.read(net_file)
+    place = network.nearest_place(*middle)
+    text = f"--spawn-area {','.join(f'{number:g}' for number in config.spawn_area)}: "
+    if place is None or start.distance(shapely.Point(place)) > _NO_WALKWAY:
+        text += "there is no walkway, and "
+    text += f"its pedestrians come no nearer than {apart[nearest]:.0f} m to the ego's way"
+    return f"{text}; the nearest place beside it: {beside(ways[nearest], network, middle).flags}"
+
+
+def way_of(vertices: Array, stations: Array, first: float, last: float) -> Array:
+    """(k, 2) [m] the part of a path between two stations [m]."""
+    inside = (stations > first) & (stations < last)
+    at = np.concatenate([[first], stations[inside], [max(last, first + 1e-3)]])
+    return np.column_stack([np.interp(at, stations, vertices[:, i]) for i in range(2)])

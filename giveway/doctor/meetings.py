@@ -1,0 +1,43 @@
+"""Egos, routes and zones by the people whom they meet, each with its command line."""
+
+import shlex
+from pathlib import Path
+from typing import Any
+
+from giveway.doctor.finding import Finding, note
+
+_RADIUS = 50  # [m] of the zone round an ego: the default
+_WITHIN = "within 10 m of the moving vehicle"
+
+
+def meetings(config_file: Path, seen: dict[str, Any]) -> list[Finding]:
+    """The findings on who meets people, from what the probe has counted.
+
+    Args:
+        config_file: the scenario's.
+        seen: what the probe has printed.
+    """
+    found = seen["meetings"]
+    span = f"from {found['from']:.12g} to {seen['time']:.12g} s"
+    if not found["egos"]:
+        text = f"{span} nobody on foot comes {_WITHIN}"
+        return [note("people met", text, "add pedestrians with --pedestrians N --spawn-area ...")]
+    run = f"giveway run {shlex.quote(str(config_file))}"
+    findings = [note("people met", f"counted {span}: people {_WITHIN}; the most first")]
+    for name, departure, people in found["egos"]:
+        text = f"{name} meets {people}, departs at {departure:.12g} s"
+        findings.append(
+            note("best egos", text, f"{run} --ego={shlex.quote(name)} --zone={_RADIUS}")
+        )
+    for edges, departure, people in found["routes"]:
+        route = ",".join(edges)
+        text = f"{edges[0]} ... {edges[-1]}: {people:.3g} per vehicle"
+        flags = f"--ego-route={shlex.quote(route)} --ego-depart-time={departure:.12g}"
+        findings.append(note("best routes", text, f"{run} {flags} --zone={_RADIUS}"))
+    for x_min, y_min, x_max, y_max, people, name in found["zones"]:
+        corners = [(x_min, y_min), (x_max, y_min), (x_max, y_max), (x_min, y_max)]
+        zone = " ".join(f"{x:g},{y:g}" for x, y in corners)
+        text = f"{people} meetings in the square from {x_min:g},{y_min:g} to {x_max:g},{y_max:g}"
+        command = f"{run} --ego={shlex.quote(name)} --zone={shlex.quote(zone)}"
+        findings.append(note("best zones", text, command))
+    return findings

@@ -1,0 +1,52 @@
+"""A folder that one process has to itself, until it ends in whatever way."""
+
+import contextlib
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+
+class FolderInUseError(Exception):
+    """Another process has locked the folder."""
+
+
+@contextlib.contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Lock a folder; the lock is the system's, leaves no file, and ends with this process.
+
+    Windows, and network disks without such locks, lock nothing.
+
+    Raises:
+        FolderInUseError: another process has locked it.
+        OSError: it cannot be opened.
+    """
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise FolderInUseError from None
+        except OSError:
+            pass  # this disk knows no such locks
+        yield
+    finally:
+        os.close(handle)
+
+
+def in_use(folder: Path) -> bool:
+    """Whether another process has locked a folder.
+
+    Raises:
+        OSError: it cannot be opened.
+    """
+    try:
+        with locked(folder):
+            return False
+    except FolderInUseError:
+        return True

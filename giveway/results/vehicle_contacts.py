@@ -1,0 +1,22 @@
+"""Contact with background vehicles, in words."""
+
+from giveway.results.run_result import EgoResult
+
+_NAMED = 3
+
+
+def remark(ego: EgoResult) -> str:
+    """The remark on background vehicles that an ego came into contact with; empty: none."""
+    contacts = ego.vehicle_contacts
+    if not contacts:
+        return ""
+    named = ", ".join(
+        f"'{contact.id}' (from {contact.first:.12g} s on, {contact.duration:.3g} s)"
+        for contact in contacts[:_NAMED]
+    )
+    more = len(contacts) - _NAMED
+    return (
+        f"ego '{ego.id}': contact with {len(contacts)} background vehicle(s): {named}"
+        + (f" and {more} more" if more > 0 else "")
+        + "; see vehicle_contacts in the summary"
+    )

@@ -1,0 +1,93 @@
+"""The flows of a scenario whose next vehicle is due: SUMO makes it in the very step it departs in.
+
+A vehicle of its own is known to SUMO before it departs, one of a flow only when it stands on the
+road. Who wants to enter the road in the same step has to know of it before.
+"""
+
+import math
+import re
+from collections.abc import Iterable
+from html import unescape
+from pathlib import Path
+from typing import NamedTuple
+
+from giveway.scenario_files.configuration import seconds
+from giveway.scenario_files.reading import pieces
+
+_FLOW = re.compile(rb"<flow\s([^>]*)>(?:(?:\s|<!--.*?-->)*<route\s([^>]*)>)?", re.DOTALL)
+_ATTRIBUTE = re.compile(rb"([\w:.]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_HOUR = 3600.0  # [s]
+_ROUNDING = 0.001  # [s] SUMO's clock counts milliseconds
+
+
+class FlowStart(NamedTuple):
+    """Where a flow's vehicles enter the road, as far as the file says it; both empty: unknown."""
+
+    edge: str
+    route: str  # SUMO's id of a route
+
+
+def flows_due(files: Iterable[Path], after: float, until: float, begin: float) -> list[FlowStart]:
+    """Where a flow may let a vehicle depart after ``after`` and not later than ``until`` [s].
+
+    Flows that depart at random may always do so while they last.
+
+    Args:
+        files: everything that SUMO reads, compressed or not.
+        after: [s].
+        until: [s].
+        begin: of the simulation [s], when flows begin that do not say when.
+    """
+    due = []
+    try:
+        for file in files:
+            for text in pieces(file):
+                for flow, route in _FLOW.findall(text):
+                    attributes = _attributes(flow)
+                    if _is_due(attributes, after, until, begin):
+                        inside = b"" if flow.endswith(b"/") else route
+                        due.append(_start(attributes, _attributes(inside)))
+    except (OSError, EOFError):
+        return due  # SUMO will say what is wrong with the file
+    return due
+
+
+def _attributes(text: bytes) -> dict[str, str]:
+    return {
+        name.decode(): unescape((one or other).decode("utf-8", "replace"))
+        for name, one, other in _ATTRIBUTE.findall(text)
+    }
+
+
+def _start(flow: dict[str, str], route: dict[str, str]) -> FlowStart:
+    edge = flow.get("from") or next(iter(route.get("edges", "").split()), "")
+    return FlowStart(edge, "" if edge else flow.get("route", ""))
+
+
+def _is_due(flow: dict[str, str], after: float, until: float, begin: float) -> bool:
+    try:
+        first = seconds(flow["begin"]) if "begin" in flow else begin
+        last = seconds(flow["end"]) if "end" in flow else math.inf
+        if until < first - _ROUNDING or after >= last:
+            return False
+        period = _period(flow, last - first)
+    except ValueError:
+        return True  # like "triggered": at any time
+    if not period > 0.0:
+        return True
+    number = max(0, math.ceil((after + _ROUNDING - first) / period))  # of the next to depart
+    if number >= float(flow.get("number", math.inf)):
+        return False
+    return first + number * period <= min(until, last) + _ROUNDING
+
+
+def _period(flow: dict[str, str], duration: float) -> float:
+    """The time [s] between two departures; 0: at random."""
+    if "period" in flow:
+        return seconds(flow["period"])
+    for name in ("vehsPerHour", "perHour"):
+        if name in flow:
+            return round(_HOUR / float(flow[name]), 3)
+    if "number" in flow and "probability" not in flow:
+        return duration / float(flow["number"]) if duration < math.inf else 1.0
+    return 0.0

@@ -1,0 +1,79 @@
+"""A first look at a Dask scheduler, in a process of its own.
+
+Behind an address can be anything: something that accepts and never answers, a web server, a port
+that speaks TLS. What Dask does then (it waits for ever, asks for exbibytes, prints while its
+objects are forgotten) costs nothing here, and is told in a few words.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from typing import Any, Final, NoReturn
+
+_START: Final = 60.0  # [s] for Python and Dask to start, on a busy machine
+_BOOT: Final = (
+    "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
+    "from giveway.studies.execution.cluster_probe import main; main(*arguments)"
+)
+_OF_IT: Final = 0.8  # of the limit, for Dask itself to say what is wrong
+_ANSWER: Final = "answer: "
+_LONGEST: Final = 200  # characters of a reason
+
+
+def reason_against(address: str, limit: float) -> str:
+    """Why there is no Dask scheduler to work with at an address; empty if there is one.
+
+    Args:
+        address: as Dask writes it.
+        limit: [s] for it to answer.
+    """
+    given = json.dumps([sys.path, [address, limit]])
+    try:
+        probe = subprocess.run(
+            [sys.executable, "-P", "-c", _BOOT, given],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            timeout=_START + limit,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return f"no process could look at it: {error.__class__.__name__}"
+    answer = probe.stdout.decode("utf-8", "replace").rpartition("\n")[2]
+    if not answer.startswith(_ANSWER):
+        return f"Dask died of it (exit code {probe.returncode})"
+    return answer.removeprefix(_ANSWER)
+
+
+def main(address: str, limit: float) -> None:
+    """In the process: look, print the reason, and end at once."""
+    import distributed
+
+    dask: Any = distributed
+    silence = threading.Timer(limit, _end, [f"nothing that answers within {limit:g} s"])
+    silence.daemon = True
+    silence.start()
+    try:
+        client = dask.Client(address, timeout=_OF_IT * limit, set_as_default=False)
+        client.nthreads()
+    except MemoryError:
+        _end("it speaks another protocol than Dask's")
+    except TypeError as error:  # Dask's own complaint about missing certificates
+        _end(f"{_short(error)}; tls needs Dask's distributed.comm.tls settings")
+    except BaseException as error:
+        _end(_short(error) or type(error).__name__)
+    _end("")
+
+
+def _short(error: BaseException) -> str:
+    return " ".join(str(error).split())[:_LONGEST]
+
+
+def _end(reason: str) -> NoReturn:
+    """Nothing is closed or forgotten in an orderly way: that is what may hang or print."""
+    os.write(1, f"\n{_ANSWER}{reason}".encode())
+    os._exit(0)

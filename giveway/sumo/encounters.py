@@ -1,0 +1,107 @@
+"""Which vehicles, routes and places of a scenario meet people, counted while SUMO runs it."""
+
+from collections import defaultdict
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from giveway.sumo.types import ROAD_CLASSES
+
+_MEETING = 10.0  # [m] between a moving vehicle's front and somebody on foot
+_MOVING = 0.5  # [m/s]
+_PERIOD = 1.0  # [s] between two looks
+_CELL = 100.0  # [m] side of the squares that are compared
+_SHOWN = 3
+_EDGES = 12  # of a route
+
+
+class Encounters:
+    """Counts, once a second, who on foot is within 10 m of a moving road vehicle.
+
+    Args:
+        sumo: the libsumo module, while a simulation runs.
+    """
+
+    def __init__(self, sumo: Any) -> None:
+        self._sumo = sumo
+        self._looked = -np.inf
+        self._met: defaultdict[str, set[str]] = defaultdict(set)  # people by vehicle
+        self._places: defaultdict[tuple[int, int], set[tuple[str, str]]] = defaultdict(set)
+        self._departures: dict[str, tuple[float, tuple[str, ...]]] = {}
+
+    def departed(self, name: str, kind: str, route: tuple[str, ...]) -> None:
+        """Note a vehicle that departs, of SUMO's class ``kind``."""
+        if kind in ROAD_CLASSES:
+            self._departures[name] = float(self._sumo.simulation.getTime()), route
+
+    def look(self) -> None:
+        """Note who meets whom now; most calls return at once."""
+        now = float(self._sumo.simulation.getTime())
+        people = self._sumo.person.getIDList()
+        if now < self._looked + _PERIOD or not people:
+            return
+        self._looked = now
+        vehicle, person = self._sumo.vehicle, self._sumo.person
+        moving = [
+            name
+            for name in vehicle.getIDList()
+            if name in self._departures and vehicle.getSpeed(name) > _MOVING
+        ]
+        places = np.array([person.getPosition(name) for name in people])
+        for name in moving:
+            x, y = vehicle.getPosition(name)
+            near = np.flatnonzero(np.hypot(places[:, 0] - x, places[:, 1] - y) <= _MEETING)
+            for i in near:
+                if not person.getVehicle(people[i]):
+                    self._met[name].add(people[i])
+                    cell = int(x // _CELL), int(y // _CELL)
+                    self._places[cell].add((name, people[i]))
+
+    @property
+    def ranking(self) -> Mapping[str, Any]:
+        """The vehicles, routes and squares that meet most, the first the most; as for JSON.
+
+        ``egos``: id, departure [s], people. ``routes``: edges, departure of its vehicle that meets
+        most [s], people per vehicle. ``zones``: x_min, y_min, x_max, y_max [m], meetings, and the
+        vehicle that meets most people there.
+        """
+        egos = sorted(self._met, key=lambda name: (-len(self._met[name]), name))
+        of_route: defaultdict[tuple[str, ...], list[str]] = defaultdict(list)
+        for name, (_, route) in self._departures.items():
+            of_route[route].append(name)
+        mean = {
+            route: sum(len(self._met[name]) for name in names if name in self._met) / len(names)
+            for route, names in of_route.items()
+        }
+        routes = sorted((route for route in mean if mean[route] > 0.0), key=lambda r: (-mean[r], r))
+        cells = sorted(self._places, key=lambda cell: (-len(self._places[cell]), cell))
+        return {
+            "egos": [
+                [name, self._departures[name][0], len(self._met[name])] for name in egos[:_SHOWN]
+            ],
+            "routes": [
+                [
+                    list(route[:_EDGES]),
+                    self._departures[self._best(of_route[route])][0],
+                    mean[route],
+                ]
+                for route in routes[:_SHOWN]
+            ],
+            "zones": [
+                [*_corners(cell), len(self._places[cell]), self._best_in(cell)]
+                for cell in cells[:_SHOWN]
+            ],
+        }
+
+    def _best(self, names: list[str]) -> str:
+        return max(sorted(names), key=lambda name: len(self._met.get(name, ())))
+
+    def _best_in(self, cell: tuple[int, int]) -> str:
+        names = [vehicle for vehicle, _ in self._places[cell]]
+        return max(sorted(set(names)), key=names.count)
+
+
+def _corners(cell: tuple[int, int]) -> tuple[float, float, float, float]:
+    x, y = cell[0] * _CELL, cell[1] * _CELL
+    return x, y, x + _CELL, y + _CELL

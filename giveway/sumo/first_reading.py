@@ -1,0 +1,117 @@
+"""SUMO reads a scenario in a process of its own before it reads it in ours.
+
+A few broken networks and demands kill the process that reads them. In a supervised run or a
+study's worker that costs one run; in a process that has called :func:`giveway.run` itself it would
+cost everything there. So the same command is tried in a child first, once for each content of the
+scenario's files. What SUMO refuses in words is left to our own reading, which says it better.
+
+``python -m giveway.sumo.first_reading OPTION ...`` is the child.
+"""
+
+import hashlib
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+from giveway._environment import user_cache
+from giveway.errors import SumoError
+from giveway.processes.causes import cause_of_end
+from giveway.processes.child import is_supervised
+from giveway.sumo.library import import_libsumo, version
+
+PATIENCE: Final = 600.0  # [s] the largest city scenarios load within some minutes
+_HOUSE: Final = Path(__file__).resolve().parents[2]
+_MODULE: Final = "giveway.sumo.first_reading"
+_ROUTE_STEPS: Final = "--route-steps"  # 0: all routes are read at once, not as they depart
+_ADDRESS: Final = re.compile(r"[^/\\\s]{2,}:\d+")
+_DONE: Final = "read"
+_known: set[str] = set()
+
+
+def read_first(
+    config_file: Path,
+    command: Sequence[str],
+    files: Sequence[Path],
+    *,
+    patience: float = PATIENCE,
+) -> None:
+    """Let SUMO read a scenario where a crash costs nothing; at once if that has been done.
+
+    Args:
+        config_file: the .sumocfg, for messages.
+        command: as for ``libsumo.start``.
+        files: everything that SUMO will read.
+        patience: how long to wait [s].
+
+    Raises:
+        SumoError: SUMO crashed, or was still busy.
+    """
+    if is_supervised() or any(map(_ADDRESS.fullmatch, command)):
+        return  # whoever listens at an address would take the child for the run
+    digest = _digest(config_file, files)
+    marker = user_cache() / "read_by_sumo" / digest
+    if digest in _known or marker.exists():
+        return
+    at_once = [] if _ROUTE_STEPS in command else [_ROUTE_STEPS, "0"]
+    _try(config_file, [*command, *at_once], patience)
+    _known.add(digest)
+    with suppress(OSError):  # without a cache it is read first in every process: slow, not wrong
+        marker.parent.mkdir(parents=True, exist_ok=True)
+        marker.touch()
+
+
+def _try(config_file: Path, command: Sequence[str], patience: float) -> None:
+    # -P: a controller.py in the user's folder must not come before giveway's own.
+    child = [sys.executable, "-P", "-m", _MODULE, *command]
+    ours = os.pathsep.join(filter(None, (str(_HOUSE), os.environ.get("PYTHONPATH"))))
+    remedy = f"look at it alone: sumo -c {config_file}; netconvert may rebuild the network"
+    try:
+        result = subprocess.run(
+            child,
+            capture_output=True,
+            check=False,
+            timeout=patience,
+            stdin=subprocess.DEVNULL,
+            env=os.environ | {"PYTHONPATH": ours},
+        )
+    except subprocess.TimeoutExpired:
+        raise SumoError(
+            f"{config_file}: SUMO was still reading this scenario after {patience:g} s; {remedy}"
+        ) from None
+    except OSError:
+        return  # no process can be started: our own reading is the first
+    if _DONE.encode() not in result.stdout.split():
+        raise SumoError(
+            f"{config_file}: SUMO crashes while reading this scenario "
+            f"({cause_of_end(result.returncode)}); {remedy}"
+        )
+
+
+def _digest(config_file: Path, files: Sequence[Path]) -> str:
+    """Of what the files hold, and of SUMO's version."""
+    digest = hashlib.sha256(version().encode())
+    for file in dict.fromkeys((config_file, *files)):
+        with suppress(OSError), file.open("rb") as stream:
+            digest.update(hashlib.file_digest(stream, "sha256").digest())
+    return digest.hexdigest()
+
+
+def main(command: Sequence[str]) -> None:
+    """Read, step once, and say so; a refusal in words is an answer too."""
+    sumo = import_libsumo()
+    with suppress(Exception):  # libsumo's own kinds
+        sumo.start(list(command))
+        sumo.simulationStep()
+        sumo.close()
+    sys.stdout.write(f"\n{_DONE}\n")
+    sys.stdout.flush()
+    os._exit(0)  # destructors of native code have nothing left to save
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

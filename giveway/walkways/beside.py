@@ -1,0 +1,57 @@
+"""Where people could start who are to cross a vehicle's way."""
+
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from giveway.walkways.gates import Array
+from giveway.walkways.network import WalkNetwork
+
+_HALF = 3.0  # [m] half the side of the square in which they start
+_BESIDE = 7.0  # [m] from the way, where no walkway is beside it
+_NEAREST, _FARTHEST = 2.0, 25.0  # [m] from the way, where a walkway is beside it
+_HEAD_START = 20.0  # [m] that the vehicle drives before it comes by
+_PREFERRED = 0.4  # of the way
+
+
+class SpawnPlace(NamedTuple):
+    """Where people start, and how they walk."""
+
+    area: tuple[float, float, float, float]  # [m] x_min, y_min, x_max, y_max
+    walk: tuple[float, float]  # [m]
+
+    @property
+    def flags(self) -> str:
+        """The command line's words for it."""
+        area, walk = (",".join(f"{number:.1f}" for number in part) for part in self)
+        return f"--spawn-area={area} --walk={walk}"
+
+
+def beside(way: Array, network: WalkNetwork, near: tuple[float, float] | None = None) -> SpawnPlace:
+    """A place beside a way from which people walk straight across it.
+
+    Args:
+        way: (k, 2) [m] from where the vehicle departs to where it is done, k >= 2.
+        network: where people walk.
+        near: [m] the place is to be as near to this as the way allows; None: anywhere.
+    """
+    line = shapely.LineString(way)
+    wanted = _PREFERRED * line.length if near is None else line.project(shapely.Point(near))
+    earliest = min(_HEAD_START, line.length / 2)
+    station = float(np.clip(wanted, earliest, max(earliest, line.length - _HALF)))
+    middle, behind = (_point(line, at) for at in (station, station - 0.5))
+    side = network.nearest_place(*middle)
+    across = np.zeros(2) if side is None else np.array(side) - middle
+    if not _NEAREST <= np.hypot(*across) <= _FARTHEST:
+        along = (middle - behind) / max(float(np.hypot(*(middle - behind))), 1e-9)
+        across = _BESIDE * np.array([along[1], -along[0]])  # to its right
+    x, y = middle + across
+    return SpawnPlace(
+        (float(x - _HALF), float(y - _HALF), float(x + _HALF), float(y + _HALF)),
+        (float(-2.0 * across[0]), float(-2.0 * across[1])),
+    )
+
+
+def _point(line: shapely.LineString, station: float) -> Array:
+    return np.array(line.interpolate(station).coords[0][:2])

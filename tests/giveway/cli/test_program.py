@@ -1,0 +1,83 @@
+"""However a command ends, it ends with one line that says what to do."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from giveway.processes.interrupts import TerminatedError
+
+COMMAND = "giveway.cli.doctor.doctor_command"
+INTERRUPTED_WHILE_IMPORTING = """
+import os, signal, sys
+
+class Finder:
+    def find_spec(self, name, path=None, target=None):
+        if name == "typer":
+            os.kill(os.getpid(), signal.{signal})
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.meta_path.insert(0, Finder())
+from giveway.cli import main
+main(["studies"])
+"""
+
+
+@pytest.mark.parametrize(
+    ("raised", "code", "line"),
+    [
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (TerminatedError(signal.SIGTERM), 143, "ended by SIGTERM"),
+        (
+            PermissionError(errno.EACCES, os.strerror(errno.EACCES), "/srv/x"),
+            1,
+            "/srv/x: Permission denied",
+        ),
+        (OSError(errno.EIO, os.strerror(errno.EIO)), 1, "output: Input/output error"),
+        (
+            RuntimeError("can't start new thread"),
+            1,
+            "the system gives no more threads; end other processes, or raise the limit (ulimit -u)",
+        ),
+        (MemoryError(), 1, "out of memory; free memory, or raise the limit (ulimit -v)"),
+    ],
+)
+def test_what_ends_a_command_is_one_line(type_here, monkeypatch, raised, code, line):
+    def end(*_):
+        raise raised
+
+    monkeypatch.setattr(COMMAND, end)
+    done = type_here("doctor")
+    assert (done.returncode, done.stderr) == (code, f"error: {line}\n")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.parametrize(
+    ("number", "code", "line"),
+    [("SIGINT", 130, "interrupted"), ("SIGTERM", 143, "ended by SIGTERM")],
+)
+def test_a_signal_in_the_first_instant_is_no_traceback(tmp_path, number, code, line):
+    program = INTERRUPTED_WHILE_IMPORTING.format(signal=number)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False, cwd=tmp_path
+    )
+    assert (done.returncode, done.stderr) == (code, f"error: {line}\n")
+
+
+def test_a_folder_may_be_called_like_markup(type_here, tmp_path):
+    done = type_here("run", "--pedestrians", 0, "--no-pictures", "--out", "[/home]")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "Results in [/home]" in done.stdout
+    assert (tmp_path / "[" / "home]" / "ego.csv").is_file()
+
+
+def test_a_folder_whose_name_is_too_long_is_named(type_here):
+    done = type_here("run", "--out", "a" * 300)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: aaa")
+    assert "cannot be written (File name too long); name another folder with --out" in done.stderr
