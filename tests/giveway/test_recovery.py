@@ -91,7 +91,7 @@ def test_a_crash_before_the_first_row_leaves_nothing_behind(tmp_path: Path) -> N
     process = start(tmp_path, *LONG)
     child = child_of(process)
     os.kill(child, signal.SIGKILL)
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=180)
     assert process.returncode in {1, 128 + signal.SIGKILL}
     assert errors.startswith("error: ")
     assert not (tmp_path / "r").exists()
@@ -105,7 +105,7 @@ def test_former_results_survive_a_crash_before_the_first_row(
     before = {path.name: path.read_bytes() for path in (tmp_path / "r").iterdir()}
     process = start(tmp_path, *LONG, "--force")
     os.kill(child_of(process), signal.SIGKILL)
-    process.communicate(timeout=60)
+    process.communicate(timeout=180)
     assert {path.name: path.read_bytes() for path in (tmp_path / "r").iterdir()} == before
 
 
@@ -113,7 +113,7 @@ def test_sigterm_while_loading_is_the_users_and_no_crash(tmp_path: Path) -> None
     process = start(tmp_path, *LONG)
     child_of(process)
     process.send_signal(signal.SIGTERM)
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=180)
     assert process.returncode == 130
     assert errors == "error: ended by SIGTERM before the run began\n"
     assert not (tmp_path / "r").exists()

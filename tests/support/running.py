@@ -59,5 +59,5 @@ def run_program(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[.
 
     yield fork
     server.stdin.close()
-    server.wait(timeout=10)
+    server.wait(timeout=60)
     server.stdout.close()

@@ -57,7 +57,7 @@ def test_a_segmentation_fault_costs_no_row(
     child = child_of(run.pid)
     assert child is not None
     os.kill(child, signal.SIGSEGV)
-    _, errors = run.communicate(timeout=60)
+    _, errors = run.communicate(timeout=180)
     assert run.returncode == 1
     (line,) = errors.strip().splitlines()
     report = re.fullmatch(

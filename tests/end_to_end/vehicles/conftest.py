@@ -52,14 +52,21 @@ def profiled() -> Callable[..., Path]:
 
 @pytest.fixture
 def isolated(zoo: Any) -> Iterator[Callable[..., IsolatedVehicle]]:
-    """Open a car of the zoo in a process of its own; all are closed at the end."""
+    """Open a car of the zoo in a process of its own; all are closed at the end.
+
+    The patience is long, for a busy machine's sake, unless it is what a test is about.
+    """
     vehicles = []
 
     def open_(
-        path: Path, profile: dict[str, Any] | None = None, *, start_timeout: float = 5.0
+        path: Path,
+        profile: dict[str, Any] | None = None,
+        *,
+        start_timeout: float = 60.0,
+        step_timeout: float = 60.0,
     ) -> IsolatedVehicle:
         values = zoo.profile(path) if profile is None else profile
-        values["fmu"] |= {"start_timeout": start_timeout, "step_timeout": 1.0}
+        values["fmu"] |= {"start_timeout": start_timeout, "step_timeout": step_timeout}
         made = make_profile(values, "the test's profile")
         vehicles.append(IsolatedVehicle(path, step_size=0.05, profile=made))
         return vehicles[-1]

@@ -113,12 +113,17 @@ def failure(vehicle, path) -> FmuError:
     return caught.value
 
 
+def patience(says: str) -> float:
+    """Time to wait for an answer [s], short where none will come."""
+    return 1.0 if "no answer" in says else 60.0
+
+
 @pytest.mark.parametrize("kind", ["fmi1", "fmi3_me"])  # FMI 2: tests/fmus_isolation
 @pytest.mark.parametrize("fault", DEATHS)
 def test_an_fmu_that_dies_or_hangs_ends_at_its_step(zoo, isolated, fault, kind):
     # the derivatives at the end of a step are asked for within it
     path = zoo.car(**KINDS[kind], behaviour=fault, at=AT + 0.01 * kind.endswith("me"))
-    vehicle = isolated(path)
+    vehicle = isolated(path, step_timeout=patience(DEATHS[fault]))
     error = failure(vehicle, path)
     assert isinstance(error, FmuCrashError)
     assert vehicle.time == pytest.approx(AT)
@@ -191,7 +196,7 @@ def test_what_does_no_harm_changes_no_digit(driven, fault):
 )
 def test_an_fmu_that_fails_at_the_start_says_so(zoo, isolated, fmi, fault, phase, says):
     path = zoo.car(fmi=fmi, behaviour=fault, phase=phase, at=0.0)
-    error = failure(isolated(path, start_timeout=1.0 if "no answer" in says else 5.0), path)
+    error = failure(isolated(path, start_timeout=patience(says)), path)
     assert isinstance(error, FmuStartError | FmuCrashError)
     assert_says(error, says)
 

@@ -62,7 +62,7 @@ def eventually(condition):
 @pytest.mark.parametrize("end", ["vehicle.close()", "", "raise SystemExit(3)"])
 def test_a_plain_script_leaves_nothing_however_it_ends(tmp_path, end):
     process = run(SCRIPT.format(end=end), tmp_path)
-    said, complaint = process.communicate(timeout=60)
+    said, complaint = process.communicate(timeout=180)
     assert said.split() == ["0.05", "0.05"]
     assert not complaint
     assert process.returncode == (3 if "raise" in end else 0)
@@ -80,7 +80,7 @@ def test_nothing_outlives_a_process_that_is_killed(tmp_path):
     ]
     assert len(workers) == 2  # a watchdog and the FMU's
     process.kill()
-    process.communicate(timeout=60)
+    process.communicate(timeout=180)
     assert eventually(lambda: not folder.exists())
     assert eventually(lambda: not any(worker.exists() for worker in workers))
 

@@ -39,7 +39,7 @@ def test_a_zip_bomb_is_refused_before_run_loads_anything_else(bomb, tmp_path, na
         cwd=tmp_path,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=180,
         check=False,
     )
     assert done.returncode != 0

@@ -137,9 +137,9 @@ def test_ctrl_c_keeps_what_is_finished_and_leaves_no_process(small_study_text, t
     family = psutil.Process(child.pid).children(recursive=True)
     assert family
     child.send_signal(signal.SIGINT)
-    _, errors = child.communicate(timeout=60)
+    _, errors = child.communicate(timeout=180)
     assert child.returncode == 130
     assert re.search(r"error: interrupted; [\d,]+ of 2,000 runs are kept in s: .*--resume", errors)
-    _, alive = psutil.wait_procs(family, timeout=10)
+    _, alive = psutil.wait_procs(family, timeout=60)
     assert alive == []
     assert (tmp_path / "s" / "runs.csv").is_file()

@@ -87,7 +87,7 @@ def test_we_start_again_as_we_were_started() -> None:
         capture_output=True,
         text=True,
         check=True,
-        timeout=60,
+        timeout=180,
     )
     expected = [sys.executable, "-X", "utf8", "-c", script, "run", "--seed", "1"]
     assert done.stdout.strip() == str(expected)

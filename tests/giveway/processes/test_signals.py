@@ -74,7 +74,7 @@ def test_a_signal_sent_to_us_alone_reaches_the_child_once(
         assert parent.stdout is not None
         assert parent.stdout.readline() == "READY False\n"
         parent.send_signal(number)
-        output = parent.communicate(timeout=20)[0]
+        output = parent.communicate(timeout=120)[0]
     assert output.startswith("HEEDED 1\n")
     verdict = verdict_in(output)
     assert (verdict["code"], verdict["crashed"], verdict["interrupted"]) == (130, False, True)
@@ -91,7 +91,7 @@ def test_a_second_signal_kills_a_child_that_does_not_heed(
         for _ in range(2):
             parent.send_signal(signal.SIGTERM)
             time.sleep(0.5)
-        verdict = verdict_in(parent.communicate(timeout=20)[0])
+        verdict = verdict_in(parent.communicate(timeout=120)[0])
     assert verdict["cause"] == "killed by a second interrupt"
     assert (verdict["code"], verdict["crashed"], verdict["interrupted"]) == (143, True, True)
     assert len(read_journal(journal).tables["ego"]) == 3
@@ -119,7 +119,7 @@ with Supervised(take_journal_folder()) as supervised:
         assert parent.stdout is not None
         assert parent.stdout.readline() == "STARTING\n"
         parent.send_signal(signal.SIGINT)
-        output, errors = parent.communicate(timeout=20)
+        output, errors = parent.communicate(timeout=120)
     assert output.startswith("HEARD\n")
     assert errors == ""
     verdict = verdict_in(output)
@@ -142,7 +142,7 @@ def test_ctrl_c_before_the_loop_counts_once(child: Callable[[str], Path], journa
         assert parent.stdout is not None
         parent.stdout.readline()
         parent.send_signal(signal.SIGINT)
-        output = parent.communicate(timeout=20)[0]
+        output = parent.communicate(timeout=120)[0]
     assert output.startswith("TIDY\n")
     assert verdict_in(output)["code"] == 130
 
@@ -154,7 +154,7 @@ def test_a_terminal_that_is_closed_costs_no_row(
         assert parent.stdout is not None
         parent.stdout.readline()
         parent.send_signal(signal.SIGHUP)
-        verdict = verdict_in(parent.communicate(timeout=20)[0])
+        verdict = verdict_in(parent.communicate(timeout=120)[0])
     assert (verdict["crashed"], verdict["code"], verdict["interrupted"]) == (False, 129, True)
     assert len(read_journal(journal).tables["ego"]) == 3
 
@@ -169,7 +169,7 @@ def test_under_nohup_a_terminal_that_is_closed_ends_nothing(
         print("WENT ON", flush=True)
     """
     with start(child(hangs_up), journal, hangup="SIG_IGN") as parent:
-        output = parent.communicate(timeout=20)[0]
+        output = parent.communicate(timeout=120)[0]
     assert output.startswith("WENT ON\n")
     verdict = verdict_in(output)
     assert (verdict["code"], verdict["crashed"], verdict["interrupted"]) == (0, False, False)
@@ -188,7 +188,7 @@ def test_a_suspended_run_is_not_a_hanging_one(child: Callable[[str], Path], jour
         os.killpg(parent.pid, signal.SIGSTOP)  # as Ctrl-Z does
         time.sleep(1.2)
         os.killpg(parent.pid, signal.SIGCONT)
-        verdict = verdict_in(parent.communicate(timeout=20)[0])
+        verdict = verdict_in(parent.communicate(timeout=120)[0])
     assert not verdict["crashed"]
 
 

@@ -118,7 +118,7 @@ def test_a_study_that_is_ended_by_a_signal_says_so_and_tidies_up(
             assert time.monotonic() < deadline
             time.sleep(0.01)
         study.send_signal(number)
-        _, errors = study.communicate(timeout=60)
+        _, errors = study.communicate(timeout=180)
     assert study.returncode == 128 + number
     (line,) = errors.splitlines()
     assert line.startswith(f"error: ended by {number.name}; ")

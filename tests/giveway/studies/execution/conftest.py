@@ -93,7 +93,7 @@ def left_behind() -> Iterator[Callable[[], list[psutil.Process]]]:
     def look() -> list[psutil.Process]:
         children = psutil.Process().children(recursive=True)
         new = [c for c in children if c.pid not in before and not _is_pythons_own(c)]
-        return psutil.wait_procs(new, timeout=5.0)[1]
+        return psutil.wait_procs(new, timeout=60.0)[1]
 
     yield look
     assert look() == []
