@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from giveway._environment import check_rooms, choose_kernel_cache
+from giveway._environment import check_rooms, keep_kernels
 from giveway._version import __version__
 from giveway.errors import GivewayError
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["GivewayError", "RunConfig", "RunResult", "__version__", "run"]
 
 check_rooms()
-choose_kernel_cache()
+keep_kernels()
 
 
 def __getattr__(name: str) -> Any:

@@ -2,15 +2,15 @@
 
 import errno
 import importlib.util
-import os
 import sys
 from pathlib import Path
+from typing import Any
 
 from giveway.errors import InstallationError
 
 ROOMS = ("controller", "pedestrian_model", "fmus", "sumo_scenarios")
+_NUMBAS = ("UserProvided", "InTree", "UserWide", "IPython", "Zip")  # its locators, in order
 _NO_MEMORY = ("failed to map segment", "Cannot allocate memory")  # the dynamic linker's
-_WITH_KERNELS = ("giveway", "controller", "pedestrian_model")
 
 
 def check_rooms() -> None:
@@ -53,64 +53,30 @@ def user_cache() -> Path:
     return user_cache_path("giveway", appauthor=False)
 
 
-def kernel_cache() -> Path:
-    """Where compiled kernels are kept.
+def keep_kernels() -> None:
+    """Have numba keep our kernels where ``_kernel_cache`` says, whoever imports numba first.
 
-    The user's choice comes first, then a folder in the user's cache, then a temporary one.
+    Numba's setting for it is documented (``NUMBA_CACHE_LOCATOR_CLASSES``); it is made in this
+    process and not in the environment, since child processes need not know giveway.
     """
-    import tempfile  # none of these is needed before numba is
-
-    chosen = os.environ.get("NUMBA_CACHE_DIR")
-    if chosen:
-        return Path(chosen)
-    folder = user_cache() / f"kernels-{_fingerprint()}"
-    existing = next(parent for parent in (folder, *folder.parents) if parent.exists())
-    if os.access(existing, os.W_OK | os.X_OK):
-        return folder
-    user = os.getuid() if hasattr(os, "getuid") else "user"
-    return Path(tempfile.gettempdir()) / f"giveway-{user}" / folder.name
-
-
-def _fingerprint() -> str:
-    """A text that changes with any file that may hold kernels.
-
-    Numba looks at the file of a kernel alone, and not at those of the kernels inlined into it.
-    """
-    import hashlib
-
-    house = Path(__file__).resolve().parent.parent
-    stamps = [
-        (str(path), status.st_mtime_ns, status.st_size)
-        for room in _WITH_KERNELS
-        for path in sorted((house / room).rglob("*.py"))
-        for status in [path.stat()]
-    ]
-    return hashlib.sha256(repr(stamps).encode()).hexdigest()[:12]
-
-
-def choose_kernel_cache() -> None:
-    """Keep numba's cache out of the package folder, which may be read-only and is not ours.
-
-    Numba reads the choice once, when it is imported, and only then is it made: it costs a look at
-    every file of three packages, which most of what one can do with giveway does not need.
-    """
-    if "numba" in sys.modules:  # imported before us: it has read the environment already
-        _name_kernel_cache()
-        sys.modules["numba"].config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
+    if "numba.core.caching" in sys.modules:
+        _name_locator()
     else:
         sys.meta_path.insert(0, _BeforeNumba())
 
 
 class _BeforeNumba:
-    """Makes the choice when numba is about to be imported, whoever imports it.
+    """Makes the setting when numba is being imported, whoever imports it.
 
     An entry of ``sys.meta_path``, where Python asks for every module; it never finds one itself.
     """
 
     def find_spec(self, fullname: str, _path: object, _target: object = None) -> None:
-        if fullname == "numba":
-            _name_kernel_cache()
+        if fullname == "numba.core.caching":
+            _name_locator()
 
 
-def _name_kernel_cache() -> None:
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(kernel_cache()))
+def _name_locator() -> None:
+    config: Any = sys.modules["numba.core.config"]
+    others = config.CACHE_LOCATOR_CLASSES or ",".join(f"{name}CacheLocator" for name in _NUMBAS)
+    config.CACHE_LOCATOR_CLASSES = f"giveway._kernel_cache.KernelLocator,{others}"

@@ -5,22 +5,20 @@ from __future__ import annotations
 import contextlib
 import shutil
 import time
-from fnmatch import fnmatch
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numba
 import numpy as np
+from llvmlite.binding import get_host_cpu_name
 
 from controller import LongitudinalModel, Mpc, MpcParameters
-from giveway._environment import kernel_cache
+from giveway._kernel_cache import FOLDERS, kernel_cache
 from pedestrian_model import Crowd
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-_MARKER = "compiled-by-numba-"
-_FOLDERS = "kernels-*"
+_MARKER = "compiled-for-"
 _KEPT = 30 * 86400.0  # [s] since the last run
 _MESSAGE = "Compiling the numerical kernels (once after installation, about half a minute) ..."
 
@@ -33,7 +31,7 @@ def compile_kernels_once(console: Console | None = None) -> None:
     Args:
         console: for the message; None prints nothing.
     """
-    marker = kernel_cache() / f"{_MARKER}{numba.__version__}"
+    marker = kernel_cache() / f"{_MARKER}{get_host_cpu_name()}"
     if marker.exists():
         with contextlib.suppress(OSError):
             marker.touch()  # still in use
@@ -56,9 +54,7 @@ def forget_old_kernels(folder: Path) -> None:
     Args:
         folder: of the present kernels; those of other versions are in the folders beside it.
     """
-    if not fnmatch(folder.name, _FOLDERS):
-        return  # the user has chosen it, so the folders beside it need not be ours
-    for other in folder.parent.glob(_FOLDERS):
+    for other in folder.parent.glob(FOLDERS):
         used = [file.stat().st_mtime for file in (other, *other.glob(f"{_MARKER}*"))]
         if other != folder and time.time() - max(used) > _KEPT:
             shutil.rmtree(other, ignore_errors=True)

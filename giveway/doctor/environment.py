@@ -16,7 +16,7 @@ from packaging.requirements import InvalidRequirement, Requirement
 
 from controller import ControllerError, LongitudinalModel, Mpc, MpcParameters
 from fmus import FmuError, VehicleFmu, bundled_fmu
-from giveway._environment import check_rooms, kernel_cache
+from giveway._environment import check_rooms
 from giveway.doctor.finding import Finding, error, note, ok, warning
 from giveway.errors import InstallationError
 
@@ -158,6 +158,8 @@ def _solver() -> list[Finding]:
 def _kernels() -> list[Finding]:
     """Check that numba compiles and can keep what it has compiled."""
     import numba
+
+    from giveway._kernel_cache import kernel_cache
 
     try:
         if cast("Any", numba.njit)(_one_more)(1) != 2:

@@ -63,10 +63,10 @@ def test_kernels_of_versions_long_gone_are_forgotten(tmp_path: Path) -> None:
     month = time.time() - 31 * 86400
     for folder in (ours, old, recent, other):
         folder.mkdir()
-        (folder / "compiled-by-numba-0").touch()
+        (folder / "compiled-for-a-cpu").touch()
     for path in (ours, old, other, recent):
         os.utime(path, (month, month))
     for folder in (ours, old, other):
-        os.utime(folder / "compiled-by-numba-0", (month, month))
+        os.utime(folder / "compiled-for-a-cpu", (month, month))
     forget_old_kernels(ours)
     assert {folder.name for folder in tmp_path.iterdir()} == {"kernels-a", "kernels-c", "something"}

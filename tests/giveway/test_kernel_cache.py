@@ -1,0 +1,130 @@
+"""Where compiled kernels are kept: the same place for the same kernels, and for no others."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from numba.core.dispatcher import Dispatcher
+
+from giveway import _kernel_cache
+from giveway._kernel_cache import KernelLocator, kernel_cache, kernel_digest
+from giveway.geometry import passage
+
+HOUSE = Path(_kernel_cache.__file__).resolve().parent.parent
+LOCATORS = "numba.config.CACHE_LOCATOR_CLASSES.count('giveway._kernel_cache.KernelLocator')"
+FOLDER = "giveway.geometry.path.project._cache.cache_path"
+
+
+@pytest.fixture
+def elsewhere(tmp_path, monkeypatch):
+    """Our packages, installed at another place; the digest is taken there."""
+    for room in ("controller", "pedestrian_model", "giveway"):
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(HOUSE / room, tmp_path / room, ignore=ignored)
+    monkeypatch.setattr(_kernel_cache, "_HOUSE", tmp_path)
+    kernel_digest.cache_clear()
+    yield tmp_path
+    kernel_digest.cache_clear()
+
+
+def test_the_same_kernels_at_another_place_are_the_same(elsewhere):
+    there = KernelLocator.from_function(
+        passage.look.py_func, str(elsewhere / "giveway/geometry/passage.py")
+    )
+    assert there is not None
+    assert there.get_cache_path() == str(kernel_cache() / "giveway.geometry")
+    assert there.get_cache_path() == passage.look._cache.cache_path
+    assert there.get_source_stamp() == passage.look._cache._impl.locator.get_source_stamp()
+
+
+@pytest.mark.parametrize(
+    ("file", "matters"),
+    [
+        ("giveway/geometry/passage.py", True),  # inlined into kernels of other files
+        ("giveway/geometry/kernel.py", True),  # how all are compiled
+        ("controller/parameters.py", True),
+        ("pedestrian_model/_constants.py", True),
+        ("giveway/cli/run.py", False),
+    ],
+)
+def test_only_what_is_compiled_makes_another_folder(elsewhere, file, matters):
+    before = kernel_digest()
+    path = elsewhere / file
+    path.write_text(path.read_text(encoding="utf-8") + "# changed\n", encoding="utf-8")
+    kernel_digest.cache_clear()
+    assert (kernel_digest() != before) == matters
+
+
+def test_somebody_elses_function_is_numbas_own_business():
+    assert KernelLocator.from_function(shutil.copy, shutil.__file__) is None
+    assert KernelLocator.from_function(test_the_users_own_choice_wins, __file__) is None
+
+
+def test_no_kernel_depends_on_a_file_that_is_not_looked_at():
+    """Constants and types that a kernel takes from elsewhere are compiled into it."""
+    for path in sorted((HOUSE / "giveway").rglob("*.py")):
+        if _kernel_cache._KERNEL.search(path.read_bytes()):
+            module = import_module(".".join(path.relative_to(HOUSE).with_suffix("").parts))
+            kernels = [k for k in vars(module).values() if isinstance(k, Dispatcher)]
+            assert kernels or path.name == "kernel.py"
+            for kernel in kernels:
+                _check_origin(module, kernel)
+        else:
+            assert not re.search(rb"\bn?jit\(", path.read_bytes()), path
+
+
+def _check_origin(module: ModuleType, kernel: Dispatcher) -> None:
+    function = kernel.py_func
+    if function.__module__ != module.__name__:
+        return  # imported; it is looked at in its own module
+    source = Path(module.__file__ or "").read_text(encoding="utf-8")
+    for name in function.__code__.co_names:
+        if isinstance(function.__globals__.get(name), ModuleType | Dispatcher | None):
+            continue
+        imported = re.search(rf"^from (\S+) import (?:\([^)]*|.*)\b{name}\b", source, re.MULTILINE)
+        origin = imported[1] if imported else ""
+        if origin.startswith("giveway."):
+            file = Path(import_module(origin).__file__ or "")
+            assert _kernel_cache._KERNEL.search(file.read_bytes()), (module, name, origin)
+
+
+def said(script: str, home: Path, **more: str) -> str:
+    kept = {k: v for k, v in os.environ.items() if k not in {"NUMBA_CACHE_DIR", "XDG_CACHE_HOME"}}
+    done = subprocess.run(
+        [sys.executable, "-c", f"import os, sys; {script}"],
+        env={**kept, "HOME": str(home), **more},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout.strip()
+
+
+def test_importing_giveway_imports_no_numba_and_changes_no_environment(tmp_path):
+    script = (
+        "before = dict(os.environ); import giveway; "
+        "print('numba' in sys.modules, dict(os.environ) == before)"
+    )
+    assert said(script, tmp_path) == "False True"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the cache is not below HOME")
+@pytest.mark.parametrize("order", ["import giveway, numba", "import numba, giveway"])
+def test_whoever_imports_numba_first_the_users_cache_is_taken(order, tmp_path):
+    script = f"{order}; import giveway.geometry.path; print({LOCATORS}, {FOLDER})"
+    count, folder = said(script, tmp_path).split()
+    assert count == "1"
+    assert folder.startswith(str(tmp_path / ".cache" / "giveway" / "kernels-"))
+
+
+def test_the_users_own_choice_wins(tmp_path):
+    chosen = tmp_path / "mine"
+    script = f"import giveway.geometry.path; print({FOLDER})"
+    folder = Path(said(script, tmp_path, NUMBA_CACHE_DIR=str(chosen)))
+    assert folder.parent.parent == chosen
