@@ -1,9 +1,9 @@
 """The vehicle's influence as lines of equal force, for a range of its speeds."""
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
-from matplotlib.figure import Figure
+from contourpy import contour_generator
 
 from giveway.figures.influence import (
     DRAWN,
@@ -79,5 +79,7 @@ def _contours(
     force, *_ = vehicle_influence(places, np.zeros_like(places), vehicle, parameters)
     # Forces fall off exponentially: between the points of the grid their logarithm is straight.
     magnitude = np.log(np.maximum(np.hypot(*force.T), 1e-6)).reshape(across.shape)
-    drawn = Figure().subplots().contour(x, y, magnitude, levels=np.log(DRAWN))
-    return [[np.asarray(piece) for piece in pieces if len(piece) > 2] for pieces in drawn.allsegs]
+    # matplotlib's own way to contours
+    generator = contour_generator(x, y, magnitude, name="mpl2014", line_type="SeparateCode")
+    pieces = [cast("list[Array]", generator.lines(level)[0]) for level in np.log(DRAWN)]
+    return [[piece for piece in of_level if len(piece) > 2] for of_level in pieces]

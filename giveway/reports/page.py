@@ -15,7 +15,7 @@ from markupsafe import Markup
 
 from giveway.config.layers import options
 from giveway.errors import ResultsError
-from giveway.figures.style import save_figure
+from giveway.figures.style import house_style, save_figure
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.reports import findings, tables
 from giveway.reports.choice import ExamplePair, WorstRun, example_pairs, worst_runs
@@ -141,7 +141,8 @@ def _drawn(
 ) -> Drawn:
     """Write the picture's files, and draw it for the page."""
     picture.figure.draw_without_rendering()
-    picture.figure.set_layout_engine("none")  # the arrangement is found once, for all formats
+    with house_style():  # which has no layout engine, unlike the user's settings perhaps
+        picture.figure.set_layout_engine(None)  # the arrangement is found once, for all formats
     for suffix in _FORMATS:
         save_figure(picture.figure, folder / f"{picture.name}{suffix}")
     svg = Markup(inline_svg(picture.figure, picture.name.replace("_", "")))

@@ -32,7 +32,7 @@ def isolated(zoo, nothing_left):
     """Make isolated cars; they are closed after the test, and then nothing of them is left."""
     with contextlib.ExitStack() as stack:
 
-        def make(*, start_timeout=20.0, step_timeout=5.0, **car):
+        def make(*, start_timeout=60.0, step_timeout=60.0, **car):
             path = zoo.car(**car)
             profile = profile_of(zoo, path, start_timeout=start_timeout, step_timeout=step_timeout)
             vehicle = IsolatedVehicle(path, step_size=STEP, profile=profile)

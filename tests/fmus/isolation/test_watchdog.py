@@ -52,15 +52,15 @@ def test_processes_that_no_watchdog_can_end_any_more(crash):
 
 
 def test_a_watchdog_that_was_stopped_goes_on(crash):
-    assert "exit(3) was called while it was loaded" in crash("STOPS_THE_WATCHDOG", 20.0)
+    assert "exit(3) was called while it was loaded" in crash("STOPS_THE_WATCHDOG", 60.0)
 
 
 def test_who_asks_to_be_traced_dies_as_without(crash):
-    assert "died of SIGUSR1 while it was loaded" in crash("TRACED", 20.0)
+    assert "died of SIGUSR1 while it was loaded" in crash("TRACED", 60.0)
 
 
 def test_folders_deeper_than_any_path(crash):
-    assert "exit(5) was called" in crash("DEEP_FOLDERS", 20.0)
+    assert "exit(5) was called" in crash("DEEP_FOLDERS", 60.0)
 
 
 def test_a_link_in_a_folders_place_is_removed_and_not_followed(tmp_path):

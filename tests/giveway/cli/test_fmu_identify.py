@@ -34,9 +34,7 @@ def test_ours_is_found_and_written(identify, tmp_path):
 
 
 def test_the_users_profile_gets_its_model_and_keeps_its_words(identify, capsys, zoo, tmp_path):
-    path = zoo.car(
-        role="drive_brake", values={"mass": 1400.0, "friction": 60.0, "lag": 0.2, "holds": 1.0}
-    )
+    path = zoo.car(values={"mass": 1400.0, "friction": 60.0, "lag": 0.2, "holds": 1.0})
     profile = tmp_path / "car.toml"
     text = "# my car\n" + path.with_suffix(".toml").read_text(encoding="utf-8")
     profile.write_text(text, encoding="utf-8")

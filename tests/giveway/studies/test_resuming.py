@@ -75,8 +75,8 @@ def test_a_killed_study_goes_on_where_it_was(small_study, small_study_text, tabl
     file = tmp_path / "small.toml"
     file.write_text(small_study_text, encoding="utf-8")
     command = [sys.executable, "-m", "giveway", "study", str(file), "--out", str(tmp_path / "out")]
-    command += ["--jobs", "2", "--quiet", "--no-report"]
-    child = subprocess.Popen(command, start_new_session=True)
+    command += ["--quiet", "--no-report", "--jobs"]
+    child = subprocess.Popen([*command, "2"], start_new_session=True)
     records = tmp_path / "out" / "records"
     deadline = time.monotonic() + 120.0
     while len(list(records.glob("*/*.json"))) < 3:
@@ -88,7 +88,8 @@ def test_a_killed_study_goes_on_where_it_was(small_study, small_study_text, tabl
     made = {path: path.read_bytes() for path in records.glob("*/*.json")}
     assert 3 <= len(made) < 20
 
-    done = subprocess.run([*command, "--resume"], capture_output=True, text=True, check=False)
+    again = [*command, "1", "--resume"]
+    done = subprocess.run(again, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert {path: path.read_bytes() for path in made} == made  # none was made again
     ours, theirs = tables_of(tmp_path / "out"), tables_of(small_study.path)
@@ -97,10 +98,8 @@ def test_a_killed_study_goes_on_where_it_was(small_study, small_study_text, tabl
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
-def test_a_study_that_is_ended_by_a_signal_says_so_and_tidies_up(
-    small_study_text, tmp_path, number
-):
+def test_a_study_that_is_ended_by_a_signal_says_so_and_tidies_up(small_study_text, tmp_path):
+    number = signal.SIGHUP  # and SIGTERM: tests/giveway/processes/test_interrupts.py
     file = tmp_path / "small.toml"
     file.write_text(small_study_text, encoding="utf-8")
     command = [sys.executable, "-m", "giveway", "study", str(file), "--out", "out", "--jobs", "1"]

@@ -36,7 +36,7 @@ def dask_workers() -> list[psutil.Process]:
 def test_the_records_of_one_machine_though_a_worker_dies(
     task, healthy, expected, numbers, faulty, left_behind
 ):
-    others = [task(f"r{n}", n) for n in range(100, 160)]
+    others = [task(f"r{n}", n) for n in range(100, 130)]
     killed = False
     made = []
     with cluster_executor("local:2") as executor:
