@@ -54,6 +54,22 @@ class RegulationConfig(Section):
         True, None, "vehicles in front are obstacles too", flag="--respect-vehicles"
     )
     traffic_lights: bool = option(True, None, "the ego stops at red lights", flag="--obey-lights")
+    priority: Literal["road", "none"] | None = option(
+        None,
+        None,
+        "road: the ego gives way to people at crossings; none: the paper's open space. Left out: "
+        "road, but not for the paper's controllers",
+        flag="--priority",
+    )
+    kerb_distance: float = option(
+        1.5,
+        "m",
+        "who heads for a crossing and is this close to its kerb is about to enter it",
+        flag="--kerb-distance",
+        ge=0,
+        le=10,
+        because="farther away nobody can tell",
+    )
     comfortable_deceleration: float = option(
         2.0,
         "m/s^2",

@@ -197,6 +197,12 @@ class EgoRunConfig(RunConfig):
         return not self.controller.endswith("-paper") if enabled is None else enabled
 
     @property
+    def heeds_priority(self) -> bool:
+        """Whether the ego gives way by the law of the road."""
+        priority = self.regulation.priority
+        return not self.controller.endswith("-paper") if priority is None else priority == "road"
+
+    @property
     def buffer_distance(self) -> float:
         """Over which the reference speed rises linearly to v_r beyond d_safe [m]; 0: not so."""
         if self.controller.endswith("-paper"):

@@ -15,6 +15,7 @@ import numpy as np
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.cosimulation.room import Entry, has_room
 from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
+from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
 from giveway.ego.stops import Stop, Stops
@@ -399,6 +400,13 @@ class Departures:
             comfortable=config.regulation.comfortable_deceleration,
             hardest=hardest,
         )
+        crossings = Crossings(
+            crossings_on(path, shape, self._session.lanes.crossings)
+            if config.heeds_priority
+            else (),
+            length=shape.length,
+            kerb_distance=config.regulation.kerb_distance,
+        )
         halts = Stops(stops, clock=self._session.time, time_step=self._time_step, hardest=hardest)
         return Ego(
             ego,
@@ -409,6 +417,7 @@ class Departures:
             path.length - departure if goal is None else goal,
             self._time_step,
             halts if stops else None,
+            crossings,
         )
 
 

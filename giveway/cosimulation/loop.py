@@ -181,9 +181,8 @@ class Loop:
             parts.exchange.update(self._places())
         self._mirror.read(self._egos, self._roster.crowd.position)
         for ego in self._egos:
-            if ego.lights.systems:
-                states = parts.sumo.light_states(ego.lights.systems)
-                ego.lights.update(states, ego.front, ego.vehicle.speed)
+            if ego.light_systems:
+                ego.see_lights(parts.sumo.light_states(ego.light_systems))
         background, yielding = self._mirror.background, parts.yielding
         if yielding is not None and (background.ids or yielding.limited):
             yielding.update(background, self._roster.crowd, self._egos)

@@ -1,6 +1,7 @@
 """One vehicle that giveway drives: its FMU, its controller, its path."""
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from controller import Decision, Observation
 from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
+from giveway.ego.crossings import Crossings
 from giveway.ego.foresight import CrowdForesight
 from giveway.ego.leader import NO_LEADER, Leader
 from giveway.ego.lights import Lights
@@ -41,7 +43,8 @@ class Seen(NamedTuple):
 
     pedestrian: float  # station [m] of the closest pedestrian in front; inf: none
     leader: Leader
-    stop: float  # station [m] where a red light or a stop wants the front bumper; inf: none
+    stop: float  # station [m] where the front bumper has to stop; inf: nowhere
+    stops_for: str  # what asks for that: "light", "stop" or "yield"; empty: nothing
     ahead: Array  # (N,) stations [m] of the closest obstacle at steps 1 ... N
     predicted: Array | None  # (N, n, 2) [m] positions at steps 1 ... N, until the next look
     relevant: NDArray[np.bool_] | None  # (n,) who has been predicted; None: the whole crowd
@@ -66,6 +69,7 @@ class Ego:
         goal: the FMU's position [m] at which it is done.
         time_step: [s].
         stops: that it serves; None: none.
+        crossings: on its path, at which it gives way; None: at none.
     """
 
     def __init__(
@@ -78,6 +82,7 @@ class Ego:
         goal: float,
         time_step: float,
         stops: Stops | None = None,
+        crossings: Crossings | None = None,
     ) -> None:
         config = waiting.config
         self._controller, self._predictor = waiting.controller, waiting.predictor
@@ -89,6 +94,10 @@ class Ego:
         self.shape = shape
         self.lights = lights
         self.stops = stops
+        self.crossings = Crossings((), length=0.0, kerb_distance=0.0)
+        if crossings is not None:
+            self.crossings = crossings
+        self.light_systems = lights.systems | self.crossings.systems
         self.goal = goal
         self.vehicle = waiting.vehicle
         half_width = config.regulation.corridor_half_width
@@ -195,14 +204,11 @@ class Ego:
             else:
                 predicted = predictor.predict(pedestrians, horizon, surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
-        leader, stop = NO_LEADER, math.inf
+        leader = NO_LEADER
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
             ahead = np.minimum(ahead, vehicles + self._tolerated)
-        if self._heed_lights:
-            stop = self.lights.stop_at(front, speed)
-        if self.stops is not None:
-            stop = min(stop, self.stops.stop_at(front, speed))
+        stop, stops_for = self._place_to_stop(crowd, leader)
         if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
             allowed = stop + _BEYOND + self._origin
             ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
@@ -210,6 +216,7 @@ class Ego:
             pedestrian,
             leader,
             stop,
+            stops_for,
             ahead,
             predicted,
             relevant,
@@ -219,6 +226,24 @@ class Ego:
             poses,
             row,
         )
+
+    def _place_to_stop(self, crowd: Crowd, leader: Leader) -> tuple[float, str]:
+        """Station [m] at which the front bumper has to stop first, and what for; (inf, "")."""
+        front, speed = self.front, self.vehicle.speed
+        place, cause = math.inf, ""
+        if self._heed_lights:
+            place, cause = self.lights.stop_at(front, speed), "light"
+        if self.stops is not None:
+            place, cause = min((place, cause), (self.stops.stop_at(front, speed), "stop"))
+        if self.crossings.ahead:
+            stop = self.crossings.stop_at(front, speed, crowd, leader)
+            place, cause = min((place, cause), (stop, "yield"))
+        return place, cause if place < math.inf else ""
+
+    def see_lights(self, states: Mapping[str, str]) -> None:
+        """Take note of the lights' states: of each system, one letter per movement (SUMO's)."""
+        self.lights.update(states, self.front, self.vehicle.speed)
+        self.crossings.update(states)
 
     def _relevant(self, crowd: Crowd, speed: float) -> NDArray[np.bool_] | None:
         """(n,) the pedestrians of a large crowd that can matter to the plan; None: all of them.
@@ -351,12 +376,9 @@ class Ego:
         place, cause = min(
             (seen.pedestrian - kept, "person"),
             (seen.leader.station - kept, "vehicle"),
-            (seen.stop - front, "light"),
+            (seen.stop - front, seen.stops_for),
         )
         if place <= _NEAR:
-            stops = self.stops
-            if cause == "light" and stops is not None and stops.stop_at(front, speed) <= seen.stop:
-                return "stop"
             return cause
         if decision.acting == "safety":
             return "person"

@@ -11,6 +11,7 @@ import numpy as np
 
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
+from giveway.sumo.crossings import Crossing, crossings
 
 CHANGE_LENGTH = 30.0  # [m] over which a vehicle changes to the next lane
 _WALKINGAREA = re.compile(r"^:.*_w\d+_0$")  # SUMO's names; their shape is the outline itself
@@ -58,6 +59,7 @@ class Lanes:
         self._shapes: dict[str, Array] = {}
         self._lengths: dict[str, float] = {}
         self._onwards: dict[tuple[str, str], tuple[str, ...]] = {}
+        self._crossings: tuple[Crossing, ...] | None = None
 
     def along(
         self,
@@ -110,6 +112,13 @@ class Lanes:
                 driven += _length(onwards)
         first_lane = f"{edges[0]}_{pairs[0][0]}"
         return LanePath(np.concatenate(points), tuple(lights), first_lane, tuple(begins))
+
+    @property
+    def crossings(self) -> tuple[Crossing, ...]:
+        """All crossings of the network."""
+        if self._crossings is None:
+            self._crossings = crossings(self._sumo)
+        return self._crossings
 
     def shape(self, lane: str) -> Array:
         """(k, 2) [m] centre line of a lane."""

@@ -1,0 +1,68 @@
+"""The pedestrian crossings of the loaded network: where they are, and who has priority there.
+
+A network says of each link that leads people onto a crossing whether they have priority (state
+``M``, a zebra) or have to wait for a gap (``m``); where a traffic light governs it, its letter of
+the moment says so. What netconvert was told as a crossing's ``priority`` is not in the network.
+"""
+
+import re
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from giveway.geometry.kernel import Array
+
+_LANE = re.compile(r"^(:.*)_c\d+_0$")  # SUMO's names
+_PRIORITY = "MOo"  # of the link's state; where the light is out, people go first as at a zebra
+
+
+class Crossing(NamedTuple):
+    """A crossing, from kerb to kerb."""
+
+    lane: str  # SUMO's id
+    ends: Array  # (2, 2) [m] the middle of each kerb
+    width: float  # [m]
+    zebra: bool  # people have priority wherever no light says otherwise
+    system: str  # SUMO's id of the traffic light; empty: none
+    link: int  # index of the movement in the light's state
+
+
+def crossings(sumo: Any) -> tuple[Crossing, ...]:
+    """All crossings of the network.
+
+    Args:
+        sumo: the libsumo module, while a simulation runs.
+    """
+    lanes = sumo.lane.getIDList()
+    found = {lane: match[1] for lane in lanes if (match := _LANE.match(lane))}
+    if not found:
+        return ()
+    junctions = set(found.values())
+    states: dict[str, str] = {}
+    for lane in lanes:
+        junction, mark, _ = lane.rpartition("_w")
+        if mark and junction in junctions:
+            states |= {link[0]: link[5] for link in sumo.lane.getLinks(lane) if link[0] in found}
+    lights = _lights(sumo, found.keys())
+    return tuple(
+        Crossing(
+            lane,
+            np.array([shape[0], shape[-1]], dtype=np.float64),
+            float(sumo.lane.getWidth(lane)),
+            lane in lights or states.get(lane, "m") in _PRIORITY,
+            *lights.get(lane, ("", -1)),
+        )
+        for lane in found
+        if len(shape := sumo.lane.getShape(lane)) > 1
+    )
+
+
+def _lights(sumo: Any, lanes: Any) -> dict[str, tuple[str, int]]:
+    """The traffic light that governs each crossing, and the index of its movement."""
+    return {
+        target: (system, index)
+        for system in sumo.trafficlight.getIDList()
+        for index, movements in enumerate(sumo.trafficlight.getControlledLinks(system))
+        for _, target, _ in movements
+        if target in lanes
+    }
