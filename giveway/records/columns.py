@@ -66,14 +66,15 @@ EGO_COLUMNS = (
         "stop_gap",
         "number",
         "m",
-        "front bumper's distance to where a red light or a stop halts it; or empty",
+        "front bumper's distance to where a light, a stop or a crossing halts it",
     ),
     Column(
         "waits_for",
         "string",
         None,
-        "what it stands for: person, vehicle, light, stop, plan (people expected in front), none; "
-        "empty: it drives, or drives off",
+        "what it stands for: person, vehicle, light, stop, yield (at a crossing: to people, or "
+        "since it is blocked), plan (people expected in front), none; empty: it drives, or drives "
+        "off",
     ),
 )
 

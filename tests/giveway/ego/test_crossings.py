@@ -1,0 +1,140 @@
+"""Where the ego gives way: a lane along x, crossed at 20 to 24 m by a crossing 7 m long.
+
+y = 3.5   kerb ------+----+------
+          <- oncoming|    |
+y = 0     -----------|    |------
+          ego -> 1.75 m below the middle
+y = -3.5  kerb ------+----+------
+                     20  24  x [m]
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from giveway.ego.crossings import STOP_BEFORE, Crossings, crossings_on
+from giveway.ego.leader import Leader
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.path import EgoPath
+from giveway.sumo.crossings import Crossing
+from pedestrian_model import Crowd
+
+SHAPE = VehicleShape(length=5.0, width=2.0)
+LANE = -1.75  # [m] its y
+LINE = 20.0 - STOP_BEFORE
+NEAR = 13.0  # [m] from where it could stop before the line at 1.3 m/s^2
+NOBODY = Crowd.empty()
+SOUTHERN_KERB, NORTHERN_KERB = -3.5, 3.5
+
+
+def crossings(zebra=True, light="", kerb_distance=1.5):
+    ends = np.array([[22.0, NORTHERN_KERB], [22.0, SOUTHERN_KERB]])
+    crossing = Crossing(":j_c0_0", ends, 4.0, zebra, "tls" if light else "", 0 if light else -1)
+    path = EgoPath.through([(0.0, LANE), (60.0, LANE)])
+    found = crossings_on(path, SHAPE, [crossing])
+    watched = Crossings(found, length=SHAPE.length, kerb_distance=kerb_distance)
+    if light:
+        watched.update({"tls": light})
+    return watched
+
+
+def walker(y, target=10.0, x=22.0, speed=1.4):
+    """One person at (x, y) who walks towards (x, target)."""
+    velocity = [0.0, math.copysign(speed, target - y)]
+    return Crowd.create([[x, y]], [velocity], speed, [[(x, target)]])
+
+
+def test_the_stretch_of_the_path_that_lies_on_it():
+    ends = np.array([[22.0, NORTHERN_KERB], [22.0, SOUTHERN_KERB]])
+    path = EgoPath.through([(0.0, LANE), (60.0, LANE)])
+    (place,) = crossings_on(path, SHAPE, [Crossing(":j_c0_0", ends, 4.0, True, "", -1)])
+    assert (place.entry, place.exit) == pytest.approx((20.0, 24.0), abs=0.11)
+    # from the northern kerb: the lane's middle at 5.25 m, half a width and a body beside it
+    assert (place.low, place.high) == pytest.approx((5.25 - 1.8, 5.25 + 1.8))
+    beside = EgoPath.through([(0.0, 9.0), (60.0, 9.0)])
+    assert crossings_on(beside, SHAPE, [Crossing(":j_c0_0", ends, 4.0, True, "", -1)]) == ()
+
+
+@pytest.mark.parametrize(
+    ("crowd", "stops"),
+    [
+        (walker(-2.0), True),  # in the ego's lane
+        (walker(-3.4), True),  # has just left the kerb
+        (walker(-4.5), True),  # at the kerb, on the way across
+        (walker(-4.5, target=-20.0), False),  # at the kerb, and leaves
+        (walker(-5.5), False),  # a step away from the kerb yet
+        (walker(0.5), False),  # has passed the ego's lane
+        (walker(2.0, target=-20.0), True),  # comes from the other side
+        (walker(-2.0, x=27.0), False),  # crosses elsewhere
+        (NOBODY, False),
+    ],
+)
+def test_at_a_zebra_it_stops_for_whoever_uses_it_or_is_about_to(crowd, stops):
+    assert crossings().stop_at(NEAR, 4.0, crowd) == (
+        pytest.approx(LINE, abs=0.11) if stops else math.inf
+    )
+
+
+def test_somebody_who_walks_past_along_the_kerb_is_not_about_to_cross():
+    along = Crowd.create([[21.0, -4.2]], [[1.4, 0.0]], 1.4, [[(40.0, -4.4)]])
+    assert crossings().stop_at(NEAR, 4.0, along) == math.inf
+
+
+def test_who_will_have_passed_when_the_ego_comes_costs_no_stop():
+    somebody = walker(-2.0)
+    assert crossings().stop_at(2.0, 4.0, somebody) == math.inf
+    assert crossings().stop_at(12.0, 4.0, somebody) < math.inf
+
+
+@pytest.mark.parametrize(
+    ("letter", "at_the_kerb", "on_it"),
+    [
+        ("G", True, True),
+        ("g", True, True),
+        ("r", False, True),
+        ("y", False, True),
+        ("O", True, True),
+    ],
+)
+def test_a_light_decides_who_may_enter_and_whoever_is_on_it_may_finish(letter, at_the_kerb, on_it):
+    assert (crossings(light=letter).stop_at(NEAR, 4.0, walker(-4.0)) < math.inf) == at_the_kerb
+    assert (crossings(light=letter).stop_at(NEAR, 4.0, walker(-2.0)) < math.inf) == on_it
+
+
+def test_without_priority_people_wait_for_a_gap():
+    assert crossings(zebra=False).stop_at(NEAR, 4.0, walker(-4.0)) == math.inf
+    assert crossings(zebra=False).stop_at(NEAR, 4.0, walker(-2.0)) < math.inf
+
+
+def test_nobody_may_ask_for_more_than_hard_comfort_but_who_has_begun_to_stop_goes_on():
+    too_late = crossings()
+    assert too_late.stop_at(18.0, 4.0, walker(-2.0)) == math.inf  # 4 m/s^2 to the crossing
+    begun = crossings()
+    assert begun.stop_at(16.0, 4.0, walker(-4.0)) < math.inf
+    assert begun.stop_at(18.0, 4.0, walker(-3.0)) == pytest.approx(LINE, abs=0.11)
+    assert begun.stop_at(19.5, 0.3, walker(-2.0)) == pytest.approx(19.5)  # where it is
+
+
+def test_it_waits_until_the_last_one_has_passed_and_until_nobody_comes_too_soon():
+    waiting = crossings()
+    both = walker(-2.0).concatenate(walker(3.4, target=-20.0))
+    assert waiting.stop_at(LINE, 0.0, both) < math.inf
+    assert waiting.stop_at(LINE, 0.0, walker(3.4, target=-20.0)) < math.inf  # 2.5 s away
+    assert waiting.stop_at(LINE, 0.0, walker(0.2)) == math.inf
+    assert waiting.stop_at(21.0, 2.0, walker(-2.0)) == math.inf  # it is on the crossing
+
+
+def test_a_wide_reach_at_the_kerb_makes_it_wait_earlier():
+    assert crossings(kerb_distance=0.2).stop_at(NEAR, 4.0, walker(-4.0)) == math.inf
+    assert crossings(kerb_distance=3.0).stop_at(NEAR, 4.0, walker(-6.0)) < math.inf
+
+
+@pytest.mark.parametrize(
+    ("station", "speed", "stops"),
+    [(28.0, 0.0, True), (31.0, 0.0, False), (28.0, 5.0, False), (15.0, 0.0, False)],
+)
+def test_it_does_not_drive_onto_a_crossing_that_it_cannot_leave(station, speed, stops):
+    """A vehicle behind the crossing leaves room for 5 m and a gap, or not."""
+    found = crossings().stop_at(NEAR, 4.0, NOBODY, Leader(station, speed))
+    assert found == (pytest.approx(LINE, abs=0.11) if stops else math.inf)
