@@ -95,7 +95,7 @@ class Nursery:
 
         environment = {**os.environ, "NUMBA_CACHE_DIR": str(kernel_cache()), "COLUMNS": "120"}
         environment |= {"XDG_CACHE_HOME": str(self._cache), "NO_COLOR": "1", "MPLBACKEND": "agg"}
-        environment |= {name: "1" for name in ("OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")}
+        environment |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
         self._process = subprocess.Popen(
             [sys.executable, __file__],
             stdin=subprocess.PIPE,
@@ -131,7 +131,7 @@ def _warm_up() -> None:
     import giveway
 
     for module in pkgutil.walk_packages(giveway.__path__, "giveway."):
-        if not module.name.endswith("__main__"):
+        if not module.name.endswith("__main__") and "cluster" not in module.name:
             importlib.import_module(module.name)
     from giveway.precompile import _tiny_run
     from giveway.studies.identity import software_identity
