@@ -72,9 +72,9 @@ def mutate(random: random.Random, content: bytes, form: str) -> tuple[bytes, str
 def _structured(form: str) -> dict[Mutation, int]:
     """Mutations of a form of file, and how often each is drawn."""
     values, parts, named = _VALUES[form], _PARTS[form], _NAMES[form]
-    extremes = _TOML_EXTREMES if form == "toml" else EXTREMES
-    if form == "json":
-        extremes = (*EXTREMES, *_TOML_EXTREMES)
+    by_form: dict[str, tuple[bytes, ...]]
+    by_form = {"toml": _TOML_EXTREMES, "json": (*EXTREMES, *_TOML_EXTREMES)}
+    extremes = by_form.get(form, EXTREMES)
 
     def extreme(random: random.Random, content: bytes) -> bytes:
         return _replaced(random, content, values, lambda _: random.choice(extremes))
@@ -105,8 +105,8 @@ def _structured(form: str) -> dict[Mutation, int]:
         factor = random.choice((-1.0, 0.0, 0.01, 0.1, 0.5, 0.9, 1.1, 2.0, 10.0, 100.0))
         return _replaced(random, content, _NUMBER, lambda n: repr(float(n) * factor).encode())
 
-    often = {extreme: 6, scaled: 4, other_value: 3, digit: 2, part_gone: 3}
-    seldom = {part_twice: 1, other_part: 1, other_name: 1}
+    often: dict[Mutation, int] = {extreme: 6, scaled: 4, other_value: 3, digit: 2, part_gone: 3}
+    seldom: dict[Mutation, int] = {part_twice: 1, other_part: 1, other_name: 1}
     return often | seldom
 
 

@@ -77,7 +77,8 @@ class Nursery:
             limit: [s] after which it is ended.
         """
         out, err = (cwd.with_name(f"{cwd.name}.{name}") for name in ("out", "err"))
-        request = {"words": [str(word) for word in words], "cwd": str(cwd), "limit": limit}
+        typed = [str(word) for word in words]
+        request = {"words": typed, "cwd": str(cwd), "limit": limit}
         process = self._process or self._started()
         assert process.stdin is not None
         assert process.stdout is not None
@@ -86,7 +87,7 @@ class Nursery:
         answer = process.stdout.readline()
         if not answer:
             self._process = None
-            raise RuntimeError(f"the nursery died of {' '.join(request['words'])}")
+            raise RuntimeError(f"the nursery died of {' '.join(typed)}")
         texts = [path.read_text(encoding="utf-8", errors="replace") for path in (out, err)]
         return Ended(int(answer), *texts)
 
@@ -182,7 +183,7 @@ def _spare_processes() -> None:
     from giveway.studies.options import StudyOptions
 
     child._supervised = True  # the scenario is not read first by a child
-    StudyOptions.executor = lambda _: _Here()  # type: ignore[method-assign]
+    StudyOptions.executor = lambda _: _Here()  # type: ignore[method-assign,assignment]
 
 
 class _Here:

@@ -21,13 +21,13 @@ from campaign_verdicts import TABLES, judge
 
 SEED = 100
 SAMPLE = {  # a hundred cases; those of studies take longest
-    "scenario": 27,
+    "scenario": 22,
     "settings": 22,
     "profile": 14,
-    "fmu": 12,
+    "fmu": 17,
     "preset": 9,
-    "trajectories": 8,
-    "records": 5,
+    "trajectories": 9,
+    "records": 4,
     "study": 3,
 }
 LONG = ("validate", "doctor", "check")  # commands that draw, or load what nothing else needs
