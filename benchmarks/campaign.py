@@ -1,6 +1,6 @@
 """Does giveway stay civil, whatever it is given? A campaign of mutated inputs tells.
 
-    python benchmarks/campaign.py --seed 1 --count 5000 --out FOLDER [--jobs 2]
+    python benchmarks/campaign.py --seed 1 --count 5000 --out FOLDER [--jobs 2] [--again]
     python benchmarks/campaign.py --seed 1 --only 1234 --out FOLDER
 
 Scenarios, settings, studies, vehicle profiles, FMUs, trajectories, presets and the records of a
@@ -12,9 +12,10 @@ Each case is determined by seed and number (but for a study's records, which tel
 made) and has a process of its own, forked from one in which everything is imported. There, runs are
 not isolated once more; a case that dies is typed again as a user does, and that is judged.
 
-One line of ``FOLDER/seed_1.jsonl`` per case: what is done is not done again. The inputs of cases
-that are not civil stay in ``FOLDER/cases``; so does that of ``--only``. The end prints a table and
-every case that is not civil; the exit code tells whether there is any. Linux and macOS.
+One line of ``FOLDER/seed_1.jsonl`` per case: what is done is not done again, but with ``--again``
+what was not civil, since it may have been mended. The inputs of cases that are not civil stay in
+``FOLDER/cases``; so does that of ``--only``. The end prints a table and every case that is not
+civil; the exit code tells whether there is any. Linux and macOS.
 """
 
 from __future__ import annotations
@@ -73,7 +74,8 @@ def main() -> int:
         print(f"its input is in {out / 'cases' / str(options.only)}")
         return 0
     known, lock = read_verdicts(results), Lock()
-    left = [number for number in range(options.count) if number not in known]
+    again = {number for number in known if options.again and known[number].bad}
+    left = [number for number in range(options.count) if number not in known or number in again]
 
     def keep(verdict: Verdict) -> None:
         with lock, results.open("a", encoding="utf-8") as file:
@@ -131,6 +133,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=5000, help="cases, from number 0 on")
+    parser.add_argument("--again", action="store_true", help="try what was not civil once more")
     parser.add_argument("--only", type=int, help="number of one case, which is tried again")
     parser.add_argument("--out", type=Path, required=True, help="folder of the campaign")
     parser.add_argument("--jobs", type=int, choices=(1, 2), default=1)

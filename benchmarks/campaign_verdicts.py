@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shlex
 import subprocess
 import sys
@@ -16,9 +17,11 @@ if TYPE_CHECKING:
     from campaign_nursery import Ended
 
 TABLES: Final = ("runs", "cells", "levels", "comparison", "situations", "failures")
-BAD: Final = ("traceback", "native", "hang", "different", "mute", "noise")
+BAD: Final = ("traceback", "native", "hang", "different", "nonsense", "mute", "noise")
 _LONGEST: Final = 1500  # characters of a clear line
 _FINDINGS: Final = ("doctor", "fmu", "study")  # they may say on a whole screen what is wrong
+_INFINITY: Final = re.compile(rb"(?<=,)-?inf(?=[,\r\n])")
+_STEERING: Final = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 _TRACEBACK: Final = "Traceback (most recent call last)"
 _LIMIT: Final = 120  # [s] for a case that is typed again
 
@@ -32,8 +35,9 @@ class Verdict:
         kind: of the case.
         outcome: civil: "fine", "refused", "recomputed" (and said so), "told" (native code ended
             the run, and one line says so). Not civil: "traceback"; "native": ended by a signal
-            without a line; "hang"; "different": other tables without a word; "mute": failed
-            without its one line; "noise": more than that, or what no terminal should be sent.
+            without a line; "hang"; "different": other tables without a word; "nonsense": infinite
+            numbers in tables; "mute": failed without its one line; "noise": more than that, or what
+            no terminal should be sent.
         code: of the exit.
         seconds: it took.
         mutations: what was done to which file.
@@ -90,10 +94,14 @@ def _outcome(case: Case, ended: Ended, original: Path | None) -> str:
         return "native"
     if _TRACEBACK in ended.err + ended.out:
         return "traceback"
+    if _STEERING.search(ended.out):
+        return "noise"
     notes = ended.err.strip()
     if ended.code == 0:
-        if not all(line.startswith("note: ") for line in notes.splitlines()):
+        if not all(map(_is_note, notes.splitlines())):
             return "noise"
+        if case.words[0] == "run" and _holds_infinity(case.folder / "out"):
+            return "nonsense"
         if original is None:
             return "fine"
         if notes:
@@ -101,8 +109,18 @@ def _outcome(case: Case, ended: Ended, original: Path | None) -> str:
         return "fine" if _same_tables(original, case.folder / "out") else "different"
     if not notes:
         return "refused" if case.words[0] in _FINDINGS and ended.out.strip() else "mute"
-    last = [line for line in notes.splitlines() if not line.startswith("note: ")]
+    last = [line for line in notes.splitlines() if not _is_note(line)]
     return "refused" if _is_one_line("\n".join(last)) else "noise"
+
+
+def _is_note(line: str) -> bool:
+    return line.startswith("note: ") and line.isprintable()
+
+
+def _holds_infinity(results: Path) -> bool:
+    """Whether a table of a run has an infinite number, which no simulation means."""
+    tables = [file.read_bytes() for file in results.glob("*.csv")]
+    return any(_INFINITY.search(table) for table in tables)
 
 
 def _is_one_line(text: str) -> bool:

@@ -109,6 +109,8 @@ TRACEBACK = 'Traceback (most recent call last):\n  File "x.py"\nValueError: x\n'
         (ended(2, "error: one\nerror: two\n"), "noise"),
         (ended(2, "error: \x1b[31mred\n"), "noise"),
         (ended(2, f"error: {'x' * 5000}\n"), "noise"),
+        (ended(0, out="\x1b[31mred"), "noise"),
+        (ended(0, "note: turned \u202e round\n"), "noise"),
         (ended(1), "mute"),
         (ended(1, TRACEBACK), "traceback"),
         (ended(0, out=TRACEBACK), "traceback"),
@@ -118,6 +120,17 @@ TRACEBACK = 'Traceback (most recent call last):\n  File "x.py"\nValueError: x\n'
 def test_the_verdict_on_an_end(tmp_path: Path, end: Ended, outcome: str) -> None:
     case = Case(1, "settings", ["run", "--config", "run.toml"], tmp_path, "")
     assert judge(case, end, 0.1, None).outcome == outcome
+
+
+def test_an_infinite_number_in_a_table_is_nonsense(tmp_path: Path) -> None:
+    case = Case(1, "settings", ["run", "--config", "run.toml"], tmp_path, "")
+    table = tmp_path / "out" / "ego.csv"
+    table.parent.mkdir()
+    outcomes = []
+    for number in ("1.0", "-inf"):
+        table.write_text(f"time,speed,reason\n0.0,{number},information\n")
+        outcomes.append(judge(case, ended(0), 0.1, None).outcome)
+    assert outcomes == ["fine", "nonsense"]
 
 
 def test_the_verdict_on_a_resumed_study(tmp_path: Path) -> None:
