@@ -88,7 +88,7 @@ def _from_config(config_file: Path) -> Scenario:
 def _description(settings_file: Path) -> str:
     try:
         description = tomllib.loads(settings_file.read_text(encoding="utf-8")).get("description")
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:  # not TOML, not UTF-8, brackets in one another
         raise ScenarioError(f"{settings_file} is not valid TOML: {error}") from error
     if not isinstance(description, str | None):
         raise ScenarioError(

@@ -212,13 +212,13 @@ def read_profile(path: Path) -> VehicleProfile:
         raise FmuProfileError(
             f"{path}: no such file; 'giveway fmu inspect FMU' prints a draft of a profile"
         ) from None
-    except tomllib.TOMLDecodeError as error:
-        raise FmuProfileError(f"{path}: not valid TOML: {error}; mend the line named") from None
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
         raise FmuProfileError(
             f"{path}: cannot be read ({reason}); expected a vehicle profile (TOML)"
         ) from None
+    except (ValueError, RecursionError) as error:  # not TOML's own: a number of thousands of digits
+        raise FmuProfileError(f"{path}: not valid TOML: {error}; mend the line named") from None
     return make_profile(values, str(path))
 
 

@@ -6,8 +6,26 @@ import sys
 INTERRUPTED = 130  # 128 + SIGINT, as shells have it
 
 
+_LONGEST = 300  # characters of a word that are shown; a user's file may hold any number
+
+
 def fail(message: str, code: int) -> int:
-    """Print one line on stderr, and return the exit code."""
+    """Print one line on stderr, and return the exit code.
+
+    The message may quote a user's file, or SUMO that quotes it: what is not visible would steer
+    the terminal, and a word of a thousand letters hide the rest of the line.
+    """
+    line = " ".join(map(_shortened, message.split()))
+    visible = "".join(letter if letter.isprintable() else "?" for letter in line)
     with contextlib.suppress(OSError):  # its terminal has been closed
-        sys.stderr.write(f"error: {' '.join(message.split())}\n")
+        sys.stderr.write(f"error: {visible}\n")
     return code
+
+
+def _shortened(word: str) -> str:
+    """A word without its middle, if that is long; its ends say what it is."""
+    left_out = len(word) - _LONGEST
+    half = _LONGEST // 2
+    if left_out <= 0:
+        return word
+    return f"{word[:half]}...({left_out} more characters)...{word[-half:]}"

@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 
 from giveway.config.option import Section, declared, expectation
 from giveway.config.run_config import RunConfig
+from giveway.config.toml import read_toml_file
 from giveway.errors import ConfigError
 
 Location = tuple[str, ...]
@@ -92,17 +93,8 @@ def read_toml(path: Path) -> Layer:
     Raises:
         ConfigError: the file is missing, unreadable or not TOML.
     """
-    try:
-        values = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-        return Layer(str(path), anchored(values, path.parent.absolute()))
-    except FileNotFoundError:
-        msg = f"{path}: no such file; expected a giveway configuration (TOML)"
-    except tomllib.TOMLDecodeError as error:
-        msg = f"{path}: not valid TOML: {error}; mend the line named"
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
-        msg = f"{path}: cannot be read ({reason}); expected a TOML file"
-    raise ConfigError(msg)
+    values = read_toml_file(path, "a giveway configuration")
+    return Layer(str(path), anchored(values, path.parent.absolute()))
 
 
 def read_toml_text(text: str, origin: str) -> Layer:

@@ -55,7 +55,9 @@ def _identified(layers: Sequence[Layer]) -> list[Layer]:
     """
     vehicle = merge(layers).get("vehicle")
     profile = vehicle.get("profile") if isinstance(vehicle, Mapping) else None
-    return [Layer(str(profile), {"vehicle": _model_in(profile)})] if profile else []
+    if not profile or not isinstance(profile, str):
+        return []  # the vehicle's own table says what is wrong with it
+    return [Layer(profile, {"vehicle": _model_in(profile)})]
 
 
 def _model_of(config: RunConfig) -> dict[str, float]:

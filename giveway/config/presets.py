@@ -2,7 +2,6 @@
 
 import difflib
 import functools
-import tomllib
 from collections.abc import Mapping
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 import tomlkit
 
+from giveway.config.toml import read_toml_file
 from giveway.errors import ConfigError
 from pedestrian_model import PRESETS, ParameterError, VciParameters, require_steady
 
@@ -113,7 +113,7 @@ def preset_text(name: str, parameters: VciParameters, provenance: Mapping[str, A
 
 @functools.lru_cache(maxsize=64)
 def _read(path: Path, _stamp: object) -> VciParameters:
-    values = _toml(path)
+    values = read_toml_file(path, "a preset file")
     unknown = sorted(set(values) - _TABLES)
     if unknown:
         raise ConfigError(
@@ -128,17 +128,6 @@ def _read(path: Path, _stamp: object) -> VciParameters:
         return VciParameters(**known)
     except ParameterError as error:
         raise ConfigError(f"{path}: [parameters] {error}") from error
-
-
-def _toml(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except tomllib.TOMLDecodeError as error:
-        msg = f"{path}: not valid TOML: {error}; mend the line named"
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
-        msg = f"{path}: cannot be read ({reason}); expected a preset file (TOML)"
-    raise ConfigError(msg)
 
 
 def _base(path: Path, base: object) -> dict[str, float]:

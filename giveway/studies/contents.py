@@ -14,6 +14,7 @@ from giveway.studies.sealing import SEAL, BrokenFileError, fingerprint, read_jso
 DEFINITION = "study.toml"
 MANIFEST = "manifest.json"
 PACKAGE = "datapackage.json"
+_SEALED = {"study", "seeds", "complete", "identity", "definition", "cells"}  # of the manifest
 SHA256 = "sha256:"  # before a checksum in a data package
 
 
@@ -36,8 +37,14 @@ def read_manifest(study: Path) -> dict[str, Any]:
         BrokenFileError: it is not what was written.
         OSError: it cannot be read.
     """
-    manifest = read_json(study / MANIFEST)
-    return read_sealed(study / MANIFEST) if {SEAL, "definition"} & manifest.keys() else manifest
+    file = study / MANIFEST
+    manifest = read_json(file)
+    if not {SEAL, "definition"} & manifest.keys():
+        return manifest
+    manifest = read_sealed(file)
+    if not manifest.keys() >= _SEALED:
+        raise BrokenFileError(file, "it is no manifest")
+    return manifest
 
 
 def require_definition(study: Path, manifest: dict[str, Any]) -> None:
@@ -58,10 +65,9 @@ def require_definition(study: Path, manifest: dict[str, Any]) -> None:
 def intact_tables(study: Path) -> frozenset[str]:
     """The names of those tables in a study's folder that are what was written."""
     try:
-        package = read_sealed(study / PACKAGE)
+        return frozenset(name for name, intact in _tables(study) if intact)
     except (BrokenFileError, OSError):
         return frozenset()
-    return frozenset(name for name, intact in _tables(study, package) if intact)
 
 
 def broken_tables(study: Path) -> list[Path]:
@@ -69,20 +75,31 @@ def broken_tables(study: Path) -> list[Path]:
 
     Missing ones are not among them, nor are those of an earlier giveway, which has sealed none.
     """
-    file = study / PACKAGE
     try:
-        package = read_sealed(file) if SEAL in read_json(file) else {"resources": []}
-    except BrokenFileError:
-        return [file]
+        if SEAL not in read_json(study / PACKAGE):
+            return []
+        return [study / name for name, intact in _tables(study) if not intact]
+    except BrokenFileError as error:
+        return [error.file]
     except OSError:
         return []
-    return [study / name for name, intact in _tables(study, package) if not intact]
 
 
-def _tables(study: Path, package: dict[str, Any]) -> Iterator[tuple[str, bool]]:
-    """The tables that are there, and whether each is what its description is about."""
-    for table in package["resources"]:
+def _tables(study: Path) -> Iterator[tuple[str, bool]]:
+    """The tables that are there, and whether each is what its description is about.
+
+    Raises:
+        BrokenFileError: the description is not what was written, or another file in its place.
+        OSError: it cannot be read.
+    """
+    file = study / PACKAGE
+    try:
+        described = {
+            table["path"]: {"bytes": table["bytes"], "sha256": table["hash"].removeprefix(SHA256)}
+            for table in read_sealed(file)["resources"]
+        }
+    except (KeyError, TypeError):
+        raise BrokenFileError(file, "it is no description of tables") from None
+    for name, known in described.items():
         with suppress(OSError):
-            seen = fingerprint((study / table["path"]).read_bytes())
-            known = {"bytes": table["bytes"], "sha256": table["hash"].removeprefix(SHA256)}
-            yield table["path"], seen == known
+            yield name, fingerprint((study / name).read_bytes()) == known

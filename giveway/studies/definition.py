@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from copy import deepcopy
 from importlib.resources import files
 from pathlib import Path
@@ -13,6 +12,7 @@ from pydantic import AfterValidator, Field, ValidationError, model_validator
 
 from giveway.config.layers import anchored
 from giveway.config.option import Section
+from giveway.config.toml import parse_toml, read_toml_file
 from giveway.errors import ConfigError
 
 Situation = Literal["general", "stop-and-wait", "non-stop"]
@@ -132,16 +132,8 @@ def read_definition(path: Path) -> StudyDefinition:
     Raises:
         ConfigError: the file is missing, not TOML, or holds what no study has.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise ConfigError(
-            f"{path}: no such file; expected a study (TOML), see giveway study --help"
-        ) from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not UTF-8 text"
-        raise ConfigError(f"{path}: cannot be read ({reason}); expected a study (TOML)") from error
-    return parse_definition(text, str(path), path.parent.absolute())
+    values = read_toml_file(path, "a study, see giveway study --help")
+    return _placed(values, str(path), path.parent.absolute())
 
 
 def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
@@ -155,10 +147,10 @@ def parse_definition(text: str, origin: str, folder: Path) -> StudyDefinition:
     Raises:
         ConfigError: one line that names the key, its value and what was expected.
     """
-    try:
-        values = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{origin}: not valid TOML: {error}; mend the line named") from None
+    return _placed(parse_toml(text, origin), origin, folder)
+
+
+def _placed(values: dict[str, Any], origin: str, folder: Path) -> StudyDefinition:
     return _validated(values | _folder_of(values, folder), origin)
 
 

@@ -45,6 +45,8 @@ class RecordStore:
             record = RunRecord.from_values(content)
         except FileNotFoundError:
             return None
+        except IsADirectoryError:
+            raise BrokenFileError(path, "it is a folder") from None
         except ValueError as error:
             raise BrokenFileError(path, str(error)) from None
         except OSError as error:

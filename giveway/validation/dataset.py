@@ -1,6 +1,5 @@
 """What a data set's files do not say of themselves: the camera's rate, the vehicle's body."""
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -9,6 +8,7 @@ from typing import Literal
 from pydantic import ValidationError
 
 from giveway.config.option import Section, expectation, option
+from giveway.config.toml import read_toml_file
 from giveway.errors import ConfigError
 
 _FORM = (
@@ -72,16 +72,12 @@ def dataset_of(wanted: str | None) -> Dataset:
 
 
 def _read(file: Path) -> Dataset:
+    origin = f"--dataset {file}"
+    values = read_toml_file(file, "the description of a data set", origin)
     try:
-        return Dataset.model_validate(tomllib.loads(file.read_text(encoding="utf-8-sig")))
+        return Dataset.model_validate(values)
     except ValidationError as error:
-        msg = _explain(error.errors(include_url=False)[0])
-    except tomllib.TOMLDecodeError as error:
-        msg = f"not valid TOML: {error}; mend the line named"
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
-        msg = f"cannot be read ({reason}); expected the description of a data set (TOML)"
-    raise ConfigError(f"--dataset {file}: {msg}")
+        raise ConfigError(f"{origin}: {_explain(error.errors(include_url=False)[0])}") from None
 
 
 def _explain(error: Mapping[str, object]) -> str:

@@ -81,3 +81,20 @@ def test_a_folder_whose_name_is_too_long_is_named(type_here):
     assert done.returncode == 2
     assert done.stderr.startswith("error: aaa")
     assert "cannot be written (File name too long); name another folder with --out" in done.stderr
+
+
+def test_a_users_file_can_neither_steer_the_terminal_nor_hide_the_rest_of_the_line(
+    type_here, tmp_path
+):
+    (tmp_path / "long.toml").write_text(f'[ego]\nlane = "{"x" * 5000}"\n')
+    done = type_here("config", "--config", "long.toml")
+    assert done.returncode == 2
+    assert "long.toml: [ego] lane" in done.stderr
+    assert "more characters)" in done.stderr
+    assert len(done.stderr) < 1000
+    folder = tmp_path / "turned\u202ered\x1b[31m"
+    done = type_here("doctor", folder)
+    assert "\u202e" not in done.stdout
+    done = type_here("run", folder)
+    assert done.returncode == 2
+    assert done.stderr.strip().isprintable()

@@ -310,6 +310,12 @@ def test_an_ego_taken_over_leaves_nothing_of_the_scenarios_route():
     assert load([Layer("again", config.model_dump())])[0] == config
 
 
+@pytest.mark.parametrize("profile", [{"a": 1}, ["car.toml"], 3])
+def test_a_profile_that_is_no_text_is_the_keys_fault(profile: object) -> None:
+    with pytest.raises(ConfigError, match=r"run\.toml: \[vehicle\] profile.*string"):
+        load([Layer("run.toml", {"vehicle": {"profile": profile}})])
+
+
 @pytest.mark.parametrize(
     "settings",
     [

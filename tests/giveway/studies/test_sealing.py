@@ -55,6 +55,11 @@ def half(record: Path) -> None:
     record.write_bytes(record.read_bytes()[:100])
 
 
+def a_folder(record: Path) -> None:
+    record.unlink()
+    record.mkdir()
+
+
 @pytest.fixture
 def copy(small_study, tmp_path) -> Path:
     return Path(shutil.copytree(small_study.path, tmp_path / "copy"))
@@ -62,7 +67,10 @@ def copy(small_study, tmp_path) -> Path:
 
 @pytest.mark.parametrize(
     "break_",
-    [other_number, markup_for_a_number, no_seal, other_maker, another_run, one_bit, half],
+    [
+        *(other_number, markup_for_a_number, no_seal, other_maker, another_run, one_bit, half),
+        a_folder,
+    ],
 )
 def test_a_broken_record_is_named_put_aside_and_made_again(
     small_study, study_of, small_study_text, tables_of, copy, capsys, break_
@@ -70,7 +78,7 @@ def test_a_broken_record_is_named_put_aside_and_made_again(
     record = victim(copy)
     whole = record.read_bytes()
     break_(record)
-    broken = record.read_bytes()
+    broken = record.read_bytes() if record.is_file() else None
     with pytest.raises(BrokenFileError, match=rf"{record.name}.*with --resume"):
         _ = StudyFolder.open(copy).runs
     states = []
@@ -80,7 +88,7 @@ def test_a_broken_record_is_named_put_aside_and_made_again(
     assert line.startswith(f"note: {record}: ")
     aside = copy / "broken" / record.relative_to(copy)
     assert str(aside) in line
-    assert aside.read_bytes() == broken
+    assert (aside.read_bytes() if aside.is_file() else None) == broken
     made, former = json.loads(record.read_bytes()), json.loads(whole)
     assert made["rows"] == former["rows"]
     assert tables_of(copy) == tables_of(small_study.path)
@@ -109,6 +117,18 @@ def test_a_broken_file_is_named_put_aside_and_made_again(
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"note: {file}: is not what giveway wrote; put aside in {copy}")
     assert (copy / "broken" / name).is_file()
+    assert tables_of(copy) == tables_of(small_study.path)
+    assert broken_files(copy) == []
+
+
+@pytest.mark.parametrize("name", ["datapackage.json", "manifest.json"])
+def test_a_sealed_file_in_the_place_of_another_is_made_again(
+    small_study, study_of, small_study_text, tables_of, copy, capsys, name
+):
+    shutil.copy(victim(copy), copy / name)
+    study_of(small_study_text, copy, resume=True)
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"note: {copy / name}: is not what giveway wrote; put aside")
     assert tables_of(copy) == tables_of(small_study.path)
     assert broken_files(copy) == []
 

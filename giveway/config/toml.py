@@ -1,0 +1,75 @@
+"""TOML files of users, read: whatever is in them, the problem is told in one line."""
+
+import tomllib
+from pathlib import Path
+from typing import Any, Final
+
+from giveway.errors import ConfigError
+
+_DEEPEST: Final = 20  # levels of tables and lists; nothing that we read has half as many
+
+
+def read_toml_file(file: Path, expected: str, called: str | None = None) -> dict[str, Any]:
+    """What a TOML file says.
+
+    Args:
+        file: to be read.
+        expected: what it should be, for messages: "a preset file".
+        called: how messages call it; None: by its path.
+
+    Raises:
+        ConfigError: it is not there, cannot be read, or is not TOML.
+    """
+    origin = str(file) if called is None else called
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise ConfigError(f"{origin}: no such file; expected {expected} (TOML)") from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
+        msg = f"{origin}: cannot be read ({reason}); expected {expected} (TOML)"
+        raise ConfigError(msg) from error
+    return parse_toml(text, origin)
+
+
+def parse_toml(text: str, origin: str) -> dict[str, Any]:
+    """What a TOML text says.
+
+    Args:
+        text: of a file.
+        origin: what messages call it.
+
+    Raises:
+        ConfigError: it is not TOML.
+    """
+    try:
+        values = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigError(f"{origin}: not valid TOML: {error}; mend the line named") from None
+    except ValueError:  # Python's: it reads no longer ones
+        raise ConfigError(
+            f"{origin}: a number of thousands of digits; expected one of a few; shorten it"
+        ) from None
+    except RecursionError:
+        values = None
+    if values is None or _is_deep(values):
+        raise ConfigError(
+            f"{origin}: lists or tables in one another, more than {_DEEPEST} deep; expected a few "
+            "levels; look for a row of brackets"
+        )
+    return values
+
+
+def _is_deep(values: dict[str, Any]) -> bool:
+    """Whether there are levels that would be too many for whatever walks through them."""
+    level: list[Any] = [values]
+    for _ in range(_DEEPEST):
+        level = [child for node in level for child in _children(node)]
+        if not level:
+            return False
+    return True
+
+
+def _children(node: Any) -> list[Any]:
+    children = list(node.values()) if isinstance(node, dict) else node
+    return [child for child in children if isinstance(child, dict | list)]

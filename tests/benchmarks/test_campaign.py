@@ -1,0 +1,167 @@
+"""A sample of the campaign of mutated inputs; what each failure of it was has a test of its own."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import shutil
+import signal
+from collections import Counter
+from collections.abc import Iterator
+from itertools import count
+from pathlib import Path
+
+import campaign
+import campaign_kinds
+import pytest
+from campaign_bases import Bases
+from campaign_kinds import KINDS, Case, make_case
+from campaign_nursery import Ended, Nursery
+from campaign_verdicts import TABLES, judge
+
+SEED = 100
+SAMPLE = {  # a hundred cases; those of studies take longest
+    "scenario": 22,
+    "settings": 22,
+    "profile": 14,
+    "fmu": 17,
+    "preset": 9,
+    "trajectories": 9,
+    "records": 4,
+    "study": 3,
+}
+LONG = ("validate", "doctor", "check")  # commands that draw, or load what nothing else needs
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="cases are forked")
+
+
+@pytest.fixture(scope="module")
+def nursery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Nursery]:
+    with Nursery(tmp_path_factory.mktemp("cache")) as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def bases(nursery: Nursery, tmp_path_factory: pytest.TempPathFactory) -> Bases:
+    return Bases(tmp_path_factory.mktemp("bases"), nursery)
+
+
+def of_each_kind(bases: Bases, folder: Path, most: dict[str, int]) -> Iterator[Case]:
+    """Cases in turn, but for those that take long; of each kind at most so many."""
+    made: Counter[str] = Counter()
+    for number in count():
+        case = make_case(SEED, number, bases, folder / str(number))
+        if made[case.kind] < most[case.kind] and not set(LONG) & set(map(str, case.words)):
+            made[case.kind] += 1
+            yield case
+        shutil.rmtree(case.folder)
+        if made == most:
+            return
+
+
+def test_a_hundred_mutated_inputs_are_met_with_civility(
+    nursery: Nursery, bases: Bases, tmp_path: Path
+) -> None:
+    assert SAMPLE.keys() == KINDS.keys()
+    outcomes: Counter[str] = Counter()
+    for case in of_each_kind(bases, tmp_path, SAMPLE):
+        ended = nursery.type(case.words, case.folder, campaign.LIMIT)
+        verdict = judge(case, ended, 0.0, bases.study if case.kind == "records" else None)
+        assert not verdict.bad, verdict
+        outcomes[verdict.outcome] += 1
+    assert min(outcomes[word] for word in ("fine", "refused", "recomputed")) > 2, outcomes
+
+
+def test_what_is_not_mutated_is_not_refused(
+    nursery: Nursery, bases: Bases, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(campaign_kinds, "mutate", lambda _, content, __: (content, ""))
+    monkeypatch.setattr(campaign_kinds, "_broken", lambda *_: "")
+    for case in of_each_kind(bases, tmp_path, dict.fromkeys(KINDS, 1)):
+        ended = nursery.type(case.words, case.folder, campaign.LIMIT)
+        assert ended.code == 0, (case, ended.err)
+
+
+def test_a_case_is_determined_by_seed_and_number(bases: Bases, tmp_path: Path) -> None:
+    def content(seed: int, number: int) -> tuple[object, ...]:
+        case = make_case(seed, number, bases, tmp_path / "case")
+        files = sorted(f for f in case.folder.rglob("*") if f.is_file())
+        return case.words, case.mutations, [(f.name, f.read_bytes()) for f in files]
+
+    assert content(1, 3) == content(1, 3)
+    assert content(1, 3) != content(2, 3)
+
+
+def ended(code: int, err: str = "", out: str = "") -> Ended:
+    return Ended(code, out, err)
+
+
+TRACEBACK = 'Traceback (most recent call last):\n  File "x.py"\nValueError: x\n'
+
+
+@pytest.mark.parametrize(
+    ("end", "outcome"),
+    [
+        (ended(0), "fine"),
+        (ended(0, "x.py:3: RuntimeWarning: overflow\n"), "noise"),
+        (ended(2, "error: run.toml: [ego] lane = -1: expected 0\n"), "refused"),
+        (ended(2, "note: something\nerror: run.toml: [ego] lane\n"), "refused"),
+        (ended(2, "error: one\nerror: two\n"), "noise"),
+        (ended(2, "error: \x1b[31mred\n"), "noise"),
+        (ended(2, f"error: {'x' * 5000}\n"), "noise"),
+        (ended(0, out="\x1b[31mred"), "noise"),
+        (ended(0, "note: turned \u202e round\n"), "noise"),
+        (ended(1), "mute"),
+        (ended(1, TRACEBACK), "traceback"),
+        (ended(0, out=TRACEBACK), "traceback"),
+        (ended(-signal.SIGALRM), "hang"),
+    ],
+)
+def test_the_verdict_on_an_end(tmp_path: Path, end: Ended, outcome: str) -> None:
+    case = Case(1, "settings", ["run", "--config", "run.toml"], tmp_path, "")
+    assert judge(case, end, 0.1, None).outcome == outcome
+
+
+def test_an_infinite_number_in_a_table_is_nonsense(tmp_path: Path) -> None:
+    case = Case(1, "settings", ["run", "--config", "run.toml"], tmp_path, "")
+    table = tmp_path / "out" / "ego.csv"
+    table.parent.mkdir()
+    outcomes = []
+    for number in ("1.0", "-inf"):
+        table.write_text(f"time,speed,reason\n0.0,{number},information\n")
+        outcomes.append(judge(case, ended(0), 0.1, None).outcome)
+    assert outcomes == ["fine", "nonsense"]
+
+
+def test_the_verdict_on_a_resumed_study(tmp_path: Path) -> None:
+    original, out = tmp_path / "original", tmp_path / "out"
+    for folder in (original, out):
+        folder.mkdir()
+        for name in (*(f"{table}.csv" for table in TABLES), "study.toml", "manifest.json"):
+            (folder / name).write_text("1\n")
+    case = Case(1, "records", ["study", "--resume"], tmp_path, "")
+    told = ended(0, "note: out/runs.csv: put aside\n")
+
+    def outcomes() -> list[str]:
+        return [judge(case, end, 0.1, original).outcome for end in (ended(0), told)]
+
+    assert outcomes() == ["fine", "recomputed"]
+    (out / "runs.csv").write_text("2\n")
+    assert outcomes() == ["different", "different"]
+
+
+def test_what_native_code_ends_is_typed_again_as_a_user_does(tmp_path: Path) -> None:
+    case = Case(1, "settings", ["config", "--config", "none.toml"], tmp_path, "")
+    verdict = judge(case, ended(-signal.SIGSEGV), 0.1, None)
+    assert verdict.outcome == "told"
+    assert verdict.line.startswith("error: none.toml")
+    again = dataclasses.replace(case, words=["--version"])
+    assert judge(again, ended(-signal.SIGSEGV), 0.1, None).outcome == "native"
+
+
+def test_a_nursery_ends_what_hangs_and_goes_on(nursery: Nursery, tmp_path: Path) -> None:
+    here = tmp_path / "here"
+    here.mkdir()
+    words = ["run", "--time-limit", 100, "--no-pictures", "--pedestrians", 200]
+    assert nursery.type(words, here, 1).hung
+    assert nursery.type(["--version"], here, 60).out.startswith("giveway ")
