@@ -44,7 +44,7 @@ class Observation(NamedTuple):
     speed: float  # x_2(k) [m/s]
     gap: float  # [m] from ``position`` to whatever is closest in front now; inf: nothing
     obstacle_positions: Array  # (N,) [m] x_p(k+1) ... x_p(k+N), stations; inf: nothing in front
-    speed_limit: float = inf  # [m/s] for a stop line or a vehicle ahead; inf: none
+    speed_limit: float = inf  # [m/s] for a stop line, a vehicle ahead or the lane; inf: none
     safe_distance: float = SAFE_DISTANCE  # [m] to be kept to obstacles
     foresight: Foresight | None = None  # None: nobody can get in the way within the horizon
     time: float = 0.0  # t_k [s] on SUMO's clock
@@ -55,6 +55,7 @@ class Observation(NamedTuple):
     people: People | None = None  # None: nobody
     vehicles: Array | None = None  # (N, m, 7) all, now and predicted: x, y, heading, speed, front,
     row: int = 0  # rear, width; the ego's own stand in this row (None: there is no other vehicle)
+    lane_speeds: Array | None = None  # (N,) [m/s] not exceeded at k+1 ... k+N; None: any may be
 
 
 class Decision(NamedTuple):

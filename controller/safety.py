@@ -9,7 +9,7 @@ Althoff, ITSC 2018) and of the safe distances of RSS (Shalev-Shwartz et al., arX
 """
 
 from dataclasses import dataclass
-from math import ceil, exp, inf
+from math import ceil, exp, expm1, inf, log
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +22,7 @@ from controller.parameters import require, require_not_negative, require_positiv
 
 LONGEST_STOP = 20.0  # [s] what has not stopped by then does not count as stopping
 LETS_THROUGH, ACTS, UNAVOIDABLE = 0, 1, 2
+_MOST_DECAY = 50.0  # e-foldings by friction in that time: from any speed
 _RESOLUTION = 4.0  # [N] to which the largest safe force is found
 _SLACK = 1e-9  # [m] that a new plan keeps and the fallback need not: above rounding, below a hair
 _WHOLE_STEPS = 1e-6  # of a step: a reaction time of so little more is no step more
@@ -108,10 +109,26 @@ class SafetyLayer:
         Args:
             speed: now [m/s].
         """
-        p, c = self.parameters, self._limits
-        not_yet = len(self._commands) + 2.0 * p.force_limit / p.force_rate_limit  # [steps]
-        v = max(speed, 0.0) + not_yet * c.gain * p.force_limit
-        return v * c.time_step * (not_yet + 1.0 + v / (2.0 * c.braking_gain * p.force_limit))
+        c, not_yet = self._limits, self._not_yet
+        v = max(speed, 0.0) + not_yet * c.gain * c.force_limit
+        return v * c.time_step * (not_yet + 1.0 + v / (2.0 * c.braking_gain * c.force_limit))
+
+    @property
+    def fastest(self) -> float:
+        """The speed [m/s] from which it stops in time, whatever is asked for now."""
+        c, not_yet = self._limits, self._not_yet
+        steps = len(self._boxes) - 1 - not_yet
+        if steps <= 0:
+            return 0.0
+        # Backwards from a standstill: v = (v_after + g u) / e, a geometric sum.
+        growth = min(-log(c.slowest_decay), _MOST_DECAY / steps)
+        share = steps if growth == 0.0 else expm1(growth * steps) / -expm1(-growth)
+        return max(0.0, c.force_limit * (c.braking_gain * share - c.gain * not_yet))
+
+    @property
+    def _not_yet(self) -> float:
+        """How many steps full braking takes at most to set in."""
+        return len(self._commands) + 2.0 * self._limits.force_limit / self._limits.force_rate_limit
 
     def reset(self) -> None:
         """Forget the forces of the past."""

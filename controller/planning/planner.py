@@ -72,6 +72,7 @@ class Planner:
         fastest: float,
         allowed: Array,
         foresight: Foresight | None,
+        lane_speeds: Array | None = None,
     ) -> Plan:
         """The force at t_k.
 
@@ -81,6 +82,8 @@ class Planner:
             fastest: [m/s] wanted where nobody is in the way.
             allowed: (N,) [m] that may be driven until steps 1 ... N: vehicles, lights; inf: any.
             foresight: of the crowd; None: nobody can get in the way.
+            lane_speeds: (N,) [m/s] that the plan does not exceed at steps 1 ... N, as far as
+                braking can help it; None: any.
 
         Raises:
             ParameterError: a value is not a number.
@@ -94,7 +97,7 @@ class Planner:
         search = self._search
         seek = search.choose if self.parameters.gap_choice else search.follow
         chosen = seek(speed, before, fastest, allowed, foresight)
-        return self._smooth(speed, previous_force, before, fastest, allowed, chosen)
+        return self._smooth(speed, previous_force, before, fastest, allowed, chosen, lane_speeds)
 
     def _acceleration(self, speed: float, force: float) -> float:
         """The one that ``force`` [N] gave at this speed; at standstill none."""
@@ -110,6 +113,7 @@ class Planner:
         fastest: float,
         allowed: Array,
         chosen: str,
+        lane_speeds: Array | None,
     ) -> Plan:
         """The QP within the manoeuvre's corridor; the manoeuvre itself where that is better."""
         p, problem, search = self.parameters, self._problem, self._search
@@ -128,6 +132,8 @@ class Planner:
             wanted = np.full(len(problem.nodes), fastest)
         soon = round(p.manoeuvres.calm_time / self.model.time_step)
         calm[soon:] = inf
+        if lane_speeds is not None:
+            np.minimum(calm, lane_speeds, out=calm)
         problem.aim_at(wanted, speed, before)
         if not problem.bound(speed, previous_force, fastest, self._corridor, calm, soft=p.soft):
             search.forget()
@@ -198,7 +204,9 @@ class PlanningController:
         allowed = observation.obstacle_positions - (
             observation.position + observation.safe_distance
         )
-        plan = self.planner.plan(speed, previous, reference, allowed, observation.foresight)
+        plan = self.planner.plan(
+            speed, previous, reference, allowed, observation.foresight, observation.lane_speeds
+        )
         if plan.found:
             force = plan.force
             if speed <= STANDSTILL and force < 0.0:

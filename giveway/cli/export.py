@@ -12,6 +12,7 @@ from fmus.sources.export import export_controller
 from fmus.sources.parameters import CONTROLLER_FILES, ControllerParameters
 from giveway.cli.run import layers_of
 from giveway.config.loading import load
+from giveway.config.option import LANE
 from giveway.cosimulation.preflight import control_step
 from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_margin
@@ -78,6 +79,9 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
 
 def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
     """The parameters of one ego's controller."""
+    if config.regulation.reference_speed == LANE:
+        msg = f"[regulation] reference_speed = {LANE}: an exported controller knows no lanes"
+        raise ConfigError(f"{msg}; give a speed, like --regulation-reference-speed 8 [m/s]")
     own = make_controller(config, time_step)
     if not isinstance(own, SpeedController) or not isinstance(own.pid, Pid):
         msg = f"controller = {config.controller}: only the paper's controllers can be exported"

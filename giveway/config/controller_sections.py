@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from giveway.config.option import Preset, Section, option
+from giveway.config.option import Preset, Section, SpeedOrLane, option
 
 MILLIMETRE = 0.001
 """[m] No gap between bodies is meant to be smaller."""
@@ -19,12 +19,10 @@ CORRIDOR_MARGIN = 0.25
 class RegulationConfig(Section):
     """What both controllers aim at, and who counts as being in front."""
 
-    reference_speed: float = option(
+    reference_speed: SpeedOrLane = option(
         4.0,
         "m/s",
-        "desired speed v_r",
-        gt=0,
-        le=60,
+        "desired speed v_r, or 'lane': the limit of the lane under the ego, less in bends",
         least=0.1,
         because="slower than that nobody says whether it drives; no car is faster",
     )
@@ -68,12 +66,13 @@ class RegulationConfig(Section):
         flag="--kerb-distance",
         ge=0,
         le=10,
+        least=MILLIMETRE,
         because="farther away nobody can tell",
     )
     comfortable_deceleration: float = option(
         2.0,
         "m/s^2",
-        "of the approach to a red light or a slower vehicle",
+        "of the approach to a red light, a slower vehicle, a lower limit or a bend",
         gt=0,
         le=10,
         least=0.1,

@@ -104,6 +104,24 @@ def _seed(value: Any) -> Any:
     return int(value) if isinstance(value, str) and value.isdecimal() else value
 
 
+def _speed_or_lane(value: Any) -> Any:
+    """A number, or the word; anything else is named here, where both are known."""
+    try:
+        return value if value == LANE or isinstance(value, bool) else float(value)
+    except (TypeError, ValueError):
+        msg = f"expected a number or '{LANE}'"
+        raise PydanticCustomError("speed", "{expected}", {"expected": msg}) from None
+
+
+LANE: Literal["lane"] = "lane"
+"""In place of a speed: what the ego's lane permits."""
+
+
+SpeedOrLane = Annotated[
+    Annotated[float, Field(gt=0, le=60)] | Literal["lane"], BeforeValidator(_speed_or_lane)
+]
+
+
 Rectangle = Annotated[tuple[float, float, float, float], BeforeValidator(_split)]
 
 

@@ -154,7 +154,7 @@ class RunConfig(Section):
             return RunConfig.model_validate(values)
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
-            key = ".".join(map(str, first["loc"]))
+            key = ".".join(map(str, first["loc"][:2]))  # beyond: which part of the value
             field = _field_at(first["loc"])
             expected = expectation(first, field) if field is not None else first["msg"]
             raise ValueError(f"egos[{number}]: {key} = {first['input']!r}: {expected}") from None
@@ -221,7 +221,9 @@ class EgoRunConfig(RunConfig):
             ("[regulation] reference_speed", self.regulation.reference_speed),
             ("[ego] initial_speed", self.ego.initial_speed),
         ):
-            if self.optimises and speed is not None and not low <= speed <= high:
+            if speed is None or isinstance(speed, str):
+                continue
+            if self.optimises and not low <= speed <= high:
                 msg = f"{key} = {speed:g}: expected within [mpc] speed_min and speed_max"
                 msg += f", {low:g} to {high:g} [m/s]"
                 raise ValueError(msg)

@@ -12,12 +12,15 @@ from pathlib import Path
 
 import numpy as np
 
+from giveway.config.option import LANE
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.cosimulation.room import Entry, has_room
 from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
+from giveway.ego.controllers import make_controller
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
+from giveway.ego.speed_profile import profile_of
 from giveway.ego.stops import Stop, Stops
 from giveway.ego.waiting import WaitingEgo
 from giveway.errors import ConfigError, ScenarioError
@@ -209,7 +212,7 @@ class Departures:
             lane_path.first,
             config.ego.depart_position,
             _shape_of(ego, BODY),
-            _initial_speed(ego),
+            _initial_speed(ego, lane_path),
             config.mpc.force_limit / config.vehicle.mass,
         )
 
@@ -309,7 +312,7 @@ class Departures:
             return self._take_over(ego)
         settings = ego.config.ego
         path, lane_path = self._paths[ego.id]
-        speed = _initial_speed(ego)
+        speed = _initial_speed(ego, lane_path)
         self._session.vehicles.insert(
             ego.id,
             settings.route,
@@ -318,7 +321,9 @@ class Departures:
             speed=speed,
         )
         shape = _shape_of(ego, BODY)
-        return self._on_the_road(ego, path, lane_path, settings.depart_position, shape, speed)
+        return self._on_the_road(
+            ego, path, lane_path, settings.depart_position, shape, speed, math.inf
+        )
 
     def _take_over(self, ego: WaitingEgo) -> Ego:
         vehicles = self._session.vehicles
@@ -352,6 +357,7 @@ class Departures:
             departure,
             shape,
             speed,
+            state.fastest,
             on_path(places, stops, path, joined, self._session.lanes),
         )
 
@@ -389,9 +395,15 @@ class Departures:
         departure: float,
         shape: VehicleShape,
         speed: float,
+        capable: float,
         stops: Sequence[Stop] = (),
     ) -> Ego:
         config = ego.config
+        profile = profile_of(
+            ego, path, lane_path.limits, departure, shape.length, capable, self._time_step
+        )
+        if profile is not None:
+            ego.controller = make_controller(config, self._time_step, profile.fastest)
         hardest = config.mpc.force_limit / config.vehicle.mass
         ego.start(speed)
         goal = config.ego.travel_distance
@@ -418,6 +430,7 @@ class Departures:
             self._time_step,
             halts if stops else None,
             crossings,
+            profile,
         )
 
 
@@ -444,6 +457,10 @@ def _joined(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, L
             points=joined.vertices,
             lights=tuple(lights),
             edges=tuple(begin - station + shift for begin in lane_path.edges),
+            limits=tuple(
+                limit._replace(station=limit.station - station + shift)
+                for limit in lane_path.limits
+            ),
         ),
     )
 
@@ -454,7 +471,10 @@ def _shape_of(ego: WaitingEgo, own: VehicleShape | VehicleState) -> VehicleShape
     return VehicleShape(vehicle.length or own.length, vehicle.width or own.width)
 
 
-def _initial_speed(ego: WaitingEgo) -> float:
+def _initial_speed(ego: WaitingEgo, lane_path: LanePath) -> float:
     """The speed [m/s] at which an ego that is inserted departs."""
     speed = ego.config.ego.initial_speed
-    return DEFAULT_SPEED if speed is None else speed
+    if speed is not None:
+        return speed
+    by_lane = ego.config.regulation.reference_speed == LANE
+    return min(DEFAULT_SPEED, lane_path.limits[0].speed) if by_lane else DEFAULT_SPEED

@@ -24,7 +24,7 @@ from controller import (
     TunedPidParameters,
 )
 from giveway.config import EgoRunConfig
-from giveway.config.option import Section
+from giveway.config.option import LANE, Section
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ControlError
 
@@ -34,16 +34,23 @@ if TYPE_CHECKING:
 Parameters = TypeVar("Parameters", bound="DataclassInstance")
 
 
-def make_controller(config: EgoRunConfig, time_step: float) -> Controller:
+def make_controller(
+    config: EgoRunConfig, time_step: float, fastest: float | None = None
+) -> Controller:
     """The controller of one ego.
 
     Args:
         config: of the ego.
         time_step: of the co-simulation [s].
+        fastest: its v_r [m/s] where the lanes say how fast it drives; None: before that is known.
 
     Raises:
         ControlError: its parameters contradict each other, or its solver is missing.
     """
+    if config.regulation.reference_speed == LANE:
+        own = {"reference_speed": config.mpc.speed_max if fastest is None else fastest}
+        regulation = config.regulation.model_copy(update=own)
+        config = config.model_copy(update={"regulation": regulation})
     try:
         return _CONTROLLERS[config.controller](config, time_step)
     except ControllerError as error:

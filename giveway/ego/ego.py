@@ -17,6 +17,7 @@ from giveway.ego.leader import NO_LEADER, Leader
 from giveway.ego.lights import Lights
 from giveway.ego.path_view import PathView
 from giveway.ego.safety import Guard
+from giveway.ego.speed_profile import SpeedProfile
 from giveway.ego.stops import Stops
 from giveway.ego.waiting import WaitingEgo
 from giveway.errors import ControlError, VehicleError
@@ -70,6 +71,7 @@ class Ego:
         time_step: [s].
         stops: that it serves; None: none.
         crossings: on its path, at which it gives way; None: at none.
+        profile: its speed where nothing is in its way; None: the controller's own.
     """
 
     def __init__(
@@ -83,6 +85,7 @@ class Ego:
         time_step: float,
         stops: Stops | None = None,
         crossings: Crossings | None = None,
+        profile: SpeedProfile | None = None,
     ) -> None:
         config = waiting.config
         self._controller, self._predictor = waiting.controller, waiting.predictor
@@ -98,6 +101,8 @@ class Ego:
         if crossings is not None:
             self.crossings = crossings
         self.light_systems = lights.systems | self.crossings.systems
+        self._profile = profile
+        self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal = goal
         self.vehicle = waiting.vehicle
         half_width = config.regulation.corridor_half_width
@@ -297,13 +302,17 @@ class Ego:
         origin = front + self._origin
         stop = seen.stop + self._origin + safe_distance
         free = seen.stop == math.inf == seen.leader.station
+        limit, lanes = math.inf if free else self._speed_limit(seen), None
+        if self._profile is not None:
+            limit = min(limit, self._profile.limit(front, vehicle.speed))
+            lanes = self._profile.ahead(front, vehicle.speed, self._times)
         self._view.station = front
         return Observation(  # by position: a third of the time that keywords take
             origin,
             vehicle.speed,
             min(seen.pedestrian, seen.leader.station, stop) - origin,
             seen.ahead,
-            math.inf if free else self._speed_limit(seen),
+            limit,
             safe_distance,
             seen.foresight,
             time,
@@ -314,6 +323,7 @@ class Ego:
             seen.crowd,
             seen.poses,
             seen.row,
+            lanes,
         )
 
     def expected(self, seen: Seen) -> Array | None:

@@ -5,7 +5,8 @@ import numpy as np
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 
-_HALF = 2.5  # [m] before and behind a place, whose mean headings give the curvature there
+HALF = 2.5
+"""[m] before and behind a place, whose mean headings give the curvature there."""
 
 
 class PathView:
@@ -21,7 +22,7 @@ class PathView:
     def __init__(self, path: EgoPath) -> None:
         self._path = path
         headings = np.unwrap(path.headings)
-        beyond = 3.0 * _HALF  # it goes on straight
+        beyond = 3.0 * HALF  # it goes on straight
         self._at = np.concatenate([[-beyond], path.stations, [path.length + beyond]])
         steps = np.diff(self._at) * np.concatenate([headings[:1], headings, headings[-1:]])
         self._turned = np.concatenate([[0.0], np.cumsum(steps)])  # the heading's integral
@@ -46,9 +47,9 @@ class PathView:
         A polyline turns in its corners only: what counts is how the mean headings of the 2.5 m
         before and behind a place differ.
         """
-        at = np.clip(self.station + distances, -_HALF, self._path.length + _HALF)
+        at = np.clip(self.station + distances, -HALF, self._path.length + HALF)
         before, here, behind = (
-            np.interp(at + shift, self._at, self._turned) for shift in (-_HALF, 0.0, _HALF)
+            np.interp(at + shift, self._at, self._turned) for shift in (-HALF, 0.0, HALF)
         )
-        curvature: Array = (before - 2.0 * here + behind) / _HALF**2
+        curvature: Array = (before - 2.0 * here + behind) / HALF**2
         return curvature

@@ -33,14 +33,22 @@ class Light(NamedTuple):
     link: int  # index of the movement in the system's state
 
 
+class SpeedLimit(NamedTuple):
+    """From where on a lane path another lane's limit holds."""
+
+    station: float  # [m] along the lane path
+    speed: float  # [m/s]
+
+
 @dataclass(frozen=True)
 class LanePath:
-    """What lies along a route: the lanes' centre line and the traffic lights on it."""
+    """What lies along a route: the lanes' centre line, the traffic lights and limits on it."""
 
     points: Array  # (k, 2) [m]
     lights: tuple[Light, ...]
     first: str  # the lane that it begins on
     edges: tuple[float, ...]  # station [m] at which each edge of the route begins
+    limits: tuple[SpeedLimit, ...]  # of each lane, in order; the first holds from the beginning
 
 
 class Lanes:
@@ -94,24 +102,30 @@ class Lanes:
         points: list[Array] = []
         lights: list[Light] = []
         begins: list[float] = []
+        limits: list[SpeedLimit] = []
         driven = 0.0
         for number, (entry, leave) in enumerate(pairs):
             shape = self._changing(edges[number], entry, leave, start if number == 0 else 0.0)
             points.append(shape)
             begins.append(driven)
+            own = {f"{edges[number]}_{i}" for i in (entry, leave)}
+            limits.append(SpeedLimit(driven, min(map(self.speed_limit, own))))
             driven += _length(shape)
             if number < len(links):
                 link = links[number]
                 light = self._light(f"{edges[number]}_{leave}", link)
                 if light is not None:
                     lights.append(Light(driven, *light))
+                limits.extend(self._limits_inside(link, driven, shape[-1:]))
                 inside = [self.shape(name) for name in link.via]
                 following = self.shape(link.lane)
                 onwards = np.concatenate([shape[-1:], *inside, following[:1]])
                 points.extend(inside)
                 driven += _length(onwards)
         first_lane = f"{edges[0]}_{pairs[0][0]}"
-        return LanePath(np.concatenate(points), tuple(lights), first_lane, tuple(begins))
+        return LanePath(
+            np.concatenate(points), tuple(lights), first_lane, tuple(begins), tuple(limits)
+        )
 
     @property
     def crossings(self) -> tuple[Crossing, ...]:
@@ -133,6 +147,10 @@ class Lanes:
         if length is None:
             length = self._lengths[lane] = _length(self.shape(lane))
         return length
+
+    def speed_limit(self, lane: str) -> float:
+        """What SUMO lets vehicles drive on a lane [m/s], whatever they are."""
+        return float(self._sumo.lane.getMaxSpeed(lane))
 
     def point(self, lane: str, position: float) -> tuple[float, float]:
         """x, y [m] of SUMO's ``position`` [m] on a lane, whose nominal length may be another."""
@@ -242,6 +260,16 @@ class Lanes:
                 inside = onwards[0][4] if onwards else ""
             found.append(Link(target, tuple(via)))
         return found
+
+    def _limits_inside(self, link: Link, station: float, end: Array) -> list[SpeedLimit]:
+        """The limits on the lanes of ``link``, which begins at ``station`` at ``end`` (1, 2)."""
+        limits = []
+        for name in link.via:
+            limits.append(SpeedLimit(station, self.speed_limit(name)))
+            shape = self.shape(name)
+            station += _length(np.concatenate([end, shape]))
+            end = shape[-1:]
+        return limits
 
     def _light(self, lane: str, link: Link) -> tuple[str, int] | None:
         """The traffic light that governs ``link``."""

@@ -35,6 +35,7 @@ class VehicleState:
     speed: float  # [m/s]
     length: float  # [m]
     width: float  # [m]
+    fastest: float  # [m/s] that its type is capable of
 
 
 class PlannedStop(NamedTuple):
@@ -131,6 +132,7 @@ class SumoVehicles:
             speed=float(vehicle.getSpeed(name)),
             length=float(vehicle.getLength(name)),
             width=float(vehicle.getWidth(name)),
+            fastest=float(vehicle.getMaxSpeed(name)),
         )
 
     def on_a_road(self, name: str) -> bool:

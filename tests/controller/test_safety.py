@@ -216,6 +216,19 @@ def test_a_vehicle_without_brakes_to_speak_of_stays_where_people_are():
     assert let_through(10.0, 5.0, NOBODY, **weak).acted is False
 
 
+@pytest.mark.parametrize("friction", [0.0, 500.0])
+def test_its_fastest_speed_is_what_full_braking_ends_in_20_s(friction):
+    model = LongitudinalModel(mass=10_000.0, friction=friction)
+    layer = SafetyLayer(model, SafetyParameters(force_limit=4000.0))
+    speeds = [layer.fastest]
+    while speeds[-1] > 0.0:  # the slower of the two motions that the layer holds for
+        lost = 4000.0 if friction == 0.0 else (4000.0 + friction * speeds[-1])
+        speeds.append(speeds[-1] - model.time_step * lost / model.mass)
+    assert len(speeds) * model.time_step == pytest.approx(20.0, abs=0.3)
+    delayed = SafetyLayer(model, SafetyParameters(force_limit=4000.0, reaction_time=2.0))
+    assert 0.0 < delayed.fastest < layer.fastest
+
+
 def test_its_braking_keeps_to_the_rate_limit_if_it_is_to():
     layer = SafetyLayer(MODEL, SafetyParameters(force_rate_limit=1000.0))
     blocked, still = np.array([[1.0, 0.0]]), np.zeros((1, 2))

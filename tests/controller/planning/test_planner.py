@@ -106,3 +106,27 @@ def test_a_hard_corridor_is_refused_if_and_only_if_braking_cannot_keep_it(
     elif bounded(replace(plain, room=plain.room - 1e-6), soft=False)[1]:  # else rounding decides
         assert found
         assert plan.found
+
+
+class Crossing:
+    """People on a collision course whatever is driven: a plan once made goes on for its cost."""
+
+    def prospect(self, manoeuvre):
+        return Prospect(FREE, np.ones(N), FREE)
+
+    def prefer(self):
+        pass
+
+
+@pytest.mark.parametrize("crowd", [None, Crossing()], ids=["nobody", "people about"])
+def test_lanes_speeds_are_kept_to_whatever_the_manoeuvre(crowd):
+    planner = Planner(MODEL, replace(FOLLOWING, gap_choice=True, reference_speed=10.0))
+    dt, speed, force = MODEL.time_step, 10.0, 10.0 * MODEL.friction
+    times = dt * np.arange(1, N + 1)
+    for k in range(60):
+        falling = np.maximum(11.0 - 2.0 * (k * dt + times), 6.0)
+        fastest = min(10.0, max(11.0 - 2.0 * k * dt, 6.0))
+        force = planner.plan(speed, force, fastest, FREE, crowd, falling).force
+        speed = MODEL.decay * speed + MODEL.speed_per_force * force
+        assert speed <= falling[0] + 1e-3
+    assert speed > 5.5

@@ -249,6 +249,33 @@ def test_an_ego_entry_overrides_its_own_keys_only() -> None:
     assert again.each_ego() == config.each_ego()
 
 
+@pytest.mark.parametrize("given", ["lane", 6.5, "6.5"])
+def test_the_reference_speed_is_a_number_or_the_lane_s(given: object) -> None:
+    entry = {"regulation": {"reference_speed": given}}
+    config = build_config([Layer("file", {"egos": [entry], **entry})])
+    expected = "lane" if given == "lane" else 6.5
+    assert config.regulation.reference_speed == expected
+    assert config.each_ego()[0].regulation.reference_speed == expected
+    again = build_config([Layer("dump", tomllib.loads(dump_toml(config)))])
+    assert again.regulation == config.regulation
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ("lanes", "expected a number or 'lane' "),
+        (61, "should be less than or equal to 60 "),
+        (0.05, "should be at least 0.1 "),
+    ],
+)
+def test_another_reference_speed_is_refused(given: object, expected: str) -> None:
+    entry = {"regulation": {"reference_speed": given}}
+    with pytest.raises(ConfigError, match=rf"^file: \[regulation\] reference_speed = .*{expected}"):
+        build_config([Layer("file", entry)])
+    with pytest.raises(ConfigError, match=rf"egos\[0\]: regulation.reference_speed = .*{expected}"):
+        build_config([Layer("file", {"egos": [entry]})])
+
+
 def test_several_vehicles_of_the_scenario_become_several_egos() -> None:
     config = RunConfig.model_validate({"ego": {"take_over": "b.1, c"}})
     assert [one.ego_id for one in config.each_ego()] == ["b.1", "c"]

@@ -41,6 +41,17 @@ def test_a_left_turn_is_one_continuous_line(crossroads: Path) -> None:
     assert jumps[jumps < 50].max() < 6
 
 
+def test_limits_begin_where_their_lanes_do(crossroads: Path) -> None:
+    with SumoSession(read_scenario(crossroads), StartOptions(), "<additional/>") as session:
+        path = session.lanes.along(["A1B1", "B1B2"], 0)
+        before, inside, *_ = path.limits
+        after = path.limits[-1]
+        assert (before.station, before.speed) == (0.0, session.lanes.speed_limit("A1B1_0"))
+        assert inside.station == pytest.approx(session.lanes.length("A1B1_0"))
+        assert inside.speed < before.speed  # netconvert limits the turn
+        assert after.station == path.edges[1]
+
+
 def test_lanes_that_do_not_connect_are_named(crossroads: Path) -> None:
     with (
         SumoSession(read_scenario(crossroads), StartOptions(), "<additional/>") as session,

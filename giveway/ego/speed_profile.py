@@ -1,0 +1,175 @@
+"""The speed of a free ego along its path, where its lanes say how fast: ``reference_speed = lane``.
+
+Three things cap it: the lanes' limits, the vehicle (what its controller may drive and its safety
+layer can stop from), and comfort in bends, v <= sqrt(a / curvature). Where the cap falls, a pass
+from the end of the path backwards lets the ego brake before that, no harder than is comfortable.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from controller import LongitudinalModel, SafetyLayer
+from giveway.config.option import LANE
+from giveway.ego.path_view import HALF, PathView
+from giveway.ego.waiting import WaitingEgo
+from giveway.errors import ScenarioError
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath
+from giveway.sumo.lanes import SpeedLimit
+
+LATERAL_ACCELERATION = 2.0
+"""[m/s^2] in a bend. Roads are laid out for the side friction that drivers still find comfortable:
+0.20 g at 30 mph (AASHTO, A Policy on Geometric Design of Highways and Streets, 2011, section 3.3).
+"""
+
+_STRAIGHT = 1e-9  # [1/m] of curvature at least, against a division by zero
+_SLOWEST = 0.1  # [m/s] below it, an ego would stand for ever
+_ROUNDING = 1e-9  # [m^2/s^2]
+_SPACING = 0.5  # [m] between the stations at which the profile is known
+_PREVIEW = 0.3  # [s] in which a controller follows a falling reference
+
+
+class SpeedProfile:
+    """How fast an ego is to drive at each station of its path, if nothing is in its way.
+
+    Args:
+        path: of the ego.
+        limits: of the lanes along it, in order.
+        length: of its body [m].
+        capable: speed [m/s] that the vehicle is to be driven at most, on any lane.
+        deceleration: b [m/s^2] of braking before a lower limit and before a bend.
+        departure: station [m] where it begins.
+
+    Attributes:
+        speeds: (k,) [m/s] at the stations 0, 0.5 m, 1 m, ...
+        fastest: the highest [m/s] from the departure on.
+    """
+
+    def __init__(
+        self,
+        path: EgoPath,
+        limits: Sequence[SpeedLimit],
+        *,
+        length: float,
+        capable: float,
+        deceleration: float,
+        departure: float = 0.0,
+    ) -> None:
+        self._deceleration = deceleration
+        stations: Array = _SPACING * np.arange(math.ceil(path.length / _SPACING) + 1.0)
+        bends = np.maximum(_curvature(path, length, stations), _STRAIGHT)
+        capped = np.minimum(_of_lanes(limits, stations), np.sqrt(LATERAL_ACCELERATION / bends))
+        capped = np.clip(capped, _SLOWEST, capable)
+        # Braking, v^2 falls by 2 b per metre: v^2 + 2 b s must nowhere be more than it is later on.
+        braking = 2.0 * deceleration * stations
+        squares = np.minimum.accumulate((capped**2 + braking)[::-1])[::-1] - braking
+        squares = np.where(squares < capped**2 - _ROUNDING, squares, capped**2)
+        self.speeds: Array = np.sqrt(squares)
+        self.fastest = float(self.speeds[int(departure / _SPACING) :].max())
+        self._squares: list[float] = squares.tolist()
+        durations = 2.0 * _SPACING / (self.speeds[1:] + self.speeds[:-1])
+        self._times: Array = np.concatenate([[0.0], np.cumsum(durations)])
+        self._stations = stations
+
+    def at(self, station: float) -> float:
+        """The speed [m/s] at ``station`` [m]; beyond the path's end that at its end."""
+        squares = self._squares
+        place = max(0.0, station) / _SPACING
+        i = int(place)
+        if i + 1 >= len(squares):
+            return math.sqrt(squares[-1])
+        return math.sqrt(squares[i] + (place - i) * (squares[i + 1] - squares[i]))
+
+    def limit(self, station: float, speed: float) -> float:
+        """The cap [m/s] of the controller's reference; inf where that is not below ``fastest``.
+
+        Args:
+            station: of the front bumper [m].
+            speed: of the ego [m/s]; the faster it is, the earlier the controller hears of a lower
+                speed ahead, for it follows with a lag.
+        """
+        lowest = min(self.at(station), self.at(station + _PREVIEW * speed))
+        return lowest if lowest < self.fastest else math.inf
+
+    def ahead(self, station: float, speed: float, times: Array) -> Array:
+        """(N,) [m/s] not to be exceeded at ``times`` (N,) [s] from now on, for a plan.
+
+        Args:
+            station: of the front bumper now [m].
+            speed: of the ego now [m/s]; one that is too high is given up with the deceleration b.
+            times: ascending.
+        """
+        now = np.interp(station, self._stations, self._times)
+        along = np.interp(now + times, self._times, self.speeds)
+        return np.maximum(along, speed - self._deceleration * times)
+
+
+def profile_of(
+    ego: WaitingEgo,
+    path: EgoPath,
+    limits: Sequence[SpeedLimit],
+    departure: float,
+    length: float,
+    capable: float,
+    time_step: float,
+) -> SpeedProfile | None:
+    """The profile of an ego whose lanes say how fast it drives; None: a number does.
+
+    Args:
+        ego: before its departure.
+        path: of the ego.
+        limits: of the lanes along it.
+        departure: station [m] of the front bumper.
+        length: of the body [m].
+        capable: speed [m/s] that the vehicle reaches.
+        time_step: of the co-simulation [s].
+
+    Raises:
+        ScenarioError: there are no lanes along the path.
+    """
+    config = ego.config
+    if config.regulation.reference_speed != LANE:
+        return None
+    if not limits:
+        raise ScenarioError(
+            f"[regulation] reference_speed = {LANE}: the path of ego '{ego.id}' follows no lanes; "
+            "expected a speed [m/s], like 4"
+        )
+    capable = min(capable, config.mpc.speed_max)
+    if ego.safety is not None:
+        vehicle = config.vehicle
+        model = LongitudinalModel(vehicle.mass, vehicle.friction, time_step)
+        capable = min(capable, SafetyLayer(model, ego.safety).fastest)
+    hardest = config.mpc.force_limit / config.vehicle.mass
+    return SpeedProfile(
+        path,
+        limits,
+        length=length,
+        capable=capable,
+        deceleration=min(config.regulation.comfortable_deceleration, hardest),
+        departure=departure,
+    )
+
+
+def _of_lanes(limits: Sequence[SpeedLimit], stations: Array) -> Array:
+    """(k,) [m/s] the lanes' limits at ``stations`` (k,); where two lanes meet, the lower one."""
+    speeds: Array = np.full(len(stations), math.inf)
+    begins = [limit.station for limit in limits]
+    for limit, end in zip(limits, [*begins[1:], math.inf], strict=True):
+        touched = (stations > limit.station - _SPACING) & (stations < end + _SPACING)
+        speeds[touched] = np.minimum(speeds[touched], limit.speed)
+    return speeds
+
+
+def _curvature(path: EgoPath, length: float, stations: Array) -> Array:
+    """(k,) [1/m] of the front's way, or of the body's turning if that is more: its rear follows."""
+    headings = np.unwrap([path.pose(station, length).heading for station in stations])
+    turning = np.abs(np.gradient(headings, stations))
+    view = PathView(path)  # whose means begin to rise half a window before a bend, and are half ...
+    means = [np.abs(view.curvature(stations + shift)) for shift in (-HALF, 0.0, HALF)]
+    sharpest: Array = np.maximum.reduce([turning, *means])  # ... of its curvature where it begins
+    return sharpest
