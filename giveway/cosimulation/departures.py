@@ -7,35 +7,24 @@ by its own check, as soon as there is, and it is taken over there.
 import difflib
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from giveway.config.option import LANE
-from giveway.config.sections import DEFAULT_SPEED
+from giveway.cosimulation.entrance import Entrance, initial_speed, require_way, shape_of
 from giveway.cosimulation.room import Entry, has_room
-from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
-from giveway.ego.controllers import make_controller
-from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
-from giveway.ego.lights import Lights
-from giveway.ego.speed_profile import profile_of
-from giveway.ego.stops import Stop, Stops
 from giveway.ego.waiting import WaitingEgo
 from giveway.errors import ConfigError, ScenarioError
-from giveway.geometry.bodies import BODY, VehicleShape
+from giveway.geometry.bodies import BODY
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.geometry.path import EgoPath
 from giveway.scenario_files import declares, flows_due, undeclared
 from giveway.sumo.lanes import LanePath
 from giveway.sumo.session import SumoSession
-from giveway.sumo.vehicles import VehicleState
 
 LONGEST_WAIT = 86_400.0  # [s] for a departure in a scenario that never ends
 LONGEST_WAIT_FOR_ROOM = 300.0  # [s] after which an ego that finds none ends the run
-_ON_THE_LINE = 0.01  # [m]
-_MERGE = 20.0  # [m] along which a vehicle beside its lane's centre line joins it
 _NAMES_KEPT = 100_000  # of vehicles that departed, to guess what was meant
 
 
@@ -59,7 +48,6 @@ class Departures:
         self.waiting = list(egos)
         self._session = session
         self._config_file = config_file
-        self._time_step = time_step
         for ego in egos:
             if ego.taken_over:
                 self._require_declared(ego.id)
@@ -70,7 +58,8 @@ class Departures:
         self._begin = session.time
         self._blocked: dict[str, float] = {}  # [s] since when an ego lacks room
         self._queued: set[str] = set()  # egos that SUMO is to insert
-        self.remarks: list[str] = []  # what the user should know
+        self._entrance = Entrance(session, time_step)
+        self.remarks = self._entrance.remarks  # what the user should know
 
     def _require_declared(self, name: str) -> None:
         """Refuse to wait for a vehicle that no file declares."""
@@ -184,7 +173,7 @@ class Departures:
         state, others = vehicles.state(ego.id), vehicles.everybody_but(ego.id)
         if not others.ids:
             return False
-        shape = _shape_of(ego, state)
+        shape = shape_of(ego, state)
         body = np.array([state.x, state.y, state.heading, shape.length, shape.width])
         touched = np.flatnonzero(rectangles_overlap(body, others.bodies))
         return any(not vehicles.parked(others.ids[i]) for i in touched)
@@ -211,8 +200,8 @@ class Departures:
             path,
             lane_path.first,
             config.ego.depart_position,
-            _shape_of(ego, BODY),
-            _initial_speed(ego, lane_path),
+            shape_of(ego, BODY),
+            initial_speed(ego, lane_path),
             config.mpc.force_limit / config.vehicle.mass,
         )
 
@@ -288,78 +277,14 @@ class Departures:
             settings.route, settings.lane, start=settings.depart_position
         )
         path = EgoPath.through(lane_path.points)
-        self._require_room(ego, path, settings.depart_position)
+        require_way(ego, path, settings.depart_position)
         return path, lane_path
 
-    def _require_room(self, ego: WaitingEgo, path: EgoPath, departure: float) -> None:
-        distance = ego.config.ego.travel_distance
-        if departure >= path.length - 1e-3:
-            raise ScenarioError(
-                f"ego '{ego.id}': its way is {path.length:.1f} m long and it departs at "
-                f"{departure:.1f} m; let it depart earlier or lengthen its route"
-            )
-        if distance is not None and departure + distance > path.length:
-            raise ScenarioError(
-                f"--ego-travel-distance {distance:g}: the way of ego '{ego.id}' is "
-                f"{path.length:.1f} m long and it departs at {departure:.1f} m; "
-                "shorten the distance or lengthen --ego-route"
-            )
-
-    # --- entering -----------------------------------------------------------------------------
-
     def _enter(self, ego: WaitingEgo) -> Ego:
-        if ego.taken_over or ego.id in self._queued:
-            return self._take_over(ego)
-        settings = ego.config.ego
-        path, lane_path = self._paths[ego.id]
-        speed = _initial_speed(ego, lane_path)
-        self._session.vehicles.insert(
-            ego.id,
-            settings.route,
-            lane=settings.lane or 0,
-            position=settings.depart_position,
-            speed=speed,
-        )
-        shape = _shape_of(ego, BODY)
-        return self._on_the_road(
-            ego, path, lane_path, settings.depart_position, shape, speed, math.inf
-        )
-
-    def _take_over(self, ego: WaitingEgo) -> Ego:
-        vehicles = self._session.vehicles
-        state = vehicles.state(ego.id)
-        shape = _shape_of(ego, state)
-        stops = vehicles.stops(ego.id)
-        keep = ego.config.ego.keep_stops
-        serves = state.kind in SERVING if keep is None else keep
-        places = placed(stops, state) if serves else {}
-        lane_path = self._session.lanes.along(
-            state.edges,
-            state.lane,
-            kind=state.kind,
-            start=state.lane_position,
-            by=lanes_of(places, stops),
-        )
-        path, departure, joined = _joined(lane_path, state)
-        self._require_room(ego, path, departure)
-        if ego.taken_over:
-            vehicles.adopt(state, shape)
-        else:
-            vehicles.claim(ego.id)
+        if not ego.taken_over and ego.id not in self._queued:
+            return self._entrance.insert(ego, *self._paths[ego.id])
         self._remark_on_wait(ego)
-        self._remark_on_stops(ego, len(places), len(stops))
-        speed = ego.config.ego.initial_speed
-        speed = state.speed if speed is None else speed
-        return self._on_the_road(
-            ego,
-            path,
-            joined,
-            departure,
-            shape,
-            speed,
-            state.fastest,
-            on_path(places, stops, path, joined, self._session.lanes),
-        )
+        return self._entrance.take_over(ego)
 
     def _remark_on_wait(self, ego: WaitingEgo) -> None:
         """Say how long the ego has waited for room, if it has."""
@@ -373,108 +298,3 @@ class Departures:
             place = f"on lane '{self._entry(ego).lane}'"
             text = f"there was no room {place} at {since:.12g} s; SUMO inserted it {waited}"
         self.remarks.append(f"ego '{ego.id}': {text}")
-
-    def _remark_on_stops(self, ego: WaitingEgo, served: int, stops: int) -> None:
-        """Say what becomes of the stops of a vehicle that is taken over."""
-        if served:
-            self.remarks.append(
-                f"ego '{ego.id}': it halts at {served} stop(s) for the scenario's times; nobody "
-                "boards or alights"
-            )
-        if stops > served:
-            self.remarks.append(
-                f"ego '{ego.id}': its {stops - served} stop(s) are left out; the vehicle FMU "
-                "drives on"
-            )
-
-    def _on_the_road(
-        self,
-        ego: WaitingEgo,
-        path: EgoPath,
-        lane_path: LanePath,
-        departure: float,
-        shape: VehicleShape,
-        speed: float,
-        capable: float,
-        stops: Sequence[Stop] = (),
-    ) -> Ego:
-        config = ego.config
-        profile = profile_of(
-            ego, path, lane_path.limits, departure, shape.length, capable, self._time_step
-        )
-        if profile is not None:
-            ego.controller = make_controller(config, self._time_step, profile.fastest)
-        hardest = config.mpc.force_limit / config.vehicle.mass
-        ego.start(speed)
-        goal = config.ego.travel_distance
-        lights = Lights(
-            lane_path.lights if config.regulation.traffic_lights else (),
-            comfortable=config.regulation.comfortable_deceleration,
-            hardest=hardest,
-        )
-        crossings = Crossings(
-            crossings_on(path, shape, self._session.lanes.crossings)
-            if config.heeds_priority
-            else (),
-            length=shape.length,
-            kerb_distance=config.regulation.kerb_distance,
-        )
-        halts = Stops(stops, clock=self._session.time, time_step=self._time_step, hardest=hardest)
-        return Ego(
-            ego,
-            path,
-            departure,
-            shape,
-            lights,
-            path.length - departure if goal is None else goal,
-            self._time_step,
-            halts if stops else None,
-            crossings,
-            profile,
-        )
-
-
-def _joined(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, LanePath]:
-    """The path of a vehicle that is taken over, its front bumper's station, and its lights.
-
-    As a rule the front bumper is on the lane's centre line. A vehicle beside it (one that changes
-    lanes, or is moved by SUMO's sublane model) joins the line within ``_MERGE``.
-    """
-    path = EgoPath.through(lane_path.points)
-    station, lateral = path.locate(state.x, state.y, near=state.lane_position)
-    if abs(lateral) <= _ON_THE_LINE:
-        return path, station, lane_path
-    share = (path.stations - station) / _MERGE
-    beside = path.vertices[share > 1.0]
-    joined = EgoPath.through([(state.x, state.y), *beside])
-    shift = joined.length - (path.length - station)
-    lights = [light._replace(station=light.station - station + shift) for light in lane_path.lights]
-    return (
-        joined,
-        0.0,
-        replace(
-            lane_path,
-            points=joined.vertices,
-            lights=tuple(lights),
-            edges=tuple(begin - station + shift for begin in lane_path.edges),
-            limits=tuple(
-                limit._replace(station=limit.station - station + shift)
-                for limit in lane_path.limits
-            ),
-        ),
-    )
-
-
-def _shape_of(ego: WaitingEgo, own: VehicleShape | VehicleState) -> VehicleShape:
-    """The ego's body: as wanted, or its ``own``."""
-    vehicle = ego.config.vehicle
-    return VehicleShape(vehicle.length or own.length, vehicle.width or own.width)
-
-
-def _initial_speed(ego: WaitingEgo, lane_path: LanePath) -> float:
-    """The speed [m/s] at which an ego that is inserted departs."""
-    speed = ego.config.ego.initial_speed
-    if speed is not None:
-        return speed
-    by_lane = ego.config.regulation.reference_speed == LANE
-    return min(DEFAULT_SPEED, lane_path.limits[0].speed) if by_lane else DEFAULT_SPEED

@@ -1,0 +1,230 @@
+"""How a waiting ego enters the road: inserted where its route says, or taken over where it is."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from giveway.config.option import LANE
+from giveway.config.sections import DEFAULT_SPEED
+from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
+from giveway.ego.controllers import make_controller
+from giveway.ego.crossings import Crossings, crossings_on
+from giveway.ego.ego import Ego
+from giveway.ego.lights import Lights
+from giveway.ego.speed_profile import profile_of
+from giveway.ego.stops import Stop, Stops
+from giveway.ego.waiting import WaitingEgo
+from giveway.errors import ScenarioError
+from giveway.geometry.bodies import BODY, VehicleShape
+from giveway.geometry.path import EgoPath
+from giveway.sumo.lanes import LanePath
+from giveway.sumo.session import SumoSession
+from giveway.sumo.vehicles import VehicleState
+
+_ON_THE_LINE = 0.01  # [m]
+_MERGE = 20.0  # [m] along which a vehicle beside its lane's centre line joins it
+
+
+class Entrance:
+    """Brings egos onto the road.
+
+    Args:
+        session: the running simulation.
+        time_step: [s] of the co-simulation.
+
+    Attributes:
+        remarks: what the user should know.
+    """
+
+    def __init__(self, session: SumoSession, time_step: float) -> None:
+        self._session = session
+        self._time_step = time_step
+        self.remarks: list[str] = []
+
+    def insert(self, ego: WaitingEgo, path: EgoPath, lane_path: LanePath) -> Ego:
+        """Put an ego where its route begins.
+
+        Args:
+            ego: before its departure.
+            path: of it.
+            lane_path: that the path was made of.
+        """
+        settings = ego.config.ego
+        speed = initial_speed(ego, lane_path)
+        self._session.vehicles.insert(
+            ego.id,
+            settings.route,
+            lane=settings.lane or 0,
+            position=settings.depart_position,
+            speed=speed,
+        )
+        shape = shape_of(ego, BODY)
+        return self._on_the_road(
+            ego, path, lane_path, settings.depart_position, shape, speed, math.inf
+        )
+
+    def take_over(self, ego: WaitingEgo) -> Ego:
+        """Take a vehicle that SUMO drives over as an ego: the scenario's, or one SUMO inserted."""
+        vehicles = self._session.vehicles
+        state = vehicles.state(ego.id)
+        shape = shape_of(ego, state)
+        stops = vehicles.stops(ego.id)
+        keep = ego.config.ego.keep_stops
+        serves = state.kind in SERVING if keep is None else keep
+        places = placed(stops, state) if serves else {}
+        lane_path = self._session.lanes.along(
+            state.edges,
+            state.lane,
+            kind=state.kind,
+            start=state.lane_position,
+            by=lanes_of(places, stops),
+        )
+        path, departure, joined = _joined(lane_path, state)
+        require_way(ego, path, departure)
+        if ego.taken_over:
+            vehicles.adopt(state, shape)
+        else:
+            vehicles.claim(ego.id)
+        self._remark_on_stops(ego, len(places), len(stops))
+        speed = ego.config.ego.initial_speed
+        speed = state.speed if speed is None else speed
+        return self._on_the_road(
+            ego,
+            path,
+            joined,
+            departure,
+            shape,
+            speed,
+            state.fastest,
+            on_path(places, stops, path, joined, self._session.lanes),
+        )
+
+    def _remark_on_stops(self, ego: WaitingEgo, served: int, stops: int) -> None:
+        """Say what becomes of the stops of a vehicle that is taken over."""
+        if served:
+            self.remarks.append(
+                f"ego '{ego.id}': it halts at {served} stop(s) for the scenario's times; nobody "
+                "boards or alights"
+            )
+        if stops > served:
+            self.remarks.append(
+                f"ego '{ego.id}': its {stops - served} stop(s) are left out; the vehicle FMU "
+                "drives on"
+            )
+
+    def _on_the_road(
+        self,
+        ego: WaitingEgo,
+        path: EgoPath,
+        lane_path: LanePath,
+        departure: float,
+        shape: VehicleShape,
+        speed: float,
+        capable: float,
+        stops: Sequence[Stop] = (),
+    ) -> Ego:
+        config = ego.config
+        profile = profile_of(
+            ego, path, lane_path.limits, departure, shape.length, capable, self._time_step
+        )
+        if profile is not None:
+            ego.controller = make_controller(config, self._time_step, profile.fastest)
+        hardest = config.mpc.force_limit / config.vehicle.mass
+        ego.start(speed)
+        goal = config.ego.travel_distance
+        lights = Lights(
+            lane_path.lights if config.regulation.traffic_lights else (),
+            comfortable=config.regulation.comfortable_deceleration,
+            hardest=hardest,
+        )
+        crossings = Crossings(
+            crossings_on(path, shape, self._session.lanes.crossings)
+            if config.heeds_priority
+            else (),
+            length=shape.length,
+            kerb_distance=config.regulation.kerb_distance,
+        )
+        halts = Stops(stops, clock=self._session.time, time_step=self._time_step, hardest=hardest)
+        return Ego(
+            ego,
+            path,
+            departure,
+            shape,
+            lights,
+            path.length - departure if goal is None else goal,
+            self._time_step,
+            halts if stops else None,
+            crossings,
+            profile,
+        )
+
+
+def require_way(ego: WaitingEgo, path: EgoPath, departure: float) -> None:
+    """Make sure that an ego's way is as long as it is to drive.
+
+    Args:
+        ego: before its departure.
+        path: of it.
+        departure: station [m] at which it enters.
+
+    Raises:
+        ScenarioError: it is not.
+    """
+    distance = ego.config.ego.travel_distance
+    if departure >= path.length - 1e-3:
+        raise ScenarioError(
+            f"ego '{ego.id}': its way is {path.length:.1f} m long and it departs at "
+            f"{departure:.1f} m; let it depart earlier or lengthen its route"
+        )
+    if distance is not None and departure + distance > path.length:
+        raise ScenarioError(
+            f"--ego-travel-distance {distance:g}: the way of ego '{ego.id}' is "
+            f"{path.length:.1f} m long and it departs at {departure:.1f} m; "
+            "shorten the distance or lengthen --ego-route"
+        )
+
+
+def _joined(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, LanePath]:
+    """The path of a vehicle that is taken over, its front bumper's station, and its lights.
+
+    As a rule the front bumper is on the lane's centre line. A vehicle beside it (one that changes
+    lanes, or is moved by SUMO's sublane model) joins the line within ``_MERGE``.
+    """
+    path = EgoPath.through(lane_path.points)
+    station, lateral = path.locate(state.x, state.y, near=state.lane_position)
+    if abs(lateral) <= _ON_THE_LINE:
+        return path, station, lane_path
+    share = (path.stations - station) / _MERGE
+    beside = path.vertices[share > 1.0]
+    joined = EgoPath.through([(state.x, state.y), *beside])
+    shift = joined.length - (path.length - station)
+    lights = [light._replace(station=light.station - station + shift) for light in lane_path.lights]
+    return (
+        joined,
+        0.0,
+        replace(
+            lane_path,
+            points=joined.vertices,
+            lights=tuple(lights),
+            edges=tuple(begin - station + shift for begin in lane_path.edges),
+            limits=tuple(
+                limit._replace(station=limit.station - station + shift)
+                for limit in lane_path.limits
+            ),
+        ),
+    )
+
+
+def shape_of(ego: WaitingEgo, own: VehicleShape | VehicleState) -> VehicleShape:
+    """The ego's body: as wanted, or its ``own``."""
+    vehicle = ego.config.vehicle
+    return VehicleShape(vehicle.length or own.length, vehicle.width or own.width)
+
+
+def initial_speed(ego: WaitingEgo, lane_path: LanePath) -> float:
+    """The speed [m/s] at which an ego that is inserted departs."""
+    speed = ego.config.ego.initial_speed
+    if speed is not None:
+        return speed
+    by_lane = ego.config.regulation.reference_speed == LANE
+    return min(DEFAULT_SPEED, lane_path.limits[0].speed) if by_lane else DEFAULT_SPEED
