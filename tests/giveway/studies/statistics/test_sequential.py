@@ -127,7 +127,7 @@ def test_interval_at_the_stop_covers_nearly_as_often_as_it_says(
     width = 2.0 * 1.96 * deviation / np.sqrt(300.0)
     rule = Precision(width=width)
     hits, stops = 0, []
-    for study in range(600):
+    for study in range(300):
         differences = draw(np.random.default_rng(study))
         for seeds in looks(rule, differences.size):
             found = mean_interval(
@@ -137,5 +137,5 @@ def test_interval_at_the_stop_covers_nearly_as_often_as_it_says(
                 break
         hits += found.low <= true <= found.high
         stops.append(seeds)
-    assert 0.92 <= hits / 600 <= 0.97
+    assert 0.92 <= hits / 300 <= 0.97
     assert 280 <= np.mean(stops) <= 380
