@@ -15,7 +15,8 @@ not isolated once more; a case that dies is typed again as a user does, and that
 One line of ``FOLDER/seed_1.jsonl`` per case: what is done is not done again, but with ``--again``
 what was not civil, since it may have been mended. The inputs of cases that are not civil stay in
 ``FOLDER/cases``; so does that of ``--only``. The end prints a table and every case that is not
-civil; the exit code tells whether there is any. Linux and macOS.
+civil; the exit code tells whether there is any. A case that is busy for a minute is tried once more
+with five: a scenario may be slow without hanging. Linux and macOS.
 """
 
 from __future__ import annotations
@@ -40,7 +41,8 @@ from campaign_verdicts import BAD, Verdict, judge, read_verdicts
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-LIMIT: Final = 60  # [s] for one case
+LIMIT: Final = 60  # [s] for one case; and
+PATIENCE: Final = 5  # times as long for one that is not done then: SUMO's step may be 1 ms
 
 
 def try_case(
@@ -56,9 +58,12 @@ def try_case(
         folder: for the input, which stays there.
         limit: [s] for the command.
     """
-    case = make_case(seed, number, bases, folder)
     began = monotonic()
-    ended = nursery.type(case.words, folder, limit)
+    for patience in (1, PATIENCE):
+        case = make_case(seed, number, bases, folder)
+        ended = nursery.type(case.words, folder, patience * limit)
+        if not ended.hung:
+            break
     original = bases.study if case.kind == "records" else None
     return judge(case, ended, monotonic() - began, original)
 

@@ -14,7 +14,6 @@ import importlib
 import json
 import os
 import pkgutil
-import resource
 import signal
 import subprocess
 import sys
@@ -144,6 +143,8 @@ def _warm_up() -> None:
 
 def _become(request: dict[str, Any]) -> None:
     """Be the command that is asked for, and end with it."""
+    import resource  # Windows has none, nor any fork
+
     code = 1
     try:
         os.setpgid(0, 0)

@@ -26,7 +26,7 @@ _NAMES = (
     "m", "R", "two_R", "r_max", "d_rep", "s_rep_2", "a_rep", "b_rep", "k_col", "d_nav", "s_nav_2",
     "decay_0", "decay_1", "decay_2", "decay_3", "cos_pi_8", "sin_pi_8",
     # vehicle influence
-    "le", "dx0", "alpha_x", "A", "b", "a_v", "b_v", "cap", "u_static", "reach",
+    "le", "dx0", "alpha_x", "A", "b", "a_v", "b_v", "cap", "u_static", "u_angle", "reach",
     # walls
     "A_w", "b_w",
     # destination, limits
@@ -42,12 +42,13 @@ def _exp(x: float) -> float:
 
 
 @lru_cache(maxsize=32)
-def pack(parameters: VciParameters, *, detour: bool = True) -> NDArray[Any]:
+def pack(parameters: VciParameters, *, detour: bool = True, creep: bool = True) -> NDArray[Any]:
     """The constants of the kernels for ``parameters``: a read-only array of one record.
 
     Args:
         parameters: of the model.
         detour: whether people see a way round a standing car.
+        creep: whether the angle of f_v takes a car below the static speed to move.
     """
     p = parameters
     l_nav = p.navigation_anisotropy
@@ -82,6 +83,7 @@ def pack(parameters: VciParameters, *, detour: bool = True) -> NDArray[Any]:
         "b_v": (1.0 - p.vehicle_anisotropy) / 2.0,
         "cap": p.vehicle_exponent_cap,
         "u_static": p.static_speed,
+        "u_angle": 0.0 if creep else p.static_speed,  # below it phi_v takes a car to stand
         "reach": p.body_radius
         + math.ceil(math.log(max(p.vehicle_strength / LEAST_FORCE, 1.0))) / p.vehicle_decay,
         "A_w": p.wall_strength,

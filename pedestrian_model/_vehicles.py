@@ -103,6 +103,8 @@ def add_vehicle(
     cos, sin = cosine_sine(vehicle[HEADING])
     u_x, u_y = vehicle[SPEED] * cos, vehicle[SPEED] * sin
     x_v, y_v = vehicle[X] + travelled * u_x, vehicle[Y] + travelled * u_y
+    if abs(vehicle[SPEED]) < c.u_angle:
+        u_x, u_y = 0.0, 0.0
     contour = _contour(vehicle, c)
     # In reverse the contour is mirrored: its nose points backwards.
     nose_x, nose_y = (-cos, -sin) if vehicle[SPEED] < 0.0 else (cos, sin)

@@ -80,6 +80,8 @@ class CrowdModel:
             are beyond 332, where the ring no longer fits its buffer).
         detour: whether people see the way round a standing car (ours), or walk into its side and
             stay there, as by the published forces alone.
+        creep: whether the angle of a vehicle's force takes it to move below the static speed
+            too, or to stand, as its contour does.
 
     Raises:
         ParameterError: if the time step is not positive and finite, or makes speeds swing.
@@ -92,6 +94,7 @@ class CrowdModel:
         *,
         cell_list_from: int = CELL_LIST_FROM,
         detour: bool = True,
+        creep: bool = True,
     ) -> None:
         require_steady(parameters, time_step)
         self.parameters = parameters
@@ -99,7 +102,7 @@ class CrowdModel:
         self.cell_list_from = int(cell_list_from)
         self._substeps = substeps(self.time_step)
         self._dt = self.time_step / self._substeps
-        self._constants = pack(parameters, detour=detour)
+        self._constants = pack(parameters, detour=detour, creep=creep)
         self._workspace = Workspace()
 
     def step(

@@ -28,6 +28,8 @@ class Predictor:
         cell_list_from: the crowd size from which neighbours are found by a cell list.
         detour: whether people see the way round a standing car (ours), or walk into its side and
             stay there, as by the published forces alone.
+        creep: whether the angle of a vehicle's force takes it to move below the static speed
+            too, or to stand, as its contour does.
 
     Raises:
         ParameterError: if the time step or the horizon is not positive, or speeds would swing.
@@ -41,6 +43,7 @@ class Predictor:
         *,
         cell_list_from: int = CELL_LIST_FROM,
         detour: bool = True,
+        creep: bool = True,
     ) -> None:
         if horizon < 1:
             raise ParameterError(f"horizon = {horizon} steps, expected at least 1")
@@ -51,7 +54,7 @@ class Predictor:
         self.cell_list_from = int(cell_list_from)
         self._substeps = substeps(self.time_step)
         self._dt = self.time_step / self._substeps
-        self._constants = pack(parameters, detour=detour)
+        self._constants = pack(parameters, detour=detour, creep=creep)
         self._workspace = Workspace()
         self._capacity = -1
         self._reserve(0)

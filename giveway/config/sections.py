@@ -243,6 +243,11 @@ class CrowdConfig(Section):
         None,
         "people see the way round a standing car; else they may walk into its side and stay there",
     )
+    creep: bool = option(
+        True,
+        None,
+        "below 0.2 m/s the angle of a car's force has its true speed; else it stands for that too",
+    )
 
     @model_validator(mode="after")
     def _ordered(self) -> CrowdConfig:

@@ -141,7 +141,10 @@ def assemble(
         departures=departures,
         roster=roster,
         crowd_model=CrowdModel(
-            parameters_of(config.crowd.preset), time_step, detour=config.crowd.detour
+            parameters_of(config.crowd.preset),
+            time_step,
+            detour=config.crowd.detour,
+            creep=config.crowd.creep,
         ),
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,

@@ -91,8 +91,8 @@ def make_waiting_ego(
     except FmuError as error:
         raise VehicleError(str(error)) from error
     ahead = controller.horizon
-    detour = config.crowd.detour
-    predictor = Predictor(expected, time_step, ahead, detour=detour) if ahead else None
+    readings = {"detour": config.crowd.detour, "creep": config.crowd.creep}
+    predictor = Predictor(expected, time_step, ahead, **readings) if ahead else None
     fastest = max(crowd.max_speed, expected.max_speed)
     safety = safety_parameters(config, time_step) if config.safety_layer else None
     return WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety)

@@ -70,7 +70,7 @@ def state_figure(
             quiet_grid(axes)
         _draw_speed(speed, ego)
         _draw_gap(gap, ego, safe_distance, buffer_distance)
-        _draw_force(force, ego)
+        draw_force(force, ego)
         speed.set_title(label)
         force.set_xlabel("Time [s]")
     _scale(grid, [ego for _, ego in columns], safe_distance + buffer_distance)
@@ -150,7 +150,8 @@ def draw_safe_distances(axes: Axes, safe_distance: float, buffer_distance: float
         )  # fmt: skip
 
 
-def _draw_force(axes: Axes, ego: EgoTrack) -> None:
+def draw_force(axes: Axes, ego: EgoTrack) -> None:
+    """The force [kN] over time, zero as a line."""
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     axes.step(
         ego.time, ego.force / 1000.0, where="post", color=VERMILION, label="force",
@@ -169,11 +170,16 @@ def _scale(grid: np.ndarray, egos: Sequence[EgoTrack], distance: float) -> None:
     others = any(np.isfinite((ego.vehicle_gap, ego.stop_gap)).any() for ego in egos)
     nearest = gaps.min(initial=0.0)
     farthest = gaps.max(initial=max(distance, LEAST_DISTANCE_SHOWN) if others else distance)
+    grid[1, 0].set_ylim(1.1 * nearest, 1.1 * farthest)
+    scale_force(grid[2, 0], egos)
+
+
+def scale_force(axes: Axes, egos: Sequence[EgoTrack]) -> None:
+    """Limits of a panel of forces in which all runs and zero have room."""
     weakest = min(min(0.0, ego.force.min()) for ego in egos) / 1000.0
     strongest = max(max(0.0, ego.force.max()) for ego in egos) / 1000.0
     room = 0.08 * max(strongest - weakest, 0.1)
-    grid[1, 0].set_ylim(1.1 * nearest, 1.1 * farthest)
-    grid[2, 0].set_ylim(weakest - room, strongest + room)
+    axes.set_ylim(weakest - room, strongest + room)
 
 
 def scale_time_and_speed(axes: Axes, egos: Sequence[EgoTrack]) -> None:

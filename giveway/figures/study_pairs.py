@@ -1,4 +1,4 @@
-"""A pair of runs on the same crowd: speed and gap of treatment and baseline side by side.
+"""A pair of runs on the same crowd: speed, gap and force of treatment and baseline side by side.
 
 After figure 5 of Yang & Özgüner 2019 (MPC on the left, PID on the right).
 """
@@ -15,13 +15,15 @@ from matplotlib.lines import Line2D
 from giveway.figures.state import (
     DASHES,
     DOTS,
+    draw_force,
     draw_safe_distances,
     phase_handles,
+    scale_force,
     scale_time_and_speed,
     shade_phases,
 )
 from giveway.figures.study_rows import wrapped
-from giveway.figures.style import BLACK, BLUE, GREEN, GREY, quiet_grid, styled
+from giveway.figures.style import BLACK, BLUE, GREEN, GREY, VERMILION, quiet_grid, styled
 from giveway.records.tracks import EgoTrack
 
 
@@ -44,7 +46,7 @@ class PairSide:
 
 @styled
 def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
-    """Speed with its reference, gap with d_safe, and the acting controller, on the same scales.
+    """Speed with its reference, gap with d_safe, force, and who acts, on the same scales.
 
     Args:
         sides: normally two, the treatment first.
@@ -55,18 +57,20 @@ def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
     """
     if not sides or any(not side.ego.time.size for side in sides):
         raise ValueError("pair: a run has no instants; pass tracks of at least one")
-    figure = Figure(figsize=(0.6 + 4.4 * len(sides), 4.4), layout="constrained")
-    grid = figure.subplots(2, len(sides), sharex=True, sharey="row", squeeze=False)
-    for (speed, gap), side in zip(grid.T, sides, strict=True):
-        for axes in (speed, gap):
+    figure = Figure(figsize=(0.6 + 4.4 * len(sides), 6.0), layout="constrained")
+    grid = figure.subplots(3, len(sides), sharex=True, sharey="row", squeeze=False)
+    for (speed, gap, force), side in zip(grid.T, sides, strict=True):
+        for axes in (speed, gap, force):
             quiet_grid(axes)
             shade_phases(axes, side.ego)
         _draw_speed(speed, side.ego)
         _draw_gap(gap, side)
+        draw_force(force, side.ego)
         speed.set_title(wrapped(side.label, 50))
-        gap.set_xlabel("Time [s]")
+        force.set_xlabel("Time [s]")
     grid[0, 0].set_ylabel("Speed [m/s]")
     grid[1, 0].set_ylabel("Gap in front [m]")
+    grid[2, 0].set_ylabel("Force [kN]")
     _scale(grid, sides)
     figure.align_ylabels(grid[:, 0])
     figure.suptitle(wrapped(title, 100))
@@ -96,6 +100,7 @@ def _scale(grid: np.ndarray, sides: Sequence[PairSide]) -> None:
     """One scale for both runs, zero on it."""
     egos = [side.ego for side in sides]
     scale_time_and_speed(grid[0, 0], egos)
+    scale_force(grid[2, 0], egos)
     gaps = np.concatenate([e.gap[np.isfinite(e.gap)] for e in egos])
     farthest = max(side.safe_distance + side.buffer_distance for side in sides)
     grid[1, 0].set_ylim(1.1 * gaps.min(initial=0.0), 1.1 * gaps.max(initial=farthest))
@@ -106,6 +111,7 @@ def _legend(sides: Sequence[PairSide]) -> list[Artist]:
         Line2D([], [], color=BLUE, label="speed"),
         Line2D([], [], color=BLACK, linewidth=0.9, linestyle=DASHES, label="reference speed"),
         Line2D([], [], color=GREEN, label="gap"),
+        Line2D([], [], color=VERMILION, linewidth=1.2, label="force"),
         Line2D([], [], color=GREY, linewidth=0.9, linestyle=DASHES, label="d_safe"),
     ]
     if any(side.buffer_distance > 0.0 for side in sides):

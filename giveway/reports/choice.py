@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from giveway.reports.pairing import DIFFERENCE, paired
+from giveway.reports.pairing import BASELINE, DIFFERENCE, paired
 from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import metric
 
@@ -20,7 +20,7 @@ class ExamplePair:
     """Two runs on the same crowd, side by side.
 
     Attributes:
-        reason: why it is shown: median, best, worst or stop-and-wait.
+        reason: why it is shown: median (with a stop), best, worst or stop-and-wait.
         context: label of the other factors' levels; empty without any.
         ego: its id; empty where a run has none.
         treatment: label of the compared level.
@@ -96,7 +96,8 @@ def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
     """Pairs that show what the differences are made of: median, best, worst, one that waits.
 
     They are of the first context, ego and treatment that have pairs; the waiting pair is of a
-    later context where the first has none. A pair is shown once.
+    later context where the first has none. The median is that of the pairs in which at least one
+    car stops, as far as there are any: in the others hardly anything happens. A pair is shown once.
 
     Args:
         study: its runs, design and definition are read.
@@ -112,18 +113,29 @@ def example_pairs(study: StudyFolder, count: int = 4) -> list[ExamplePair]:
     here = pairs[pairs["context"] == head["context"]]
     waiting = pairs[pairs["situation"] == "stop-and-wait"]
     waiting = waiting[waiting["context"].isin(waiting["context"].iloc[:1])]
-    by_time, by_wait = here[name + DIFFERENCE], waiting["longest_wait" + DIFFERENCE]
+    by_time = here[name + DIFFERENCE]
     chosen: list[ExamplePair] = []
-    for reason, table, by, cost in (
-        ("median", here, name, (by_time - by_time.median()).abs()),
-        ("best", here, name, by_time),
-        ("worst", here, name, -by_time),
-        ("stop-and-wait", waiting, "longest_wait", (by_wait - by_wait.median()).abs()),
-    ):
-        free = ~table["run"].isin([pair.run for pair in chosen])
-        best = _smallest(cost.where(free).to_numpy(float), 1)
-        chosen += [_example(reason, table.iloc[place], by) for place in best]
+    _add(chosen, "best", here, name, by_time)
+    _add(chosen, "worst", here, name, -by_time)
+    extremes = len(chosen)
+    stops = (here["stops"] > 0) | (here["stops" + BASELINE] > 0)
+    for reason, table in (("median with a stop", here[stops]), ("median", here)):
+        if len(chosen) == extremes:
+            middle = table[name + DIFFERENCE]
+            _add(chosen, reason, table, name, (middle - middle.median()).abs())
+    chosen = [*chosen[extremes:], *chosen[:extremes]]  # what is typical stands first
+    by_wait = waiting["longest_wait" + DIFFERENCE]
+    _add(chosen, "stop-and-wait", waiting, "longest_wait", (by_wait - by_wait.median()).abs())
     return chosen[: max(count, 0)]
+
+
+def _add(
+    chosen: list[ExamplePair], reason: str, table: pd.DataFrame, by: str, cost: pd.Series
+) -> None:
+    """The pair of least cost, if there is one that has not been chosen."""
+    free = ~table["run"].isin([pair.run for pair in chosen])
+    best = _smallest(cost.where(free).to_numpy(float), 1)
+    chosen += [_example(reason, table.iloc[place], by) for place in best]
 
 
 def deciding_metric(pairs: pd.DataFrame) -> str:

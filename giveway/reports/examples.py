@@ -12,6 +12,7 @@ from giveway.studies.statistics import metric
 
 TITLES = {
     "median": "A typical pair",
+    "median with a stop": "A typical pair of those in which a car stops",
     "best": "Where the treatment gains most",
     "worst": "Where the treatment loses most",
     "stop-and-wait": "Both stop and wait",
@@ -72,6 +73,6 @@ def _picture(pair: ExamplePair, sides: Sequence[PairSide], number: int) -> Pictu
         name=f"example{mark}",
         section="examples",
         caption=caption,
-        alt=f"Speed and gap of both runs over time; {ends}.",
+        alt=f"Speed, gap and force of both runs over time; {ends}.",
         figure=pair_figure(sides, title=f"{where}seed {pair.seed}"),
     )

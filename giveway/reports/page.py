@@ -73,7 +73,7 @@ def write_report(
 
     Args:
         study: its folder, read.
-        examples: pairs of which speed and gap are drawn, at most; 0: none.
+        examples: pairs of which speed, gap and force are drawn, at most; 0: none.
         worst: runs that are listed, for each reason.
         rerun: makes a run again, by its id, for the examples; None: the report has no examples.
         replay: gives the page that plays a run, by its id, or None; None: no links.

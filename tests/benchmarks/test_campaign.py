@@ -20,6 +20,8 @@ from campaign_nursery import Ended, Nursery
 from campaign_verdicts import TABLES, judge
 
 SEED = 100
+LIMIT = campaign.PATIENCE * campaign.LIMIT  # [s] for what takes less than one
+ALARM = getattr(signal, "SIGALRM", 14)
 SAMPLE = {  # a hundred cases; those of studies take longest
     "scenario": 22,
     "settings": 22,
@@ -65,7 +67,7 @@ def test_a_hundred_mutated_inputs_are_met_with_civility(
     assert SAMPLE.keys() == KINDS.keys()
     outcomes: Counter[str] = Counter()
     for case in of_each_kind(bases, tmp_path, SAMPLE):
-        ended = nursery.type(case.words, case.folder, campaign.LIMIT)
+        ended = nursery.type(case.words, case.folder, LIMIT)
         verdict = judge(case, ended, 0.0, bases.study if case.kind == "records" else None)
         assert not verdict.bad, verdict
         outcomes[verdict.outcome] += 1
@@ -78,7 +80,7 @@ def test_what_is_not_mutated_is_not_refused(
     monkeypatch.setattr(campaign_kinds, "mutate", lambda _, content, __: (content, ""))
     monkeypatch.setattr(campaign_kinds, "_broken", lambda *_: "")
     for case in of_each_kind(bases, tmp_path, dict.fromkeys(KINDS, 1)):
-        ended = nursery.type(case.words, case.folder, campaign.LIMIT)
+        ended = nursery.type(case.words, case.folder, LIMIT)
         assert ended.code == 0, (case, ended.err)
 
 
@@ -114,7 +116,7 @@ TRACEBACK = 'Traceback (most recent call last):\n  File "x.py"\nValueError: x\n'
         (ended(1), "mute"),
         (ended(1, TRACEBACK), "traceback"),
         (ended(0, out=TRACEBACK), "traceback"),
-        (ended(-signal.SIGALRM), "hang"),
+        (ended(-ALARM), "hang"),
     ],
 )
 def test_the_verdict_on_an_end(tmp_path: Path, end: Ended, outcome: str) -> None:

@@ -165,3 +165,18 @@ def test_without_the_detour_a_walker_stays_at_the_side_of_a_standing_car(walkers
     assert ends[False] < -1.0
     steps = [CrowdModel(detour=detour).step(crowd, driving) for detour in (True, False)]
     assert steps[0].velocity.tobytes() == steps[1].velocity.tobytes()
+
+
+def test_a_creeping_car_counts_as_standing_for_the_angle_of_its_force_if_it_is_to(walkers):
+    """Its contour does in any case; at 0.2 m/s and above both models take the same step."""
+    crowd = walkers([(1.0, -2.0), (-1.0, 3.0)], [(1.0, 9.0), (-1.0, -9.0)])
+
+    def after(speed, **reading):
+        step = CrowdModel(**reading).step(crowd, Vehicles.create(0.0, 0.0, 0.3, speed))
+        return step.velocity.tobytes()
+
+    for speed in (0.19, -0.19):
+        assert after(speed, creep=False) == after(0.0)
+        assert after(speed) != after(0.0)
+    for speed in (0.0, 0.2, 2.0):
+        assert after(speed, creep=False) == after(speed)

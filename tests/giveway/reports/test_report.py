@@ -324,6 +324,14 @@ class TestChoice:
                 f"c{2 if '30' in pair.context else 4}-s{pair.seed}",
             )
 
+    @pytest.mark.parametrize(("stops", "reason"), [(1, "median with a stop"), (0, "median")])
+    def test_the_typical_pair_is_one_with_a_stop_if_there_is_any(self, changed, stops, reason):
+        def same(record):
+            return replace(record, rows=tuple({**r, "stops": stops} for r in record.rows))
+
+        pairs = example_pairs(changed(same))
+        assert [pair.reason for pair in pairs[:3]] == [reason, "best", "worst"]
+
     def test_no_pair_is_shown_twice(self, study):
         runs = [pair.run for pair in example_pairs(study)]
         assert len(set(runs)) == len(runs)
