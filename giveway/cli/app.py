@@ -181,6 +181,7 @@ def _scenarios() -> None:
 def _build_plot() -> typer.Typer:
     plot = typer.Typer(help="Draw figures.", no_args_is_help=True)
     plot.command("influence")(_influence)
+    plot.command("reference")(_reference)
     plot.callback()(_plot)
     return plot
 
@@ -204,3 +205,14 @@ def _influence(
     from giveway.cli.plot import influence_command
 
     influence_command(out, speeds, preset=preset, length=length, width=width)
+
+
+def _reference(
+    out: Annotated[Path, typer.Option(help="Picture to write: .png, .svg or .pdf.")] = Path(
+        "reference.png"
+    ),
+) -> None:
+    """Draw both PIDs' reference speed over the gap (figure 3 of Yang & Özgüner 2019)."""
+    from giveway.cli.plot import reference_command
+
+    reference_command(out)

@@ -5,10 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
-from giveway.cli.printing import print_place, writing
+from giveway.cli.printing import escape, print_place, writing
 from giveway.cli.progress import counting
 from giveway.config.presets import SUFFIX, parameters_of, preset_text
 from giveway.errors import ConfigError, ResultsError

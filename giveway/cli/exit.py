@@ -15,11 +15,15 @@ def fail(message: str, code: int) -> int:
     The message may quote a user's file, or SUMO that quotes it: what is not visible would steer
     the terminal, and a word of a thousand letters hide the rest of the line.
     """
-    line = " ".join(map(_shortened, message.split()))
-    visible = "".join(letter if letter.isprintable() else "?" for letter in line)
+    line = visible(" ".join(map(_shortened, message.split())))
     with contextlib.suppress(OSError):  # its terminal has been closed
-        sys.stderr.write(f"error: {visible}\n")
+        sys.stderr.write(f"error: {line}\n")
     return code
+
+
+def visible(text: str) -> str:
+    """``text`` with a question mark for what would steer a terminal; its lines stay lines."""
+    return "".join(c if c.isprintable() or c == "\n" else "?" for c in text)
 
 
 def _shortened(word: str) -> str:

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rich.console import Console
-from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.table import Table
 from rich.text import Text
@@ -18,7 +17,7 @@ from fmus.profile.preparation import choose_profile, prepare
 from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
-from giveway.cli.printing import print_place, writing
+from giveway.cli.printing import escape, print_place, writing
 from giveway.errors import ConfigError, VehicleError
 
 

@@ -3,12 +3,14 @@
 import math
 from pathlib import Path
 
+from matplotlib.figure import Figure
 from rich.console import Console
 
+from controller import Pid, TunedPid
 from giveway.cli.printing import print_place, writing
 from giveway.config.presets import parameters_of
 from giveway.errors import ConfigError
-from giveway.figures import save_figure
+from giveway.figures import reference_figure, save_figure
 from giveway.geometry.bodies import VehicleShape
 from giveway.results.pictures import influence_picture
 
@@ -26,10 +28,36 @@ def influence_command(out: Path, speeds: str, *, preset: str, length: float, wid
     for flag, value in (("--length", length), ("--width", width)):
         if not (math.isfinite(value) and 0.0 < value <= 50.0):
             raise ConfigError(f"{flag} {value}: expected a number between 0 and 50 [m]")
-    if out.suffix.lower() not in _SUFFIXES:
-        raise ConfigError(f"--out {out}: expected a name that ends with {', '.join(_SUFFIXES)}")
+    _require_picture(out)
     shape = VehicleShape(length, width)
     figure = influence_picture(_speeds(speeds), shape, parameters)
+    _write(figure, out)
+
+
+def reference_command(out: Path) -> None:
+    """Draw the reference speeds of the paper's PID, its figure 3, and of the tuned one.
+
+    Raises:
+        ConfigError: ``out`` is no name of a picture.
+        ResultsError: the picture cannot be written.
+    """
+    _require_picture(out)
+    printed, tuned = Pid(), TunedPid()
+    own = printed.parameters
+    figure = reference_figure(
+        [("pid-paper", printed.reference_speed), ("pid-tuned", tuned.reference_speed)],
+        safe_distance=own.safe_distance,
+        buffer_distance=own.buffer_distance,
+    )
+    _write(figure, out)
+
+
+def _require_picture(out: Path) -> None:
+    if out.suffix.lower() not in _SUFFIXES:
+        raise ConfigError(f"--out {out}: expected a name that ends with {', '.join(_SUFFIXES)}")
+
+
+def _write(figure: Figure, out: Path) -> None:
     with writing(out, "name another file with --out"):
         save_figure(figure, out)
     print_place(Console(), "Picture", out)

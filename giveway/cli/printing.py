@@ -7,14 +7,20 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.markup import escape
+from rich import markup
 from rich.table import Table
 from rich.text import Text
 
+from giveway.cli.exit import visible
 from giveway.errors import ResultsError
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+
+def escape(text: str) -> str:
+    """``text`` as it is, and no markup of rich's: names and labels come from a user's files."""
+    return markup.escape(visible(text))
 
 
 def findings_table(
@@ -34,10 +40,10 @@ def findings_table(
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold", ratio=1)
     for level, subject, finding, remedy in findings:
-        text = Text(finding)  # not markup: ids, names and paths may hold brackets
+        text = Text(visible(finding))  # not markup: ids, names and paths may hold brackets
         if remedy:
             text.append(f"\n-> {remedy}", style="italic")
-        table.add_row(Text(level, style=styles[level]), Text(subject), text)
+        table.add_row(Text(level, style=styles[level]), Text(visible(subject)), text)
     return table
 
 

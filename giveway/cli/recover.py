@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from rich.console import Console
-from rich.markup import escape
 
+from giveway.cli.printing import escape
 from giveway.cli.run import show
 from giveway.recovery import left_journals, recover_left
 

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from rich.console import Console
-from rich.markup import escape
 
+from giveway.cli.printing import escape
 from giveway.cli.progress import run_progress
 from giveway.cli.run import Outputs, interrupted, show
 from giveway.precompile import compile_kernels_once

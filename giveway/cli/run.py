@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
-from rich.markup import escape
 
 from giveway.cli.exit import INTERRUPTED, fail
+from giveway.cli.printing import escape
 from giveway.cli.progress import run_progress
 from giveway.config.layers import Layer, read_toml
 from giveway.config.loading import load

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from rich import box
 from rich.console import Group
-from rich.markup import escape
 from rich.table import Table
 
+from giveway.cli.printing import escape
 from giveway.reports.levels import BETTER, WORSE, LevelTable, Mean, level_table
 from giveway.studies.folder import StudyFolder
 

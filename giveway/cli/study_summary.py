@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich import box
-from rich.markup import escape
 from rich.padding import Padding
 from rich.table import Table
 
+from giveway.cli.printing import escape
 from giveway.cli.study_levels import print_levels
 from giveway.reports.labels import level_label
 from giveway.reports.wording import counted

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
-from giveway.cli.printing import print_place
+from giveway.cli.printing import escape, print_place
 from giveway.cli.progress import counting
 from giveway.config.presets import parameters_of, require_steady_preset
 from giveway.precompile import compile_kernels_once

@@ -63,13 +63,13 @@ class SpeedProfile:
         stations: Array = _SPACING * np.arange(math.ceil(path.length / _SPACING) + 1.0)
         bends = np.maximum(_curvature(path, length, stations), _STRAIGHT)
         capped = np.minimum(_of_lanes(limits, stations), np.sqrt(LATERAL_ACCELERATION / bends))
-        capped = np.clip(capped, _SLOWEST, capable)
+        capped = np.maximum(np.minimum(capped, capable), _SLOWEST)
         # Braking, v^2 falls by 2 b per metre: v^2 + 2 b s must nowhere be more than it is later on.
         braking = 2.0 * deceleration * stations
         squares = np.minimum.accumulate((capped**2 + braking)[::-1])[::-1] - braking
         squares = np.where(squares < capped**2 - _ROUNDING, squares, capped**2)
         self.speeds: Array = np.sqrt(squares)
-        self.fastest = float(self.speeds[int(departure / _SPACING) :].max())
+        self.fastest = float(self.speeds[int(max(0.0, departure) / _SPACING) :].max())
         self._squares: list[float] = squares.tolist()
         durations = 2.0 * _SPACING / (self.speeds[1:] + self.speeds[:-1])
         self._times: Array = np.concatenate([[0.0], np.cumsum(durations)])

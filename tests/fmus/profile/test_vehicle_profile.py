@@ -128,6 +128,16 @@ def test_what_is_refused(refusal, text, said):
 
 
 @pytest.mark.parametrize(
+    ("key", "value"), [("lag", 1e308), ("delay", 9), ("horizon", 1e-308), ("position_error", 1e308)]
+)
+def test_an_identified_model_that_nobody_can_drive_is_refused(refusal, key, value):
+    model = {"mass": 1000, "friction": 100, "r_squared": 0.9, "speed_error": 0.1}
+    model |= {"position_error": 0.1, "horizon": 0.75, "time_step": 0.05, key: value}
+    lines = "".join(f"{name} = {number!r}\n" for name, number in model.items())
+    assert refusal(f"{FORCE}{SPEED}[model]\n{lines}").startswith(f"[model] {key} = {value!r}")
+
+
+@pytest.mark.parametrize(
     ("tables", "said"),
     [
         (FORCE + '[inputs.acceleration]\nvariable = "a"\n', "force; acceleration: expected one of"),

@@ -144,6 +144,18 @@ def test_a_frame_rate_that_is_not_the_clips_own_is_refused(dataset, tmp_path, ca
     assert not (tmp_path / "o").exists()
 
 
+def test_a_name_that_would_steer_the_terminal_is_shown_harmless(dataset, tmp_path, capsys) -> None:
+    mine = tmp_path / "mine.toml"
+    text = MINE.format(rate=29.97, rear=2).replace('"MINE"', '"\\u001b[31mRED"')
+    mine.write_text(text)
+    out = ("--out", tmp_path / "m.toml", "--evaluations", 1, "--parameters", "mass")
+    assert giveway("validate", dataset, "--dataset", mine, "--out", tmp_path / "o") == 0
+    assert giveway("calibrate", dataset, "--dataset", mine, *out) == 0
+    said = capsys.readouterr().out
+    assert "?[31mRED: 3 clips" in said
+    assert "\x1b" not in said
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
