@@ -52,7 +52,7 @@ class Ended:
 
 
 class Nursery:
-    """Types ``giveway`` commands into children of a nursery, which is replaced if it dies."""
+    """Types ``giveway`` commands into children of a nursery; if that dies, the campaign ends."""
 
     def __init__(self, cache: Path) -> None:
         """``cache`` is a folder for what giveway keeps in the user's cache, but the kernels."""
