@@ -11,7 +11,7 @@ from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight
-from giveway.ego.leader import NO_LEADER, Leader
+from giveway.ego.leader import NO_LEADER, Leader, given_up
 from giveway.ego.lights import Lights
 from giveway.ego.path_view import PathView
 from giveway.ego.safety import Guard
@@ -112,13 +112,13 @@ class Ego:
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
         self._foresight = self._foresee(waiting)
         self._force = 0.0
+        self._eases_off = False  # a brake, or drives off
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
         # A planning controller follows with a headway, and plans no hard stop for a little less of
         # the distance to a vehicle that it keeps on the average.
-        plans = waiting.controller.foresees
+        self._plans = plans = waiting.controller.foresees
         self._lag = config.regulation.comfortable_deceleration * _REACTION if plans else 0.0
-        self._tolerated = config.regulation.safe_distance / 2 if plans else 0.0
         self._heed_lights = config.regulation.traffic_lights and bool(lights.systems)
 
     def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
@@ -198,7 +198,11 @@ class Ego:
         leader, stop = NO_LEADER, math.inf
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
-            ahead = np.minimum(ahead, vehicles + self._tolerated)
+            tolerated = 0.0
+            if self._plans:
+                kept = self.config.regulation.safe_distance
+                tolerated = given_up(leader, vehicles, front, speed, kept, self._origin)
+            ahead = np.minimum(ahead, vehicles + tolerated)
         if self._heed_lights:
             stop = self.lights.stop_at(front, speed)
         if self.stops is not None:
@@ -262,6 +266,7 @@ class Ego:
             if safe is not None:
                 controller.applied(safe.force)
                 decision = safe
+        self._eases_off = decision.force > self._force
         self._force = decision.force
         return decision
 
@@ -362,6 +367,6 @@ class Ego:
             return "person"
         if seen.ahead.size and seen.ahead.min() - kept <= 0.0:
             return "vehicle" if seen.predicted is None else "person"
-        if decision.force > 0.0:
+        if decision.force > 0.0 or self._eases_off:
             return ""
         return "none" if decision.reason in _FREE else "plan"
