@@ -89,6 +89,16 @@ class LanePaths:
             numbers[i] = known.lane_path
         return numbers, positions
 
+    def onwards(self, number: int, position: float) -> Array:
+        """(k, 2) [m] a lane path from SUMO's ``position`` [m] on its first lane on."""
+        pool = self.pool
+        begin, end = pool.start[number], pool.start[number + 1]
+        first = begin + pool.first[number]
+        along, lane = pool.along[begin:first], pool.points[begin:first]
+        driven = position / pool.nominal[number] * along[-1]
+        here = [np.interp(driven, along, column) for column in lane.T]
+        return np.concatenate([[here], lane[along > driven], pool.points[first:end]])
+
     def forget(self, present: Sequence[str]) -> None:
         """Forget the vehicles that have left, once they are many."""
         if len(self._known) > _FORGET * len(present):

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.cosimulation.bends import Bends
 from giveway.crowd.roster import Roster
 from giveway.ego.ego import Ego
 from giveway.errors import CrowdError, VehicleError
@@ -24,8 +25,8 @@ _STANDING = 1e-6  # [m/s] below this speed a pedestrian keeps its last angle
 class Mirror:
     """Keeps SUMO's persons and egos where ours are, and our background vehicles where SUMO's are.
 
-    SUMO steps once every ``substeps`` control steps; in between, background vehicles go straight on
-    at the speed they had.
+    SUMO steps once every ``substeps`` control steps; in between, background vehicles follow their
+    lanes at the speed they had.
 
     Args:
         session: the running simulation.
@@ -50,6 +51,8 @@ class Mirror:
         self._substeps = substeps
         self._horizon = horizon
         self._span = (substeps + horizon) * time_step  # [s]
+        self._bends = Bends(session.vehicles, time_step, substeps, horizon)
+        self._since = 0  # control steps since SUMO's
         self._egos = 0
         self._driven: list[Ego] = []
         self._angles = np.zeros(0)
@@ -96,6 +99,9 @@ class Mirror:
             now[:, 4] = now[:, 5] = half_length
             now[:, 6] = background.width[near]
             extrapolate(self.poses, self._egos, self._time_step)
+        self._since = 0
+        self._bends.read(background, near)
+        self._bends.fill(self.poses, self._egos, 0)
 
     def _require_finite(self, vehicles: BackgroundVehicles) -> None:
         bad = ~np.isfinite(vehicles.x + vehicles.y + vehicles.speed)
@@ -121,6 +127,8 @@ class Mirror:
         """Move background vehicles on by one control step in which SUMO itself does not step."""
         if self.poses.shape[1] > self._egos:
             carry_on(self.poses, self._egos, self._time_step)
+        self._since += 1
+        self._bends.fill(self.poses, self._egos, self._since)
 
     # --- to SUMO ------------------------------------------------------------------------------
 

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +12,11 @@ from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.crossings import Crossings
 from giveway.ego.foresight import CrowdForesight
-from giveway.ego.leader import NO_LEADER, Leader
+from giveway.ego.leader import NO_LEADER, Leader, given_up
 from giveway.ego.lights import Lights
 from giveway.ego.path_view import PathView
 from giveway.ego.safety import Guard
+from giveway.ego.seen import Seen, waits_for
 from giveway.ego.speed_profile import SpeedProfile
 from giveway.ego.stops import Stops
 from giveway.ego.waiting import WaitingEgo
@@ -24,7 +24,7 @@ from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, Pose
-from giveway.records.rows import STOP_SPEED, EgoRow
+from giveway.records.rows import EgoRow
 from pedestrian_model import Crowd, Surroundings
 
 _KEPT = 0.5  # [m] before the safe distance at which the approach to a vehicle ends
@@ -34,28 +34,7 @@ _REACTION = 1.0  # [s] in which a planning controller follows a leader's speed (
 _STRAIGHT = (
     1.0  # [s] for which other vehicles are predicted straight on; beyond it the road may bend
 )
-_NEAR = 3.0  # [m] in addition to the distance kept: what is so near is what the ego stands for
-_FREE = ("clear", "drive on")  # reasons of a planning controller that sees nobody in its way
 _PREDICT_ALL = 150  # pedestrians; of a larger crowd only those that matter to the ego are predicted
-
-
-class Seen(NamedTuple):
-    """What the ego reacts to at one instant."""
-
-    pedestrian: float  # station [m] of the closest pedestrian in front; inf: none
-    leader: Leader
-    stop: float  # station [m] where the front bumper has to stop; inf: nowhere
-    stops_for: str  # what asks for that: "light", "stop" or "yield"; empty: nothing
-    ahead: Array  # (N,) stations [m] of the closest obstacle at steps 1 ... N
-    predicted: Array | None  # (N, n, 2) [m] positions at steps 1 ... N, until the next look
-    relevant: NDArray[np.bool_] | None  # (n,) who has been predicted; None: the whole crowd
-    closest: float  # station [m] as ``pedestrian``, but of the true positions: for the tables
-    crowd: Crowd  # the pedestrians as they are seen
-    foresight: (
-        CrowdForesight | None
-    )  # for a controller that foresees, if a pedestrian may come in front
-    poses: Array  # (N, m, 7) of all vehicles at steps 0 ... N-1
-    row: int  # the ego's among them
 
 
 class Ego:
@@ -126,13 +105,13 @@ class Ego:
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
         self._foresight = self._foresee(waiting)
         self._force = 0.0
+        self._eases_off = False  # a brake, or drives off
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
         # A planning controller follows with a headway, and plans no hard stop for a little less of
         # the distance to a vehicle that it keeps on the average.
-        plans = waiting.controller.foresees
+        self._plans = plans = waiting.controller.foresees
         self._lag = config.regulation.comfortable_deceleration * _REACTION if plans else 0.0
-        self._tolerated = config.regulation.safe_distance / 2 if plans else 0.0
         self._heed_lights = config.regulation.traffic_lights and bool(lights.systems)
 
     def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
@@ -212,7 +191,11 @@ class Ego:
         leader = NO_LEADER
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
-            ahead = np.minimum(ahead, vehicles + self._tolerated)
+            tolerated = 0.0
+            if self._plans:
+                kept = self.config.regulation.safe_distance
+                tolerated = given_up(leader, vehicles, front, speed, kept, self._origin)
+            ahead = np.minimum(ahead, vehicles + tolerated)
         stop, stops_for = self._place_to_stop(crowd, leader)
         if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
             allowed = stop + _BEYOND + self._origin
@@ -292,6 +275,7 @@ class Ego:
             if safe is not None:
                 controller.applied(safe.force)
                 decision = safe
+        self._eases_off = decision.force > self._force
         self._force = decision.force
         return decision
 
@@ -378,22 +362,5 @@ class Ego:
         )
 
     def _waits_for(self, seen: Seen, decision: Decision) -> str:
-        """What the ego stands for; empty while it drives, and when it drives off."""
-        speed, front = self.vehicle.speed, self.front
-        if speed >= STOP_SPEED:
-            return ""
-        kept = front + self._origin + self.config.regulation.safe_distance
-        place, cause = min(
-            (seen.pedestrian - kept, "person"),
-            (seen.leader.station - kept, "vehicle"),
-            (seen.stop - front, seen.stops_for),
-        )
-        if place <= _NEAR:
-            return cause
-        if decision.acting == "safety":
-            return "person"
-        if seen.ahead.size and seen.ahead.min() - kept <= 0.0:
-            return "vehicle" if seen.predicted is None else "person"
-        if decision.force > 0.0:
-            return ""
-        return "none" if decision.reason in _FREE else "plan"
+        kept = self._origin + self.config.regulation.safe_distance
+        return waits_for(self.vehicle.speed, self.front, kept, seen, decision, self._eases_off)

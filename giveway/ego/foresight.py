@@ -10,7 +10,7 @@ from giveway.ego.threats import Alarm, conflicts_and_calm
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.passage import window
-from giveway.geometry.path import EgoPath, body_pose
+from giveway.geometry.path import EgoPath, body_pose, segment_at
 from giveway.metrics.conflicts import CRITICAL_TTC
 from pedestrian_model import Crowd, Predictor, Surroundings
 
@@ -212,12 +212,18 @@ def assess(
         gap[i] = closest - at
         if i % _EVERY == 0 and i + 1 < N:
             x, y, heading = body_pose(vertices, stations, headings, at, length)
+            stop = at + speeds[i + 1] * (time_step + speeds[i + 1] / (2.0 * limits.braking))
+            braking_heading = heading
+            if segment_at(stations, at - length) != segment_at(stations, stop) and stop > at:
+                x_s, y_s, _ = body_pose(vertices, stations, headings, stop, 0.0)
+                braking_heading = np.arctan2(y_s - y, x_s - x)
             conflicts[i], calm[i] = conflicts_and_calm(
                 predicted[i],
                 predicted[i + 1],
                 x,
                 y,
                 heading,
+                braking_heading,
                 speeds[i + 1],
                 length / 2.0,
                 v.width / 2.0,

@@ -13,6 +13,9 @@ _ONCOMING = -0.8  # cosine of the angle to the ego's path there
 _PARALLEL = 0.95  # likewise: 18 degrees, as a body in a bend lies askew
 _OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
 _FINEST_OUTLINE = 0.1  # [m] and at least
+_KEPT, _LEAST = 0.5, 0.25  # of d_safe that a plan keeps to vehicles, and that it keeps at least
+_FIRM = 3.0  # [m/s^2] of braking that the share in between may cost
+_BUILD_UP = 0.2  # [s] until the brake has it
 
 
 class Leader(NamedTuple):
@@ -23,6 +26,38 @@ class Leader(NamedTuple):
 
 
 NO_LEADER = Leader(inf, 0.0)
+
+
+def given_up(
+    leader: Leader,
+    ahead: Array,
+    front: float,
+    speed: float,
+    safe_distance: float,
+    origin: float,
+) -> float:
+    """What a plan may give up of the safe distance to vehicles [m], so as not to brake hard for it.
+
+    That is half of it; and as much as to a quarter where a vehicle that cuts in, stops at once or
+    comes from the side leaves no room for firm braking to half of it.
+
+    Args:
+        leader: the closest vehicle in front.
+        ahead: (N,) stations [m] of the closest at steps 1 ... N.
+        front: the front bumper's station [m].
+        speed: of the ego [m/s].
+        safe_distance: d_safe [m].
+        origin: of the distance to who is in front, ahead of the front bumper [m].
+    """
+    kept = _KEPT * safe_distance + origin
+    coming = float(ahead.min())  # before the leader: from the side
+    gap = min(leader.station, coming) - front
+    if gap < inf:
+        its_speed = leader.speed if leader.station <= coming else 0.0
+        closing = max(0.0, speed - its_speed)
+        room = gap - closing * (_BUILD_UP + closing / (2.0 * _FIRM))
+        kept = min(kept, max(room, min(_LEAST * safe_distance, gap)))
+    return safe_distance + origin - kept
 
 
 @kernel

@@ -9,6 +9,8 @@ from giveway.geometry.kernel import Array, kernel
 
 _SLOW = 0.2  # [m/s] the ego is no danger (Yang & Özgüner 2019: a standing vehicle is an obstacle)
 _HALVINGS = 5  # of the interval in which the calm speed is looked for
+_WHOLE = 1e-6  # of a step: so much longer a stop takes no step more
+_SPARE = 0.05  # [m] kept beyond what the safety layer needs: predictions are a little off
 
 
 class Alarm(NamedTuple):
@@ -29,6 +31,7 @@ def conflicts_and_calm(
     front_x: float,
     front_y: float,
     heading: float,
+    braking_heading: float,
     speed: float,
     half_length: float,
     half_width: float,
@@ -38,12 +41,15 @@ def conflicts_and_calm(
 ) -> tuple[float, float]:
     """Persons who would touch the ego within the conflict time if both kept their velocity.
 
+    ``heading`` is the body's, ``braking_heading`` that of the way on which the front would stop.
     Also the speed [m/s] from which on no pedestrian could force an emergency stop, see
     :func:`is_threat`; inf: ``speed`` is slow enough.
     """
     if speed <= _SLOW:
         return 0.0, np.inf
     c, s = np.cos(heading), np.sin(heading)
+    turn = braking_heading - heading
+    c_b, s_b = np.cos(turn), np.sin(turn)
     far = 2.0 * half_length + half_width + conflict_time * (speed + alarm.walking_speed)
     conflicts, calm = 0.0, speed
     for j in range(here.shape[0]):
@@ -59,7 +65,12 @@ def conflicts_and_calm(
         )
         if end >= 0.0 and begin < conflict_time:
             conflicts += 1.0
-        if alarm.heeded and is_threat(x, y, w_x, w_y, calm, half_width, time_step, alarm):
+        if not alarm.heeded:
+            continue
+        if turn != 0.0:
+            x, y = to_frame(x, y, c_b, s_b)
+            w_x, w_y = to_frame(w_x, w_y, c_b, s_b)
+        if is_threat(x, y, w_x, w_y, calm, half_width, time_step, alarm):
             low, high = 0.0, calm
             for _ in range(_HALVINGS):
                 middle = 0.5 * (low + high)
@@ -97,21 +108,23 @@ def is_threat(
         alarm: the limits.
     """
     step = speed * time_step
-    stop = time_step + speed / alarm.braking
+    # The instant of the stop counts too: in most of the cases it is the one that matters.
+    stop = 1 + int(np.ceil(speed / (alarm.braking * time_step) - _WHOLE))
     # half of a step's motion relative to the front
     within = 0.5 * (step + alarm.walking_speed * time_step)
     clear = max(
         alarm.radius + alarm.clearance, np.sqrt(alarm.radius * alarm.radius + within * within)
     )
-    t = 0.0
-    while t < stop:
-        braked = max(0.0, t - time_step)
-        front = speed * t - 0.5 * alarm.braking * braked * braked
+    clear += _SPARE
+    for i in range(stop + 1):
+        t = i * time_step
+        braked = min(max(0.0, t - time_step), speed / alarm.braking)
+        low = speed * braked - 0.5 * alarm.braking * braked * braked
+        high = low + step + 0.5 * time_step * alarm.braking * braked  # by forward Euler
         reach = clear + 0.5 * alarm.walking_acceleration * t * t
-        if (
-            abs(x + w_x * t - front) <= reach + 0.5 * step
-            and abs(y + w_y * t) <= half_width + reach
-        ):
+        ahead = x + w_x * t
+        off = max(0.0, low - ahead, ahead - high)
+        aside = max(0.0, abs(y + w_y * t) - half_width)
+        if off * off + aside * aside <= reach * reach:
             return True
-        t += time_step
     return False
