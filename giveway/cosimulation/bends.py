@@ -14,7 +14,7 @@ from giveway.geometry.path import EgoPath
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.vehicles import SumoVehicles
 
-_SHORT = 0.15  # [s] of SUMO's step in which no car turns: at 9 m/s^2 sideways it is 0.1 m
+SHORT = 0.15  # [s] of SUMO's step in which no car turns: at 9 m/s^2 sideways it is 0.1 m
 _STRAIGHT = 0.1  # [m] beside the straight line
 _SOON = 1.0  # [s] after SUMO's next step: until then others are taken to go straight on
 
@@ -32,7 +32,6 @@ class Bends:
     def __init__(
         self, vehicles: SumoVehicles, time_step: float, substeps: int, horizon: int
     ) -> None:
-        self._follows = substeps * time_step > _SHORT
         self._lane_paths = LanePaths(vehicles)
         self._soon = substeps * time_step + _SOON
         self._times: Array = time_step * np.arange(substeps + horizon, dtype=np.float64)
@@ -47,8 +46,6 @@ class Bends:
             near: which of them have a row, in its order.
         """
         self._rows.clear()
-        if not self._follows:
-            return
         reach = background.speed * self._soon
         moving = [row for row, i in enumerate(near) if reach[i] > _STRAIGHT]
         chosen = near[moving]

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from giveway.config import EgoRunConfig
 from giveway.config.option import LANE
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
@@ -137,13 +138,6 @@ class Entrance:
             comfortable=config.regulation.comfortable_deceleration,
             hardest=hardest,
         )
-        crossings = Crossings(
-            crossings_on(path, shape, self._session.lanes.crossings)
-            if config.heeds_priority
-            else (),
-            length=shape.length,
-            kerb_distance=config.regulation.kerb_distance,
-        )
         halts = Stops(stops, clock=self._session.time, time_step=self._time_step, hardest=hardest)
         return Ego(
             ego,
@@ -154,9 +148,19 @@ class Entrance:
             path.length - departure if goal is None else goal,
             self._time_step,
             halts if stops else None,
-            crossings,
+            self._crossings(config, path, shape),
             profile,
         )
+
+    def _crossings(
+        self, config: EgoRunConfig, path: EgoPath, shape: VehicleShape
+    ) -> Crossings | None:
+        """The crossings at which the ego gives way; None: none."""
+        if not config.heeds_priority:
+            return None
+        found = crossings_on(path, shape, self._session.lanes.crossings)
+        kerb_distance = config.regulation.kerb_distance
+        return Crossings(found, length=shape.length, kerb_distance=kerb_distance) if found else None
 
 
 def require_way(ego: WaitingEgo, path: EgoPath, departure: float) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.cosimulation.bends import Bends
+from giveway.cosimulation.bends import SHORT, Bends
 from giveway.crowd.roster import Roster
 from giveway.ego.ego import Ego
 from giveway.errors import CrowdError, VehicleError
@@ -51,7 +51,9 @@ class Mirror:
         self._substeps = substeps
         self._horizon = horizon
         self._span = (substeps + horizon) * time_step  # [s]
-        self._bends = Bends(session.vehicles, time_step, substeps, horizon)
+        self._bends = None
+        if substeps * time_step > SHORT:
+            self._bends = Bends(session.vehicles, time_step, substeps, horizon)
         self._since = 0  # control steps since SUMO's
         self._egos = 0
         self._driven: list[Ego] = []
@@ -100,8 +102,9 @@ class Mirror:
             now[:, 6] = background.width[near]
             extrapolate(self.poses, self._egos, self._time_step)
         self._since = 0
-        self._bends.read(background, near)
-        self._bends.fill(self.poses, self._egos, 0)
+        if self._bends is not None:
+            self._bends.read(background, near)
+            self._bends.fill(self.poses, self._egos, 0)
 
     def _require_finite(self, vehicles: BackgroundVehicles) -> None:
         bad = ~np.isfinite(vehicles.x + vehicles.y + vehicles.speed)
@@ -128,7 +131,8 @@ class Mirror:
         if self.poses.shape[1] > self._egos:
             carry_on(self.poses, self._egos, self._time_step)
         self._since += 1
-        self._bends.fill(self.poses, self._egos, self._since)
+        if self._bends is not None:
+            self._bends.fill(self.poses, self._egos, self._since)
 
     # --- to SUMO ------------------------------------------------------------------------------
 

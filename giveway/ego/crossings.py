@@ -138,11 +138,6 @@ class Crossings:
         self._letters: dict[int, str] = {}
         self.systems = frozenset(place.system for place in self._crossings if place.system)
 
-    @property
-    def ahead(self) -> bool:
-        """Whether the ego has one before it."""
-        return self._next < len(self._crossings)
-
     def update(self, states: Mapping[str, str]) -> None:
         """Take note of the lights' states: of each system, one letter per movement (SUMO's)."""
         for number, place in enumerate(self._crossings):

@@ -24,7 +24,7 @@ from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, Pose
-from giveway.records.rows import EgoRow
+from giveway.records.rows import STOP_SPEED, EgoRow
 from pedestrian_model import Crowd, Surroundings
 
 _KEPT = 0.5  # [m] before the safe distance at which the approach to a vehicle ends
@@ -76,10 +76,10 @@ class Ego:
         self.shape = shape
         self.lights = lights
         self.stops = stops
-        self.crossings = Crossings((), length=0.0, kerb_distance=0.0)
+        self.crossings = crossings
+        self.light_systems = lights.systems
         if crossings is not None:
-            self.crossings = crossings
-        self.light_systems = lights.systems | self.crossings.systems
+            self.light_systems |= crossings.systems
         self._profile = profile
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal = goal
@@ -223,7 +223,7 @@ class Ego:
             place, cause = self.lights.stop_at(front, speed), "light"
         if self.stops is not None:
             place, cause = min((place, cause), (self.stops.stop_at(front, speed), "stop"))
-        if self.crossings.ahead:
+        if self.crossings is not None:
             stop = self.crossings.stop_at(front, speed, crowd, leader)
             place, cause = min((place, cause), (stop, "yield"))
         return place, cause if place < math.inf else ""
@@ -231,7 +231,8 @@ class Ego:
     def see_lights(self, states: Mapping[str, str]) -> None:
         """Take note of the lights' states: of each system, one letter per movement (SUMO's)."""
         self.lights.update(states, self.front, self.vehicle.speed)
-        self.crossings.update(states)
+        if self.crossings is not None:
+            self.crossings.update(states)
 
     def _relevant(self, crowd: Crowd, speed: float) -> NDArray[np.bool_] | None:
         """(n,) the pedestrians of a large crowd that can matter to the plan; None: all of them.
@@ -362,5 +363,7 @@ class Ego:
         )
 
     def _waits_for(self, seen: Seen, decision: Decision) -> str:
+        if self.vehicle.speed >= STOP_SPEED:
+            return ""
         kept = self._origin + self.config.regulation.safe_distance
-        return waits_for(self.vehicle.speed, self.front, kept, seen, decision, self._eases_off)
+        return waits_for(self.front, kept, seen, decision, self._eases_off)

@@ -9,7 +9,6 @@ from controller import Decision
 from giveway.ego.foresight import CrowdForesight
 from giveway.ego.leader import Leader
 from giveway.geometry.kernel import Array
-from giveway.records.rows import STOP_SPEED
 from pedestrian_model import Crowd
 
 _NEAR = 3.0  # [m] in addition to the distance kept: what is so near is what the ego stands for
@@ -35,21 +34,16 @@ class Seen(NamedTuple):
     row: int  # the ego's among them
 
 
-def waits_for(
-    speed: float, front: float, kept: float, seen: Seen, decision: Decision, eases_off: bool
-) -> str:
-    """What an ego stands for; empty while it drives, and when it drives off.
+def waits_for(front: float, kept: float, seen: Seen, decision: Decision, eases_off: bool) -> str:
+    """What an ego that stands stands for; empty when it drives off.
 
     Args:
-        speed: of the ego [m/s].
         front: station of its front bumper [m].
         kept: distance [m] from there that it keeps to who is in front.
         seen: what it reacts to.
         decision: its controller's.
         eases_off: it brakes less than a step before.
     """
-    if speed >= STOP_SPEED:
-        return ""
     place, cause = min(
         (seen.pedestrian - front - kept, "person"),
         (seen.leader.station - front - kept, "vehicle"),

@@ -51,21 +51,3 @@ def test_between_sumo_s_steps_a_car_follows_its_lane() -> None:
     assert len(off) > 30
     assert np.mean(straight) > 0.8
     assert np.mean(off) < 0.3  # the speeds differ, and a chord is no arc
-
-
-def test_in_short_steps_of_sumo_s_nobody_turns() -> None:
-    config = find("junction").config_file
-    libsumo.start(["sumo", "-c", str(config), "--step-length", "0.1", "--no-step-log"])
-    try:
-        lanes = Lanes(libsumo, config)
-        vehicles = SumoVehicles(libsumo, lambda function, *args: function(*args), lanes)
-        bends = Bends(vehicles, DT, 2, 60)
-        libsumo.simulationStep(30.0)
-        cars = vehicles.background()
-        poses = np.full((1, len(cars.ids), 7), np.nan)
-        bends.read(cars, np.arange(len(cars.ids)))
-        bends.fill(poses, 0, 1)
-        assert len(cars.ids) > 3
-        assert np.isnan(poses).all()
-    finally:
-        libsumo.close()

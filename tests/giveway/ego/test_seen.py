@@ -18,13 +18,9 @@ FREE = Seen(
 )  # fmt: skip
 
 
-def cause(speed=0.1, force=-900.0, acting="mpc", reason="clear", eases_off=False, **seen):
+def cause(force=-900.0, acting="mpc", reason="clear", eases_off=False, **seen):
     decision = Decision(force, acting, reason, "solved", 1, 4.0, None)
-    return waits_for(speed, FRONT, KEPT, FREE._replace(**seen), decision, eases_off)
-
-
-def test_who_drives_waits_for_nobody():
-    assert cause(speed=1.0, pedestrian=41.0) == ""
+    return waits_for(FRONT, KEPT, FREE._replace(**seen), decision, eases_off)
 
 
 @pytest.mark.parametrize(("force", "eases_off"), [(-900.0, True), (300.0, False)])
