@@ -91,9 +91,13 @@ class Nursery:
         return Ended(int(answer), *texts)
 
     def _started(self) -> subprocess.Popen[str]:
-        from giveway._environment import kernel_cache
+        from giveway._kernel_cache import kernel_cache
 
-        environment = {**os.environ, "NUMBA_CACHE_DIR": str(kernel_cache()), "COLUMNS": "120"}
+        environment = {
+            **os.environ,
+            "NUMBA_CACHE_DIR": str(kernel_cache().parent),
+            "COLUMNS": "120",
+        }
         environment |= {"XDG_CACHE_HOME": str(self._cache), "NO_COLOR": "1", "MPLBACKEND": "agg"}
         environment |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
         self._process = subprocess.Popen(

@@ -4,7 +4,6 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from controller import Decision, Observation
 from giveway.config.controller_sections import CORRIDOR_MARGIN
@@ -15,8 +14,9 @@ from giveway.ego.foresight import CrowdForesight
 from giveway.ego.leader import NO_LEADER, Leader, given_up
 from giveway.ego.lights import Lights
 from giveway.ego.path_view import PathView
+from giveway.ego.relevance import PREDICT_ALL, Relevance
 from giveway.ego.safety import Guard
-from giveway.ego.seen import Seen, waits_for
+from giveway.ego.seen import Seen
 from giveway.ego.speed_profile import SpeedProfile
 from giveway.ego.stops import Stops
 from giveway.ego.waiting import WaitingEgo
@@ -34,7 +34,8 @@ _REACTION = 1.0  # [s] in which a planning controller follows a leader's speed (
 _STRAIGHT = (
     1.0  # [s] for which other vehicles are predicted straight on; beyond it the road may bend
 )
-_PREDICT_ALL = 150  # pedestrians; of a larger crowd only those that matter to the ego are predicted
+_NEAR = 3.0  # [m] in addition to the distance kept: what is so near is what the ego stands for
+_FREE = ("clear", "drive on")  # reasons of a planning controller that sees nobody in its way
 
 
 class Ego:
@@ -68,7 +69,6 @@ class Ego:
     ) -> None:
         config = waiting.config
         self._controller, self._predictor = waiting.controller, waiting.predictor
-        self._walking_speed_limit = waiting.walking_speed_limit
         self.config = config
         self.id = waiting.id
         self.path = path
@@ -94,9 +94,8 @@ class Ego:
             body_length=shape.length,
             straight=round(_STRAIGHT / time_step) if waiting.controller.foresees else None,
         )
-        self._span = waiting.horizon * time_step  # [s]
-        predictor = waiting.predictor
-        self._interaction = 0.0 if predictor is None else predictor.parameters.interaction_radius
+        size = shape.length + self.corridor.half_width
+        self._relevance = Relevance(waiting, waiting.horizon * time_step, size)
         self._view = PathView(path)
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
         perception = Perception(config)
@@ -180,7 +179,8 @@ class Ego:
         ahead = corridor.empty
         predictor, predicted, relevant, foresight = self._predictor, None, None, None
         if reachable and predictor is not None:
-            relevant = self._relevant(crowd, speed)
+            if len(crowd) > PREDICT_ALL:
+                relevant = self._relevance.of(crowd, self.pose.x, self.pose.y, speed)
             pedestrians = crowd if relevant is None else crowd.select(relevant)
             horizon, foresight = poses[: predictor.horizon], self._foresight
             if foresight is not None:
@@ -233,24 +233,6 @@ class Ego:
         self.lights.update(states, self.front, self.vehicle.speed)
         if self.crossings is not None:
             self.crossings.update(states)
-
-    def _relevant(self, crowd: Crowd, speed: float) -> NDArray[np.bool_] | None:
-        """(n,) the pedestrians of a large crowd that can matter to the plan; None: all of them.
-
-        Those who are left out act on the plan only through others, and move the pedestrians that
-        the ego may meet by less than a micrometre within the horizon.
-        """
-        if len(crowd) <= _PREDICT_ALL:
-            return None
-        config, span = self.config, self._span
-        x, y, _ = self.pose
-        strongest = config.mpc.force_limit / config.vehicle.mass
-        reach = (speed + strongest * span / 2.0) * span + config.regulation.safe_distance
-        reach += self._walking_speed_limit * span + self._interaction
-        reach += self.shape.length + self.corridor.half_width
-        d_x, d_y = crowd.position[:, 0] - x, crowd.position[:, 1] - y
-        within: NDArray[np.bool_] = d_x * d_x + d_y * d_y <= reach * reach
-        return within
 
     def decide(self, step: int, time: float, seen: Seen) -> Decision:
         """The force for the step from t_k on; kept for :meth:`advance`.
@@ -367,3 +349,29 @@ class Ego:
             return ""
         kept = self._origin + self.config.regulation.safe_distance
         return waits_for(self.front, kept, seen, decision, self._eases_off)
+
+
+def waits_for(front: float, kept: float, seen: Seen, decision: Decision, eases_off: bool) -> str:
+    """What an ego that stands stands for; empty when it drives off.
+
+    Args:
+        front: station of its front bumper [m].
+        kept: distance [m] from there that it keeps to who is in front.
+        seen: what it reacts to.
+        decision: its controller's.
+        eases_off: it brakes less than a step before.
+    """
+    place, cause = min(
+        (seen.pedestrian - front - kept, "person"),
+        (seen.leader.station - front - kept, "vehicle"),
+        (seen.stop - front, seen.stops_for),
+    )
+    if place <= _NEAR:
+        return cause
+    if decision.acting == "safety":
+        return "person"
+    if seen.ahead.size and seen.ahead.min() - front - kept <= 0.0:
+        return "vehicle" if seen.predicted is None else "person"
+    if decision.force > 0.0 or eases_off:
+        return ""
+    return "none" if decision.reason in _FREE else "plan"

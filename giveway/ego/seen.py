@@ -1,18 +1,14 @@
-"""What an ego reacts to at one instant, and what it stands for."""
+"""What an ego reacts to at one instant."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import Decision
 from giveway.ego.foresight import CrowdForesight
 from giveway.ego.leader import Leader
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
-
-_NEAR = 3.0  # [m] in addition to the distance kept: what is so near is what the ego stands for
-_FREE = ("clear", "drive on")  # reasons of a planning controller that sees nobody in its way
 
 
 class Seen(NamedTuple):
@@ -32,29 +28,3 @@ class Seen(NamedTuple):
     )  # for a controller that foresees, if a pedestrian may come in front
     poses: Array  # (N, m, 7) of all vehicles at steps 0 ... N-1
     row: int  # the ego's among them
-
-
-def waits_for(front: float, kept: float, seen: Seen, decision: Decision, eases_off: bool) -> str:
-    """What an ego that stands stands for; empty when it drives off.
-
-    Args:
-        front: station of its front bumper [m].
-        kept: distance [m] from there that it keeps to who is in front.
-        seen: what it reacts to.
-        decision: its controller's.
-        eases_off: it brakes less than a step before.
-    """
-    place, cause = min(
-        (seen.pedestrian - front - kept, "person"),
-        (seen.leader.station - front - kept, "vehicle"),
-        (seen.stop - front, seen.stops_for),
-    )
-    if place <= _NEAR:
-        return cause
-    if decision.acting == "safety":
-        return "person"
-    if seen.ahead.size and seen.ahead.min() - front - kept <= 0.0:
-        return "vehicle" if seen.predicted is None else "person"
-    if decision.force > 0.0 or eases_off:
-        return ""
-    return "none" if decision.reason in _FREE else "plan"

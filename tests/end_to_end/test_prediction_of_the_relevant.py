@@ -42,7 +42,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
         people = crowd(rng)
         seen = []
         for predict_all in (150, 10**9):
-            monkeypatch.setattr("giveway.ego.ego._PREDICT_ALL", predict_all)
+            monkeypatch.setattr("giveway.ego.ego.PREDICT_ALL", predict_all)
             with ExitStack() as stack:
                 waiting = make_waiting_ego(CONFIG, make_controller(CONFIG, 0.05), 0.05, stack)
                 waiting.start(speed)
@@ -52,7 +52,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
                 seen.append(ego.look(0, poses, people, OPEN_GROUND).ahead.copy())
-                whom = ego._relevant(people, speed)
+                whom = ego._relevance.of(people, ego.pose.x, ego.pose.y, speed)
                 left_out += whom is not None and not whom.all()
         reach = ego.front + (speed + 8.0 * 0.75 / 2) * 0.75 + CONFIG.regulation.safe_distance
         matters = (seen[0] <= reach) | (seen[1] <= reach)
@@ -72,7 +72,7 @@ def test_who_is_left_out_changes_nothing_that_a_manoeuvre_would_lead_to(
         people = crowd(rng, widest=150.0)
         seen = []
         for predict_all in (150, 10**9):
-            monkeypatch.setattr("giveway.ego.ego._PREDICT_ALL", predict_all)
+            monkeypatch.setattr("giveway.ego.ego.PREDICT_ALL", predict_all)
             with ExitStack() as stack:
                 waiting = make_waiting_ego(PLANNING, make_controller(PLANNING, 0.05), 0.05, stack)
                 waiting.start(speed)
