@@ -10,7 +10,7 @@ from typing import Any
 
 from giveway._version import __version__
 from giveway.config import RunConfig
-from giveway.scenario_files import read_scenario
+from giveway.scenario_files import read_scenario, with_included
 from sumo_scenarios import Scenario
 
 _PACKAGES = ("daqp", "fmpy", "libsumo", "numba", "numpy", "osqp", "pandas", "shapely")
@@ -33,9 +33,12 @@ def software_versions() -> dict[str, str]:
 
 
 def scenario_inputs(scenario: Scenario) -> dict[str, Path]:
-    """The scenario's configuration, settings and every input file, by path from its folder."""
-    files = [scenario.config_file]
-    files += [path for _, path in read_scenario(scenario.config_file).inputs]
+    """The scenario's configuration, settings and every input file, by path from its folder.
+
+    Files that input files include are among them.
+    """
+    inputs = [path for _, path in read_scenario(scenario.config_file).inputs]
+    files = [scenario.config_file, *with_included(path for path in inputs if path.is_file())]
     if scenario.settings_file is not None:
         files.append(scenario.settings_file)
     folder = scenario.config_file.parent

@@ -7,6 +7,7 @@ that writes nothing beside the scenario.
 from giveway.scenario_files.configuration import STRIPING, SUMO_SEED, ScenarioFiles, read_scenario
 from giveway.scenario_files.declared_ids import declares, free_prefix, undeclared
 from giveway.scenario_files.flows import FlowStart, flows_due
+from giveway.scenario_files.included import with_included
 from giveway.scenario_files.starting import Start, StartOptions, prepare_start
 
 __all__ = [
@@ -22,4 +23,5 @@ __all__ = [
     "prepare_start",
     "read_scenario",
     "undeclared",
+    "with_included",
 ]

@@ -6,6 +6,7 @@ from typing import Final
 
 from giveway.errors import ScenarioError
 from giveway.scenario_files.configuration import located
+from giveway.scenario_files.included import READS
 from giveway.scenario_files.markup import rewrite
 from giveway.scenario_files.outputs import OutputFolder, is_file
 from giveway.scenario_files.reading import opened, pieces
@@ -24,15 +25,10 @@ _WRITES: Final = {
 }
 """Element to the attribute that names a file which SUMO writes."""
 
-_READS: Final = {"include": "href", "calibrator": "file", "variableSpeedSign": "file"} | {
-    "rerouter": "file"
-}
-"""Element to the attribute that names a further file with elements."""
-
 _PICTURES: Final = ("imgFile", "osgFile")
 _DEVICES: Final = ("device.ssm.file", "device.toc.file")  # parameters of a type or a vehicle
 _SSM: Final = "has.ssm.device"
-_ELEMENTS: Final = frozenset({*_WRITES, *_READS, "param", "poly", "poi", "vType"})
+_ELEMENTS: Final = frozenset({*_WRITES, *READS, "param", "poly", "poi", "vType"})
 
 # A file that writes or refers to another file contains one of these; they are searched for first,
 # since that is far faster than to parse the file.
@@ -132,14 +128,14 @@ class _Editor:
         written = attributes.get(_WRITES.get(name, ""), "")
         if is_file(written):
             changes[_WRITES[name]] = self._redirected(written, self._file)
-        referred = attributes.get(_READS.get(name, ""), "")
+        referred = attributes.get(READS.get(name, ""), "")
         if referred:
             there = located(referred, self._file)
             if not there.is_file():
                 self._copies.missing[there] = self._file
             copy = self._copies.prepared(there) if there.is_file() else there
             self.needed |= copy != there
-            changes[_READS[name]] = str(copy)
+            changes[READS[name]] = str(copy)
         if name == "param":
             changes |= self._parameter(
                 attributes.get("key", ""), attributes.get("value", ""), parent

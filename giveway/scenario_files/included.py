@@ -1,0 +1,46 @@
+"""The files that a scenario's files refer to in turn."""
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Final
+
+from giveway.scenario_files.configuration import located
+from giveway.scenario_files.reading import pieces
+
+READS: Final = {"include": "href", "calibrator": "file", "variableSpeedSign": "file"} | {
+    "rerouter": "file"
+}
+"""Element to the attribute that names a further file with elements."""
+
+_REFERENCE = re.compile(
+    rb"<(%s)\s[^>]*?\b(href|file)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')"
+    % b"|".join(name.encode() for name in READS)
+)
+
+
+def with_included(files: Iterable[Path]) -> list[Path]:
+    """The files, and those that exist of what they refer to, and these, each once.
+
+    A file that cannot be read refers to none: whoever reads it next says so.
+    """
+    found = list(files)
+    known = {file.resolve() for file in found}
+    for file in found:  # which grows
+        for there in _referred(file):
+            if there.is_file() and there.resolve() not in known:
+                known.add(there.resolve())
+                found.append(there)
+    return found
+
+
+def _referred(file: Path) -> list[Path]:
+    names = []
+    try:
+        for text in pieces(file):
+            for element, attribute, double, single in _REFERENCE.findall(text):
+                if READS[element.decode()] == attribute.decode():
+                    names.append((double or single).decode("utf-8", "replace"))
+    except (OSError, EOFError):
+        return []
+    return [located(name, file) for name in names if name]
