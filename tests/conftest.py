@@ -21,6 +21,8 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 # Hundreds of programs are started; none shall compile our modules again, even where Python has been
 # told to keep no bytecode.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+# Half of what numpy's import costs is the start of threads that nothing here uses.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 sys.dont_write_bytecode = False
 
 

@@ -69,7 +69,7 @@ def test_nobody_is_lost_frozen_or_there_twice(
     ego: str,
 ) -> None:
     config = {"ego": {"take_over": (ego,)} if ego else NO_EGO, "crowd": {"zone": zone}}
-    result, look = drive(city(0.1), time_limit=60.0, **config)
+    result, look = drive(city(0.1), time_limit=60.0, controller="pid-paper", **config)
     ledger = result.manifest["pedestrians"]
     assert adds_up(ledger)
     assert (ledger["taken_over"] > 20) is (zone != "none")
@@ -102,7 +102,8 @@ def test_with_walls_nobody_leaves_the_walkways(
     drive: Drive, city: Callable[[float], Path], network: WalkNetwork
 ) -> None:
     crowd = {"zone": "everywhere", "walls": True}
-    result, _ = drive(city(0.1), ego={"take_over": ("car10",)}, crowd=crowd, time_limit=40.0)
+    driven = {"ego": {"take_over": ("car10",)}, "controller": "pid-paper"}
+    result, _ = drive(city(0.1), crowd=crowd, time_limit=40.0, **driven)
     assert len(result.crowd_track.ids) > 150
     assert share_within(network.walkable(), 0.05, result) > 0.9995
     assert adds_up(result.manifest["pedestrians"])

@@ -130,7 +130,7 @@ def test_units_make_no_difference(zoo):
         library.run(
             {
                 "seed": SEED,
-                "time_limit": 10.0,
+                "time_limit": 6.0,
                 "vehicle": {"fmu": str(car), "profile": str(car.with_suffix(".toml"))},
             }
         ).ego
