@@ -6,6 +6,7 @@ the moment says so. What netconvert was told as a crossing's ``priority`` is not
 """
 
 import re
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,11 +28,15 @@ class Crossing(NamedTuple):
     link: int  # index of the movement in the light's state
 
 
-def crossings(sumo: Any) -> tuple[Crossing, ...]:
+def crossings(
+    sumo: Any, movements: Mapping[tuple[str, str], tuple[str, int]]
+) -> tuple[Crossing, ...]:
     """All crossings of the network.
 
     Args:
         sumo: the libsumo module, while a simulation runs.
+        movements: the light of each link that one governs, from lane to lane: its id and the
+            index of the movement in its state.
     """
     lanes = sumo.lane.getIDList()
     found = {lane: match[1] for lane in lanes if (match := _LANE.match(lane))}
@@ -43,7 +48,7 @@ def crossings(sumo: Any) -> tuple[Crossing, ...]:
         junction, mark, _ = lane.rpartition("_w")
         if mark and junction in junctions:
             states |= {link[0]: link[5] for link in sumo.lane.getLinks(lane) if link[0] in found}
-    lights = _lights(sumo, found.keys())
+    lights = {target: light for (_, target), light in movements.items() if target in found}
     return tuple(
         Crossing(
             lane,
@@ -55,14 +60,3 @@ def crossings(sumo: Any) -> tuple[Crossing, ...]:
         for lane in found
         if len(shape := sumo.lane.getShape(lane)) > 1
     )
-
-
-def _lights(sumo: Any, lanes: Any) -> dict[str, tuple[str, int]]:
-    """The traffic light that governs each crossing, and the index of its movement."""
-    return {
-        target: (system, index)
-        for system in sumo.trafficlight.getIDList()
-        for index, movements in enumerate(sumo.trafficlight.getControlledLinks(system))
-        for _, target, _ in movements
-        if target in lanes
-    }

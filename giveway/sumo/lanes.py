@@ -4,6 +4,7 @@ import itertools
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -63,11 +64,9 @@ class Lanes:
         self._sumo = sumo
         self._config_file = config_file
         self._edges = frozenset(sumo.edge.getIDList())
-        self._systems: dict[tuple[str, str], tuple[str, int]] | None = None
         self._shapes: dict[str, Array] = {}
         self._lengths: dict[str, float] = {}
         self._onwards: dict[tuple[str, str], tuple[str, ...]] = {}
-        self._crossings: tuple[Crossing, ...] | None = None
 
     def along(
         self,
@@ -113,7 +112,7 @@ class Lanes:
             driven += _length(shape)
             if number < len(links):
                 link = links[number]
-                light = self._light(f"{edges[number]}_{leave}", link)
+                light = self._movements.get((f"{edges[number]}_{leave}", link.lane))
                 if light is not None:
                     lights.append(Light(driven, *light))
                 limits.extend(self._limits_inside(link, driven, shape[-1:]))
@@ -127,12 +126,10 @@ class Lanes:
             np.concatenate(points), tuple(lights), first_lane, tuple(begins), tuple(limits)
         )
 
-    @property
+    @cached_property
     def crossings(self) -> tuple[Crossing, ...]:
         """All crossings of the network."""
-        if self._crossings is None:
-            self._crossings = crossings(self._sumo)
-        return self._crossings
+        return crossings(self._sumo, self._movements)
 
     def shape(self, lane: str) -> Array:
         """(k, 2) [m] centre line of a lane."""
@@ -271,16 +268,15 @@ class Lanes:
             end = shape[-1:]
         return limits
 
-    def _light(self, lane: str, link: Link) -> tuple[str, int] | None:
-        """The traffic light that governs ``link``."""
-        if self._systems is None:
-            self._systems = {}
-            for system in self._sumo.trafficlight.getIDList():
-                links = self._sumo.trafficlight.getControlledLinks(system)
-                for index, movements in enumerate(links):
-                    for source, target, _ in movements:
-                        self._systems[source, target] = (system, index)
-        return self._systems.get((lane, link.lane))
+    @cached_property
+    def _movements(self) -> dict[tuple[str, str], tuple[str, int]]:
+        """The traffic light that governs each link from lane to lane, if one does."""
+        return {
+            (source, target): (system, index)
+            for system in self._sumo.trafficlight.getIDList()
+            for index, links in enumerate(self._sumo.trafficlight.getControlledLinks(system))
+            for source, target, _ in links
+        }
 
     def _changing(self, edge: str, entry: int, leave: int, start: float) -> Array:
         """The centre line from lane ``entry`` over to lane ``leave`` of one edge."""
