@@ -55,8 +55,8 @@ class RegulationConfig(Section):
     priority: Literal["road", "none"] | None = option(
         None,
         None,
-        "road: the ego gives way to people at crossings; none: the paper's open space. Left out: "
-        "road, but not for the paper's controllers",
+        "road: the ego gives way to people at crossings and to vehicles at junctions; none: the "
+        "paper's open space. Left out: road, but not for the paper's controllers",
         flag="--priority",
     )
     kerb_distance: float = option(
@@ -68,6 +68,25 @@ class RegulationConfig(Section):
         le=10,
         least=MILLIMETRE,
         because="farther away nobody can tell",
+    )
+    critical_gap: float | None = option(
+        None,
+        "s",
+        "to the next vehicle with priority, in which the ego goes first; none: by manoeuvre, as in "
+        "the Highway Capacity Manual",
+        flag="--critical-gap",
+        ge=0.5,
+        le=60,
+        because="nobody crosses in half a second, and nobody waits for a minute's gap",
+    )
+    follow_up_gap: float | None = option(
+        None,
+        "s",
+        "after the vehicle before it has gone through the same gap; none: likewise",
+        flag="--follow-up-gap",
+        ge=0,
+        le=60,
+        because="it is a headway of vehicles that start one after the other",
     )
     comfortable_deceleration: float = option(
         2.0,

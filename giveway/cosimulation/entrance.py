@@ -11,10 +11,13 @@ from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
 from giveway.ego.controllers import make_controller
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
+from giveway.ego.junctions import junctions_on
 from giveway.ego.lights import Lights
-from giveway.ego.speed_profile import profile_of
+from giveway.ego.right_of_way import RightOfWay
+from giveway.ego.speed_profile import SpeedProfile, profile_of
 from giveway.ego.stops import Stop, Stops
 from giveway.ego.waiting import WaitingEgo
+from giveway.ego.way_ahead import WayAhead
 from giveway.errors import ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.path import EgoPath
@@ -133,23 +136,33 @@ class Entrance:
         hardest = config.mpc.force_limit / config.vehicle.mass
         ego.start(speed)
         goal = config.ego.travel_distance
-        lights = Lights(
-            lane_path.lights if config.regulation.traffic_lights else (),
-            comfortable=config.regulation.comfortable_deceleration,
-            hardest=hardest,
-        )
         halts = Stops(stops, clock=self._session.time, time_step=self._time_step, hardest=hardest)
+        way = WayAhead(
+            self._lights(config, lane_path, hardest),
+            halts if stops else None,
+            self._crossings(config, path, shape),
+            self._right_of_way(config, path, lane_path, shape, profile),
+        )
         return Ego(
             ego,
             path,
             departure,
             shape,
-            lights,
+            way,
             path.length - departure if goal is None else goal,
             self._time_step,
-            halts if stops else None,
-            self._crossings(config, path, shape),
             profile,
+        )
+
+    def _lights(self, config: EgoRunConfig, lane_path: LanePath, hardest: float) -> Lights | None:
+        """The traffic lights that the ego heeds; None: there are none."""
+        if not (config.regulation.traffic_lights and lane_path.lights):
+            return None
+        return Lights(
+            lane_path.lights,
+            comfortable=config.regulation.comfortable_deceleration,
+            hardest=hardest,
+            arrows=config.heeds_priority,
         )
 
     def _crossings(
@@ -161,6 +174,31 @@ class Entrance:
         found = crossings_on(path, shape, self._session.lanes.crossings)
         kerb_distance = config.regulation.kerb_distance
         return Crossings(found, length=shape.length, kerb_distance=kerb_distance) if found else None
+
+    def _right_of_way(
+        self,
+        config: EgoRunConfig,
+        path: EgoPath,
+        lane_path: LanePath,
+        shape: VehicleShape,
+        profile: SpeedProfile | None,
+    ) -> RightOfWay | None:
+        """Who goes first at the junctions; None: there are none, or the ego keeps to no law."""
+        if not config.heeds_priority:
+            return None
+        session, regulation = self._session, config.regulation
+        passages = lane_path.passages
+        found = junctions_on(path, passages, shape.width, session.junctions, session.lanes)
+        if not found:
+            return None
+        return RightOfWay(
+            found,
+            name=config.ego_id,
+            length=shape.length,
+            fastest=float(regulation.reference_speed) if profile is None else profile.fastest,
+            critical_gap=regulation.critical_gap,
+            follow_up_gap=regulation.follow_up_gap,
+        )
 
 
 def require_way(ego: WaitingEgo, path: EgoPath, departure: float) -> None:
@@ -215,6 +253,7 @@ def _joined(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, L
                 limit._replace(station=limit.station - station + shift)
                 for limit in lane_path.limits
             ),
+            passages=tuple(passage.shifted(shift - station) for passage in lane_path.passages),
         ),
     )
 

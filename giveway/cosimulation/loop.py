@@ -23,7 +23,9 @@ from controller import ControllerError
 from fmus import FmuError
 from giveway.cosimulation.assembly import Parts
 from giveway.cosimulation.mirror import Mirror
+from giveway.cosimulation.priority import rooms_before
 from giveway.cosimulation.standstill import Standstill
+from giveway.cosimulation.traffic import TrafficWatch
 from giveway.crowd.disturbance import disturbance_of
 from giveway.crowd.reachable import spawn_remark, way_of
 from giveway.ego.ego import Ego
@@ -78,6 +80,7 @@ class Loop:
         self.remarks = []
         self._standstill = Standstill()
         self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
+        self._traffic = TrafficWatch(parts.sumo)
         self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
         self._far_background = -self._far_steps
         self._near = parts.config.record.near
@@ -180,14 +183,24 @@ class Loop:
         if parts.exchange is not None:
             parts.exchange.update(self._places())
         self._mirror.read(self._egos, self._roster.crowd.position)
-        for ego in self._egos:
-            if ego.light_systems:
-                ego.see_lights(parts.sumo.light_states(ego.light_systems))
+        rooms = self._look_ahead()
         background, yielding = self._mirror.background, parts.yielding
         if yielding is not None and (background.ids or yielding.limited):
-            yielding.update(background, self._roster.crowd, self._egos)
+            yielding.update(background, self._roster.crowd, self._egos, rooms)
         self._record_background()
         self._recorder.ledger(self._roster.ledger)
+
+    def _look_ahead(self) -> dict[str, float]:
+        """Let egos take note of lights and traffic; who has to wait for one, and the room [m]."""
+        sumo, rooms = self._parts.sumo, dict[str, float]()
+        traffic = self._traffic.of(self._mirror.background, self._egos)
+        for ego in self._egos:
+            if ego.way.systems or traffic:
+                states = sumo.light_states(ego.way.systems)
+                ego.way.look(sumo.time, ego.front, ego.vehicle.speed, states, traffic)
+                for name, room in rooms_before(ego, states, traffic).items():
+                    rooms[name] = min(room, rooms.get(name, room))
+        return rooms
 
     def _remark_on_spawn_area(self) -> None:
         """Say so if the added pedestrians start where no ego comes by."""
@@ -195,9 +208,9 @@ class Loop:
         self.remarks += [remark] if remark else []
 
     def _remark_on_missed_stops(self, ego: Ego) -> None:
-        if ego.stops is not None and ego.stops.missed:
+        if ego.way.stops is not None and ego.way.stops.missed:
             self.remarks.append(
-                f"ego '{ego.id}': it drove past {ego.stops.missed} of its stops, which were too "
+                f"ego '{ego.id}': it drove past {ego.way.stops.missed} of its stops, which were too "
                 "near to halt at"
             )
 

@@ -12,7 +12,8 @@ ego or in contact with one: the two would wait for each other for ever.
 """
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -29,9 +30,11 @@ _LOOK_AHEAD = 1.0  # [s] for which pedestrians are expected to keep their veloci
 _REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
 _BESIDE_EGO = 0.1  # [m] that vehicles keep beside an ego at least
 _BEHIND_EGO = 0.5  # [m] at which they stand behind one
+_BEFORE_LINE = 1.0  # [m] at which vehicles wait before theirs
 _STANDING = 0.2  # [m/s]
 _PULLING_AWAY = 2.0  # [m/s]
 _APART = 0.5  # [m] at most between the points of an ego's outline that are looked at
+NOBODY: Mapping[str, float] = MappingProxyType({})
 
 
 class Yielding:
@@ -65,7 +68,11 @@ class Yielding:
         return {"vehicles_that_yielded": len(self._ever), "time_yielding": round(self._time, 6)}
 
     def update(
-        self, background: BackgroundVehicles, crowd: Crowd, egos: Sequence[Ego] = ()
+        self,
+        background: BackgroundVehicles,
+        crowd: Crowd,
+        egos: Sequence[Ego] = (),
+        rooms: Mapping[str, float] = NOBODY,
     ) -> None:
         """Once after each SUMO step: limit vehicles with somebody ahead, release the others.
 
@@ -73,11 +80,16 @@ class Yielding:
             background: the background vehicles now.
             crowd: the pedestrians now.
             egos: on the road now.
+            rooms: [m] up to the lines of those that wait there for an ego, by their names.
         """
         limits = self._limits(background, crowd) if background.ids and len(crowd) else {}
         if background.ids and egos:
             for name, limit in self._behind_egos(background, egos).items():
                 limits[name] = min(limit, limits.get(name, math.inf))
+        for name, room in rooms.items():
+            b = self._vehicles.deceleration(name)
+            limit = _safe_speed(room - _BEFORE_LINE, 0.0, b, self._reaction)
+            limits[name] = min(limit, limits.get(name, math.inf))
         before = self.limited
         if before and before.keys() - limits.keys():
             gone = before.keys() - set(background.ids)

@@ -1,7 +1,6 @@
 """One vehicle that giveway drives: its FMU, its controller, its path."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 
@@ -9,17 +8,15 @@ from controller import Decision, Observation
 from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
-from giveway.ego.crossings import Crossings
 from giveway.ego.foresight import CrowdForesight
-from giveway.ego.leader import NO_LEADER, Leader, given_up
-from giveway.ego.lights import Lights
+from giveway.ego.leader import NO_LEADER, given_up
 from giveway.ego.path_view import PathView
 from giveway.ego.relevance import PREDICT_ALL, Relevance
 from giveway.ego.safety import Guard
 from giveway.ego.seen import Seen
 from giveway.ego.speed_profile import SpeedProfile
-from giveway.ego.stops import Stops
 from giveway.ego.waiting import WaitingEgo
+from giveway.ego.way_ahead import WayAhead
 from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
@@ -46,11 +43,9 @@ class Ego:
         path: of the ego.
         departure: station [m] of the front bumper where the FMU's position is 0.
         shape: of its body.
-        lights: the traffic lights on its path.
+        way: what bounds its way ahead.
         goal: the FMU's position [m] at which it is done.
         time_step: [s].
-        stops: that it serves; None: none.
-        crossings: on its path, at which it gives way; None: at none.
         profile: its speed where nothing is in its way; None: the controller's own.
     """
 
@@ -60,11 +55,9 @@ class Ego:
         path: EgoPath,
         departure: float,
         shape: VehicleShape,
-        lights: Lights,
+        way: WayAhead,
         goal: float,
         time_step: float,
-        stops: Stops | None = None,
-        crossings: Crossings | None = None,
         profile: SpeedProfile | None = None,
     ) -> None:
         config = waiting.config
@@ -74,12 +67,7 @@ class Ego:
         self.path = path
         self.departure = departure
         self.shape = shape
-        self.lights = lights
-        self.stops = stops
-        self.crossings = crossings
-        self.light_systems = lights.systems
-        if crossings is not None:
-            self.light_systems |= crossings.systems
+        self.way = way
         self._profile = profile
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal = goal
@@ -111,7 +99,6 @@ class Ego:
         # the distance to a vehicle that it keeps on the average.
         self._plans = plans = waiting.controller.foresees
         self._lag = config.regulation.comfortable_deceleration * _REACTION if plans else 0.0
-        self._heed_lights = config.regulation.traffic_lights and bool(lights.systems)
 
     def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
         """Answers the planning controller how pedestrians would react to a manoeuvre."""
@@ -196,7 +183,7 @@ class Ego:
                 kept = self.config.regulation.safe_distance
                 tolerated = given_up(leader, vehicles, front, speed, kept, self._origin)
             ahead = np.minimum(ahead, vehicles + tolerated)
-        stop, stops_for = self._place_to_stop(crowd, leader)
+        stop, stops_for = self.way.stop_at(front, speed, crowd, leader)
         if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
             allowed = stop + _BEYOND + self._origin
             ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
@@ -214,25 +201,6 @@ class Ego:
             poses,
             row,
         )
-
-    def _place_to_stop(self, crowd: Crowd, leader: Leader) -> tuple[float, str]:
-        """Station [m] at which the front bumper has to stop first, and what for; (inf, "")."""
-        front, speed = self.front, self.vehicle.speed
-        place, cause = math.inf, ""
-        if self._heed_lights:
-            place, cause = self.lights.stop_at(front, speed), "light"
-        if self.stops is not None:
-            place, cause = min((place, cause), (self.stops.stop_at(front, speed), "stop"))
-        if self.crossings is not None:
-            stop = self.crossings.stop_at(front, speed, crowd, leader)
-            place, cause = min((place, cause), (stop, "yield"))
-        return place, cause if place < math.inf else ""
-
-    def see_lights(self, states: Mapping[str, str]) -> None:
-        """Take note of the lights' states: of each system, one letter per movement (SUMO's)."""
-        self.lights.update(states, self.front, self.vehicle.speed)
-        if self.crossings is not None:
-            self.crossings.update(states)
 
     def decide(self, step: int, time: float, seen: Seen) -> Decision:
         """The force for the step from t_k on; kept for :meth:`advance`.
@@ -319,8 +287,8 @@ class Ego:
         """Step the FMU with the force decided on."""
         self._pose = None
         self.vehicle.step(self._force)
-        if self.stops is not None:
-            self.stops.pass_time(self.front, self.vehicle.speed)
+        if self.way.stops is not None:
+            self.way.stops.pass_time(self.front, self.vehicle.speed)
 
     def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
         """The row of this instant for the tables."""

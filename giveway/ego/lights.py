@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from giveway.sumo.lanes import Light
 
 STOP_BEFORE = 1.0  # [m] before the line the front bumper is to stand
-_RED = frozenset("rRus")  # red, red with yellow, red with a green arrow (after a stop)
+_RED = frozenset("rRu")  # red, red with yellow
+_ARROW = frozenset("s")  # red with a green arrow: after a stop one may go
 _YELLOW = frozenset("yY")
 
 
@@ -20,17 +21,26 @@ class Lights:
         lights: in the order of the path.
         comfortable: deceleration [m/s^2] that is demanded at yellow.
         hardest: deceleration [m/s^2] that the vehicle is capable of.
+        arrows: at a green arrow beside red somebody else stops and gives way; else it is red.
 
     Attributes:
         systems: SUMO's ids of the traffic lights on the path.
     """
 
-    def __init__(self, lights: Sequence[Light], *, comfortable: float, hardest: float) -> None:
+    def __init__(
+        self,
+        lights: Sequence[Light],
+        *,
+        comfortable: float,
+        hardest: float,
+        arrows: bool = False,
+    ) -> None:
         self._lights = tuple(lights)
         self._comfortable = comfortable
         self._hardest = hardest
         self._colours = ["g"] * len(lights)
         self._passing = [False] * len(lights)  # decided at yellow
+        self._red = _RED if arrows else _RED | _ARROW
         self._next = 0
         self.systems = frozenset(light.system for light in self._lights)
 
@@ -58,7 +68,7 @@ class Lights:
             self._next += 1
         for i in range(self._next, len(self._lights)):
             colour = self._colours[i]
-            stops = colour in _RED or (colour in _YELLOW and not self._passing[i])
+            stops = colour in self._red or (colour in _YELLOW and not self._passing[i])
             if stops and self._needed(i, front, speed) <= self._hardest:
                 return self._lights[i].station - STOP_BEFORE
         return math.inf

@@ -34,6 +34,20 @@ class Light(NamedTuple):
     link: int  # index of the movement in the system's state
 
 
+class Passage(NamedTuple):
+    """A lane path's way through a junction."""
+
+    entry: float  # [m] station of the line before it
+    exit: float  # [m] station of the next edge's lane
+    inside: tuple[str, ...]  # lanes in between
+    waiting: tuple[float, ...]  # [m] stations inside at which SUMO's vehicles wait for others
+
+    def shifted(self, by: float) -> "Passage":
+        """The same passage of a path that begins ``by`` [m] earlier."""
+        waiting = tuple(station + by for station in self.waiting)
+        return self._replace(entry=self.entry + by, exit=self.exit + by, waiting=waiting)
+
+
 class SpeedLimit(NamedTuple):
     """From where on a lane path another lane's limit holds."""
 
@@ -50,6 +64,7 @@ class LanePath:
     first: str  # the lane that it begins on
     edges: tuple[float, ...]  # station [m] at which each edge of the route begins
     limits: tuple[SpeedLimit, ...]  # of each lane, in order; the first holds from the beginning
+    passages: tuple[Passage, ...]  # through junctions whose lanes inside the network has
 
 
 class Lanes:
@@ -102,6 +117,7 @@ class Lanes:
         lights: list[Light] = []
         begins: list[float] = []
         limits: list[SpeedLimit] = []
+        passages: list[Passage] = []
         driven = 0.0
         for number, (entry, leave) in enumerate(pairs):
             shape = self._changing(edges[number], entry, leave, start if number == 0 else 0.0)
@@ -112,24 +128,33 @@ class Lanes:
             driven += _length(shape)
             if number < len(links):
                 link = links[number]
-                light = self._movements.get((f"{edges[number]}_{leave}", link.lane))
+                light = self.signals.get((f"{edges[number]}_{leave}", link.lane))
                 if light is not None:
                     lights.append(Light(driven, *light))
-                limits.extend(self._limits_inside(link, driven, shape[-1:]))
+                begins_inside = self._begins_inside(link, driven, shape[-1:])
+                speeds = map(self.speed_limit, link.via)
+                limits.extend(map(SpeedLimit, begins_inside, speeds))
                 inside = [self.shape(name) for name in link.via]
                 following = self.shape(link.lane)
                 onwards = np.concatenate([shape[-1:], *inside, following[:1]])
                 points.extend(inside)
-                driven += _length(onwards)
-        first_lane = f"{edges[0]}_{pairs[0][0]}"
+                line, driven = driven, driven + _length(onwards)
+                if link.via:
+                    waiting = tuple(begins_inside[1:])
+                    passages.append(Passage(line, driven, link.via, waiting))
         return LanePath(
-            np.concatenate(points), tuple(lights), first_lane, tuple(begins), tuple(limits)
+            np.concatenate(points),
+            tuple(lights),
+            f"{edges[0]}_{pairs[0][0]}",
+            tuple(begins),
+            tuple(limits),
+            tuple(passages),
         )
 
     @cached_property
     def crossings(self) -> tuple[Crossing, ...]:
         """All crossings of the network."""
-        return crossings(self._sumo, self._movements)
+        return crossings(self._sumo, self.signals)
 
     def shape(self, lane: str) -> Array:
         """(k, 2) [m] centre line of a lane."""
@@ -258,18 +283,18 @@ class Lanes:
             found.append(Link(target, tuple(via)))
         return found
 
-    def _limits_inside(self, link: Link, station: float, end: Array) -> list[SpeedLimit]:
-        """The limits on the lanes of ``link``, which begins at ``station`` at ``end`` (1, 2)."""
-        limits = []
+    def _begins_inside(self, link: Link, station: float, end: Array) -> list[float]:
+        """Stations [m] of the lanes of ``link``, which begins at ``station`` at ``end`` (1, 2)."""
+        begins = []
         for name in link.via:
-            limits.append(SpeedLimit(station, self.speed_limit(name)))
+            begins.append(station)
             shape = self.shape(name)
             station += _length(np.concatenate([end, shape]))
             end = shape[-1:]
-        return limits
+        return begins
 
     @cached_property
-    def _movements(self) -> dict[tuple[str, str], tuple[str, int]]:
+    def signals(self) -> dict[tuple[str, str], tuple[str, int]]:
         """The traffic light that governs each link from lane to lane, if one does."""
         return {
             (source, target): (system, index)

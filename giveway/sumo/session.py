@@ -29,6 +29,7 @@ from giveway.scenario_files.outputs import is_file
 from giveway.sumo.first_reading import read_first
 from giveway.sumo.footpaths import FootPaths
 from giveway.sumo.handover import NOWHERE
+from giveway.sumo.junctions import Junctions
 from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import direct, import_libsumo
 from giveway.sumo.persons import ScenarioPersons
@@ -95,6 +96,7 @@ class SumoSession:
         self._light_state = direct(self._sumo, "trafficlight", "getRedYellowGreenState")
         self._moves_pending = False
         self.lanes = Lanes(self._sumo, self._config_file)
+        self.junctions = Junctions(self._sumo, scenario.net_file, self.lanes)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())
         self._just_added: dict[str, None] = {}  # they depart with the next step

@@ -1,25 +1,19 @@
 """Reads the part of a SUMO network file that people walk on.
 
-The file is streamed through expat and only what concerns pedestrians is kept, so that a network of
-50 MB takes seconds and little memory.
+Only what concerns pedestrians is kept, so that a network of 50 MB takes seconds and little memory.
 """
 
-import gzip
-import zlib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
-from xml.parsers import expat
 
 import numpy as np
 
-from giveway.errors import ScenarioError
+from giveway.scenario_files.network import read_network
 from giveway.walkways.gates import Array
 
 _PEDESTRIAN = "pedestrian"
 _CAR = "passenger"
 _DEFAULT_WIDTH = 3.2  # [m] SUMO's width of a lane that names none
-_GZIP_MAGIC = b"\x1f\x8b"
 
 
 @dataclass(frozen=True)
@@ -94,41 +88,8 @@ def survey(net_file: Path) -> Survey:
         ScenarioError: unreadable, damaged, or no SUMO network.
     """
     reader = _Reader()
-    try:
-        with net_file.open("rb") as raw:
-            zipped = raw.read(2) == _GZIP_MAGIC
-            raw.seek(0)
-            with gzip.GzipFile(fileobj=raw) if zipped else raw as stream:
-                reader.read(stream)
-    except OSError as error:
-        # gzip's own complaints are OSErrors without a strerror.
-        raise ScenarioError(
-            f"{net_file}: the network cannot be read: {error.strerror or error}"
-        ) from error
-    except (EOFError, zlib.error) as error:
-        raise ScenarioError(
-            f"{net_file}: the network's gzip is damaged ({error}); write it again"
-        ) from error
-    except expat.ExpatError as error:
-        raise ScenarioError(
-            f"{net_file}: not XML ({error}); expected a SUMO network, made by netconvert"
-        ) from error
-    except (KeyError, ValueError) as error:
-        reason = f"attribute {error} is missing" if isinstance(error, KeyError) else str(error)
-        raise ScenarioError(
-            f"{net_file}: line {reader.line}: {reason}; expected a SUMO network, made by netconvert"
-        ) from error
-    if not reader.is_network:
-        raise ScenarioError(
-            f"{net_file}: no <net> in it; expected a SUMO network, made by netconvert"
-        )
+    read_network(net_file, reader.tags)
     return reader.survey
-
-
-class _Stream(Protocol):
-    """What expat reads from."""
-
-    def read(self, size: int = ..., /) -> bytes: ...
 
 
 class _Reader:
@@ -136,35 +97,15 @@ class _Reader:
 
     def __init__(self) -> None:
         self.survey = Survey()
-        self.is_network = False
         self._edge: dict[str, str] = {}
         self._exclusive = False
-        self._parser = expat.ParserCreate()
-        self._parser.buffer_text = True
-        self._parser.StartElementHandler = self._start
-        self._tags = {
-            "net": self._net,
+        self.tags = {
             "location": self._location,
             "edge": self._edge_tag,
             "lane": self._lane,
             "junction": self._junction,
             "connection": self._connection,
         }
-
-    def read(self, stream: _Stream) -> None:
-        self._parser.ParseFile(stream)
-
-    @property
-    def line(self) -> int:
-        return self._parser.CurrentLineNumber
-
-    def _start(self, tag: str, attributes: dict[str, str]) -> None:
-        handler = self._tags.get(tag)
-        if handler is not None:
-            handler(attributes)
-
-    def _net(self, _: dict[str, str]) -> None:
-        self.is_network = True
 
     def _location(self, attributes: dict[str, str]) -> None:
         x_min, y_min, x_max, y_max = map(float, attributes["convBoundary"].split(","))

@@ -1,0 +1,69 @@
+"""Background vehicles let egos with priority go first at junctions.
+
+SUMO's drivers look for vehicles that approach a junction on a lane. An ego that is moved from
+outside is not reliably one of them (SUMO issues 6140, 6152, 10952), so that a car from a side road
+would drive into its way. Therefore those that have to give way to it, by the network's ``request``
+rows and the running light, stop at their line until it has gone.
+"""
+
+from collections.abc import Mapping
+
+from giveway.ego.ego import Ego
+from giveway.ego.gaps import travel_time
+from giveway.ego.junctions import PathJunction
+from giveway.ego.right_of_way import RED, SIGHT, Approach, Traffic, letter_of
+
+_PULL_AWAY = 2.0  # [m/s^2] of those that have to wait, if they did not
+_COMING, _LEAVING = 1.5, 1.0  # [m/s^2] of the ego
+_USUAL = 13.9  # [m/s]
+_AFTER, _BEFORE = 1.0, 0.5  # [s] between the ego and whoever passes before or after it
+_HARDEST = 3.0  # [m/s^2] of braking that is asked of anybody
+
+
+def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[str, float]:
+    """The room [m] up to their lines of those that have to wait there for an ego, by their names.
+
+    Args:
+        ego: on the road.
+        states: of each light system, one letter per movement (SUMO's).
+        traffic: who approaches each junction.
+    """
+    found: dict[str, float] = {}
+    for place in ego.way.visited:
+        ahead = place.entry - ego.front
+        if ahead > SIGHT or ego.front > place.exit:
+            continue
+        letter = letter_of(place.movement, states)
+        inside = ahead <= 0.0
+        if not inside and (ego.way.stop <= place.entry or letter in RED):
+            continue  # it waits itself
+        for other in traffic.get(place.movement.junction, ()):
+            if other.name == ego.id or other.distance <= 0.0:
+                continue
+            needed = other.speed**2 / (2.0 * other.distance)
+            if needed <= _HARDEST and _gives_way(place, other, inside, states, ego):
+                found[other.name] = min(other.distance, found.get(other.name, other.distance))
+    return found
+
+
+def _gives_way(
+    place: PathJunction, other: Approach, inside: bool, states: Mapping[str, str], ego: Ego
+) -> bool:
+    """Whether somebody has to let the ego go first, and the two would meet."""
+    where = place.conflicts.get(other.number)
+    movement = place.movements[other.number]
+    if where is None or ego.front - ego.shape.length > where.leave:
+        return False
+    its = letter_of(movement, states)
+    named = place.movement.number in movement.yields_to
+    mutual = other.number in place.movement.yields_to
+    if its in RED or its == "G" or not named or (mutual and not inside):
+        return False
+    speed, front = ego.vehicle.speed, ego.front
+    comes = travel_time(where.enter - front, speed, _COMING, max(_USUAL, speed))
+    goes = travel_time(where.leave + ego.shape.length - front, speed, _LEAVING, max(speed, 4.0))
+    enters, clears = (
+        travel_time(other.distance + station, other.speed, _PULL_AWAY, max(_USUAL, other.speed))
+        for station in (where.other_enter, where.other_leave + other.length)
+    )
+    return clears + _AFTER > comes and goes + _BEFORE > enters

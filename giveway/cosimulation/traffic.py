@@ -1,0 +1,129 @@
+"""Who approaches the junctions on the egos' ways: SUMO's vehicles and the egos themselves."""
+
+from collections.abc import Mapping, Sequence, Set
+from typing import NamedTuple
+
+import numpy as np
+
+from giveway.ego.ego import Ego
+from giveway.ego.right_of_way import Approach, Traffic
+from giveway.sumo.background import BackgroundVehicles
+from giveway.sumo.session import SumoSession
+
+_RANGE = 150.0  # [m] from an ego, within which others are looked at
+_STANDING = 0.1  # [m/s]
+_FORGET = 4  # more than this times as many remembered ways as vehicles are too many
+
+
+class _Visit(NamedTuple):
+    """A junction on somebody's way."""
+
+    junction: str
+    number: int  # of the movement through it
+    station: float  # [m] of its line, from the beginning of the present lane
+
+
+class TrafficWatch:
+    """Finds who approaches a junction, once after each of SUMO's steps.
+
+    Args:
+        session: the running simulation.
+    """
+
+    def __init__(self, session: SumoSession) -> None:
+        self._session = session
+        self._visits: dict[tuple[str, str, str], tuple[_Visit, ...]] = {}
+        self._inside: dict[str, _Visit] = {}  # of each lane inside a junction that is known
+        self._known: set[str] = set()
+        self._stands: dict[str, float] = {}  # since when [s]
+
+    def of(self, background: BackgroundVehicles, egos: Sequence[Ego]) -> Traffic:
+        """Who approaches the junctions ahead of egos, egos included; the nearest first.
+
+        Args:
+            background: the background vehicles now.
+            egos: on the road now.
+        """
+        found: dict[str, list[Approach]] = {}
+        for ego in egos:
+            found |= {junction: [] for junction in ego.way.junctions(ego.front)}
+        if found:
+            self._learn(found.keys())
+            self._add_background(background, egos, found)
+            self._add_egos(egos, found)
+            for approaches in found.values():
+                approaches.sort(key=lambda approach: (approach.distance, approach.name))
+        return found
+
+    def _learn(self, junctions: Set[str]) -> None:
+        """Find out which lanes are inside junctions that are new."""
+        lanes = self._session.lanes
+        for junction in junctions - self._known:
+            for movement in self._session.junctions.of(junction).values():
+                station = 0.0
+                for lane in movement.inside:
+                    self._inside[lane] = _Visit(junction, movement.number, station)
+                    station += lanes.length(lane)
+            self._visits.clear()
+            self._known.add(junction)
+
+    def _add_background(
+        self,
+        background: BackgroundVehicles,
+        egos: Sequence[Ego],
+        found: Mapping[str, list[Approach]],
+    ) -> None:
+        if len(self._visits) > _FORGET * len(background.ids):
+            self._visits.clear()
+        near = np.zeros(len(background.ids), dtype=bool)
+        for ego in egos:
+            x, y, _ = ego.pose
+            near |= np.hypot(background.x - x, background.y - y) < _RANGE
+        vehicles = self._session.vehicles
+        for i in np.flatnonzero(near):
+            name, speed = background.ids[i], float(background.speed[i])
+            lane, route, position = vehicles.whereabouts(name)
+            if not lane:
+                continue
+            key = name, lane, route
+            visits = self._visits.get(key)
+            if visits is None:
+                visits = self._visits[key] = self._find(name, lane)
+            standing = self._standing(name, speed)
+            for junction, number, station in visits:
+                if junction in found:
+                    distance, length = station - position, float(background.length[i])
+                    approach = Approach(name, number, distance, speed, length, standing)
+                    found[junction].append(approach)
+
+    def _find(self, name: str, lane: str) -> tuple[_Visit, ...]:
+        """The junctions on a vehicle's way; stations are SUMO's positions on its lane."""
+        lanes, vehicles = self._session.lanes, self._session.vehicles
+        visits, begin = [], 0.0
+        for each in vehicles.lanes_ahead(name, lane, _RANGE):
+            inside = self._inside.get(each)
+            if inside is not None and (inside.station == 0.0 or each == lane):
+                visits.append(inside._replace(station=begin - inside.station))
+            begin += vehicles.lane_length(lane) if each == lane else lanes.length(each)
+        return tuple(visits)
+
+    def _add_egos(self, egos: Sequence[Ego], found: Mapping[str, list[Approach]]) -> None:
+        for ego in egos:
+            speed = ego.vehicle.speed
+            standing = self._standing(ego.id, speed)
+            for place in ego.way.visited:
+                distance = place.entry - ego.front
+                if place.movement.junction in found and distance < _RANGE:
+                    own = place.movement
+                    approach = Approach(
+                        ego.id, own.number, distance, speed, ego.shape.length, standing
+                    )
+                    found[own.junction].append(approach)
+
+    def _standing(self, name: str, speed: float) -> float:
+        """For how long [s] somebody has stood."""
+        if speed >= _STANDING:
+            self._stands.pop(name, None)
+            return 0.0
+        now = self._session.time
+        return now - self._stands.setdefault(name, now)

@@ -1,0 +1,111 @@
+"""The junctions on an ego's path: whose ways cross or join its own, and where."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from giveway.ego.gaps import Gap, gap_of
+from giveway.geometry.bodies import BODY
+from giveway.geometry.conflict import Conflict, conflict
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath
+from giveway.sumo.junctions import Junctions, Movement
+from giveway.sumo.lanes import Lanes, Passage
+
+_ASIDE = 0.3  # [m] between bodies that just do not touch
+_ONWARDS = 10.0  # [m] behind a junction, where ways that join are one
+_JOINED = 2.0  # [m] after which a vehicle that joins a way is its next one's leader
+
+
+class PathJunction(NamedTuple):
+    """A junction that a path leads through; all stations are the path's."""
+
+    entry: float  # [m] of the line before it
+    exit: float  # [m] where the next edge's lane begins
+    waiting: tuple[float, ...]  # [m] inside, where one may wait for others to pass
+    movement: Movement  # the path's own
+    movements: Mapping[int, Movement]  # of everybody, by number
+    conflicts: Mapping[int, Conflict]  # with the path; the others' stations count from their lines
+    gap: Gap  # that its driver wants where no light shows green
+    gap_at_lights: Gap
+
+
+def junctions_on(
+    path: EgoPath, passages: Sequence[Passage], width: float, junctions: Junctions, lanes: Lanes
+) -> tuple[PathJunction, ...]:
+    """The junctions on a path at which vehicles may meet, in its order.
+
+    Args:
+        path: the ego's.
+        passages: of its lane path.
+        width: of its body [m].
+        junctions: the network's.
+        lanes: likewise.
+    """
+    found = []
+    for passage in passages:
+        movements = junctions.at(passage.inside[-1])
+        own = next((m for m in movements.values() if m.inside == passage.inside), None)
+        if own is None:
+            continue
+        way = _piece(path, passage.entry, passage.exit + _ONWARDS)
+        apart = (width + BODY.width) / 2 + _ASIDE
+        conflicts: dict[int, Conflict] = {}
+        for number in sorted(own.meets | own.yields_to):
+            if number not in movements or movements[number].source == own.source:
+                continue  # people's, or it is behind the same leader
+            other = movements[number]
+            where = conflict(way, _way(other, lanes), apart)
+            if where is not None:
+                conflicts[number] = _on_path(where, passage.entry, own.target == other.target)
+        if conflicts:
+            found.append(
+                PathJunction(
+                    passage.entry,
+                    passage.exit,
+                    passage.waiting,
+                    own,
+                    movements,
+                    conflicts,
+                    gap_of(own, at_lights=False, major=_is_major(own, movements)),
+                    gap_of(own, at_lights=True, major=False),
+                )
+            )
+    return tuple(found)
+
+
+def _on_path(where: Conflict, entry: float, joins: bool) -> Conflict:
+    """A conflict in the path's stations; where two ways join, it is over once one has joined."""
+    if joins:
+        where = where._replace(
+            leave=min(where.leave, where.enter + _ONWARDS),
+            other_leave=min(where.other_leave, where.other_enter + _JOINED),
+        )
+    return where._replace(enter=where.enter + entry, leave=where.leave + entry)
+
+
+def _is_major(own: Movement, movements: Mapping[int, Movement]) -> bool:
+    """Whether who goes straight on from the same edge has priority."""
+    edge = own.source.rpartition("_")[0]
+    return any(
+        other.direction == "s" and other.state == "M" and other.source.rpartition("_")[0] == edge
+        for other in movements.values()
+    )
+
+
+def _piece(path: EgoPath, start: float, end: float) -> Array:
+    """(k, 2) [m] the path between two stations."""
+    inside = (path.stations > start) & (path.stations < end)
+    at = np.concatenate([[start], path.stations[inside], [min(end, path.length)]])
+    x, y = (np.interp(at, path.stations, column) for column in path.vertices.T)
+    return np.column_stack([x, y])
+
+
+def _way(movement: Movement, lanes: Lanes) -> Array:
+    """(k, 2) [m] the way of a movement's vehicles from their line on."""
+    onwards = lanes.shape(movement.target)
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(onwards, axis=0).T))])
+    at = np.concatenate([along[along < _ONWARDS], [min(_ONWARDS, along[-1])]])
+    x, y = (np.interp(at, along, column) for column in onwards.T)
+    return np.concatenate([*map(lanes.shape, movement.inside), np.column_stack([x, y])])

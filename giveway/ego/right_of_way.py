@@ -1,0 +1,286 @@
+"""Right of way among vehicles: where the ego waits at a junction for those who go first.
+
+Who goes first says the network (its links' states and ``request`` rows) and, where there is one, the
+running traffic light: red and yellow are :mod:`giveway.ego.lights`' business; with ``G`` the ego
+goes first; with ``g``, ``s`` (after a stop), ``o`` and no light at all it lets those go first whom
+``request`` names, unless their light is red. At an all-way stop the one who stood first goes first.
+
+Those with priority come first if the ego, going on, would find them in its way: it needs its
+critical gap (:mod:`giveway.ego.gaps`) from its line on, and a second after it has cleared their way.
+It waits at the line, or where SUMO's vehicles wait inside the junction if it may go as far as that.
+It does not enter a junction that a slow vehicle ahead keeps it from leaving.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from giveway.ego.crossings import HARDEST, STOP_BEFORE
+from giveway.ego.gaps import travel_time
+from giveway.ego.junctions import PathJunction
+from giveway.ego.leader import NO_LEADER, Leader
+from giveway.geometry.conflict import Conflict
+from giveway.sumo.junctions import Movement
+
+SIGHT = 60.0  # [m] before a junction from which on others are looked at
+_PULL_AWAY = 1.5  # [m/s^2] of the ego
+_COMING, _LEAVING = 1.0, 1.0  # [m/s^2] of others: a little sooner, and no later
+_USUAL = 13.9  # [m/s] that others may speed up to
+_AFTER, _BEFORE = 1.0, 0.5  # [s] between the ego and whoever passes after or before it
+_STAYS = 3.0  # [s] after which one who stands and need not will go on standing
+_STANDING = 0.2  # [m/s]
+_CRAWLING = 2.0  # [m/s] a vehicle ahead that is slower may come to a stand
+_GAP = 1.0  # [m] behind the ego once it has left a junction
+_AT_LINE = 4.0  # [m] before the line a vehicle stands at it
+_DECIDED = 10.0  # [m] before the line the ego keeps to its decision to go
+_STOPS_AT_YELLOW = 2.5  # [m/s^2] of braking with which others stop at yellow
+RED, _YELLOW = frozenset("rRu"), frozenset("yY")
+
+
+class Approach(NamedTuple):
+    """A vehicle on its way through a junction."""
+
+    name: str
+    number: int  # of its movement
+    distance: float  # [m] of its front from its line; negative: inside the junction
+    speed: float  # [m/s]
+    length: float  # [m]
+    standing: float  # [s] for which it has stood
+
+
+Traffic = Mapping[str, Sequence[Approach]]
+"""Who approaches each junction, by its id; the nearest first, the egos among them."""
+
+
+class RightOfWay:
+    """Watches the junctions on one ego's path.
+
+    Args:
+        junctions: in the order of the path.
+        name: of the ego, who is among the traffic.
+        length: of the ego's body [m].
+        fastest: speed [m/s] that the ego drives at most.
+        critical_gap: [s]; None: the Highway Capacity Manual's.
+        follow_up_gap: [s]; None: likewise.
+
+    Attributes:
+        junctions: as above.
+        systems: SUMO's ids of the traffic lights that govern them.
+    """
+
+    def __init__(
+        self,
+        junctions: Sequence[PathJunction],
+        *,
+        name: str,
+        length: float,
+        fastest: float,
+        critical_gap: float | None = None,
+        follow_up_gap: float | None = None,
+    ) -> None:
+        self.junctions = tuple(junctions)
+        self._name = name
+        self._length = length
+        self._fastest = fastest
+        self._gap = critical_gap, follow_up_gap
+        self._next = 0
+        self._followed = -math.inf  # [s] when the vehicle before it went over the next line
+        self._stop = math.inf
+        self._going = False  # it has decided to go through the next junction
+        self._halted = False  # it has stood at the next line, where it has to
+        self._stood = 0.0  # [s] at the next line
+        self._time = -math.inf
+        self._green: dict[tuple[str, int], float] = {}  # since when others' lights have been green
+        self.systems = frozenset(place.movement.system for place in junctions) - {""}
+
+    def look(self, front: float) -> frozenset[str]:
+        """The junctions whose traffic matters to an ego at ``front`` [m]."""
+        while self._next < len(self.junctions) and self.junctions[self._next].exit < front:
+            self._next += 1
+            self._going = self._halted = False
+            self._stood, self._followed = 0.0, -math.inf
+        near = self.junctions[self._next :]
+        return frozenset(p.movement.junction for p in near if p.entry - front <= SIGHT)
+
+    def update(
+        self, time: float, front: float, speed: float, states: Mapping[str, str], traffic: Traffic
+    ) -> None:
+        """Decide where to wait, once after each of SUMO's steps.
+
+        Args:
+            time: SUMO's clock [s].
+            front: station of the front bumper [m].
+            speed: [m/s].
+            states: of each light system, one letter per movement (SUMO's).
+            traffic: who approaches the junctions that :meth:`look` named.
+        """
+        passed, self._time = time - self._time, time
+        before, self._stop = self._stop, math.inf
+        for number in range(self._next, len(self.junctions)):
+            place = self.junctions[number]
+            if place.entry - front > SIGHT:
+                break
+            first = number == self._next
+            letter = letter_of(place.movement, states)
+            if first:
+                self._note(place, front, speed, passed, traffic)
+            stop = self._stop_in(place, letter, first, front, speed, states, traffic)
+            if first:
+                near = place.entry - front <= _DECIDED
+                self._going = stop == math.inf and (self._going or near) and letter not in RED
+            needed = speed * speed / (2.0 * max(stop + STOP_BEFORE - front, 1e-3))
+            if stop < math.inf and (needed <= HARDEST or abs(stop - before) <= STOP_BEFORE):
+                self._stop = min(self._stop, max(stop, min(front, stop + STOP_BEFORE)))
+
+    def stop_at(self, front: float, speed: float, leader: Leader = NO_LEADER) -> float:
+        """Station [m] at which the front bumper has to stop; inf: nowhere.
+
+        Args:
+            front: station of the front bumper [m].
+            speed: [m/s].
+            leader: the vehicle ahead.
+        """
+        stop = self._stop
+        if leader.speed < _CRAWLING:
+            for place in self.junctions[self._next :]:
+                if place.entry < front:
+                    continue
+                room = leader.station - place.exit
+                if leader.station > place.entry and room < self._length + _GAP + leader.speed:
+                    needed = speed * speed / (2.0 * max(place.entry - front, 1e-3))
+                    if needed <= HARDEST:
+                        stop = min(stop, max(place.entry - STOP_BEFORE, min(front, place.entry)))
+                break
+        return stop
+
+    def _note(
+        self, place: PathJunction, front: float, speed: float, passed: float, traffic: Traffic
+    ) -> None:
+        """Has the ego stood at the line, and for how long; has the vehicle before it gone over?"""
+        at_line = 0.0 <= place.entry - front <= _AT_LINE and speed < _STANDING
+        self._stood = self._stood + passed if at_line and passed < math.inf else 0.0
+        self._halted = self._halted or at_line
+        own = place.movement
+        for other in traffic.get(own.junction, ()):
+            if other.name == self._name:
+                continue
+            if other.number == own.number and -passed * other.speed < other.distance <= 0.0:
+                self._followed = self._time
+
+    def _stop_in(
+        self,
+        place: PathJunction,
+        letter: str,
+        first: bool,
+        front: float,
+        speed: float,
+        states: Mapping[str, str],
+        traffic: Traffic,
+    ) -> float:
+        """Station [m] at which the ego waits for others at one junction; inf: it does not."""
+        line = place.entry - STOP_BEFORE
+        before = front <= place.entry
+        if before and letter in "sw" and not (first and self._halted):
+            return line
+        gap = place.gap_at_lights if letter in "gG" else place.gap
+        critical, follow_up = (
+            usual if wanted is None else wanted
+            for usual, wanted in zip(gap, self._gap, strict=True)
+        )
+        if first and before and letter not in "GM" and self._time - self._followed < follow_up:
+            return line
+        if first and self._going:
+            critical = 0.0
+        stop, stay = math.inf, set[str]()
+        for other in traffic.get(place.movement.junction, ()):
+            where = None if other.name == self._name else place.conflicts.get(other.number)
+            source = place.movements[other.number].source
+            if where is None or front > where.enter or source in stay:
+                continue
+            if other.distance > 0.0 and self._stays(place, other, states):
+                stay.add(source)  # and who is behind it
+                continue
+            if not self._goes_first(place, letter, other, where, states):
+                continue
+            if not self._meets(place, other, where, front, speed, critical):
+                continue
+            inside = [w for w in place.waiting if front <= w + STOP_BEFORE and w <= where.enter]
+            if inside:
+                stop = min(stop, inside[-1])
+            elif before:
+                stop = min(stop, line)
+        return stop
+
+    def _stays(self, place: PathJunction, other: Approach, states: Mapping[str, str]) -> bool:
+        """Whether it could have gone on for some time, and has not."""
+        movement = place.movements[other.number]
+        stood = other.standing
+        if movement.system:
+            key = movement.system, movement.link
+            if letter_of(movement, states) in RED:
+                self._green.pop(key, None)
+                return False
+            stood = min(stood, self._time - self._green.setdefault(key, self._time))
+        return stood > _STAYS and self._stood > _STAYS
+
+    def _goes_first(
+        self,
+        place: PathJunction,
+        letter: str,
+        other: Approach,
+        where: Conflict,
+        states: Mapping[str, str],
+    ) -> bool:
+        """Whether the ego has to let it go first."""
+        movement = place.movements[other.number]
+        named = other.number in place.movement.yields_to
+        if other.distance <= 0.0:  # it is in the junction already
+            if other.distance + where.other_leave + other.length <= 0.0:
+                return False
+            there = other.distance + where.other_enter <= 0.0
+            waits = other.standing > 0.0  # inside the junction, for others
+            return there or other.speed > _CRAWLING or (named and letter != "G" and not waits)
+        if letter == "G" or not named:
+            return False
+        if movement.system:
+            its = letter_of(movement, states)
+            if its in RED:
+                return False
+            needed = other.speed**2 / (2.0 * other.distance)
+            return its not in _YELLOW or needed > _STOPS_AT_YELLOW
+        if letter == "w":
+            return other.distance < _AT_LINE and other.standing > self._stood
+        return True
+
+    def _meets(
+        self,
+        place: PathJunction,
+        other: Approach,
+        where: Conflict,
+        front: float,
+        speed: float,
+        critical: float,
+    ) -> bool:
+        """Whether the ego, going on, would find it in its way."""
+        fastest = max(self._fastest, speed)
+        line, enter, clear = (
+            travel_time(station - front, speed, _PULL_AWAY, fastest)
+            for station in (place.entry, where.enter, where.leave + self._length)
+        )
+        to_enter = other.distance + where.other_enter
+        to_leave = other.distance + where.other_leave + other.length
+        comes = travel_time(to_enter, other.speed, _COMING, max(_USUAL, other.speed))
+        slow = other.speed < _STANDING
+        goes = math.inf if slow else travel_time(to_leave, other.speed, _LEAVING, other.speed)
+        if (
+            place.movement.state == "Z" and other.distance > 0.0
+        ):  # a zip: who comes first goes first
+            return comes < enter < goes + _BEFORE
+        in_time = comes >= max(clear + _AFTER, line + critical if front <= place.entry else 0.0)
+        return not in_time and goes + _BEFORE > enter
+
+
+def letter_of(movement: Movement, states: Mapping[str, str]) -> str:
+    """The running light's letter for a movement, or the network's where no light governs it."""
+    state = states.get(movement.system, "")
+    return state[movement.link] if 0 <= movement.link < len(state) else movement.state

@@ -1,0 +1,91 @@
+"""What bounds the way ahead of an ego: lights, stops, crossings and junctions."""
+
+import math
+from collections.abc import Mapping
+
+from giveway.ego.crossings import Crossings
+from giveway.ego.leader import Leader
+from giveway.ego.lights import Lights
+from giveway.ego.right_of_way import RightOfWay, Traffic
+from giveway.ego.stops import Stops
+from pedestrian_model import Crowd
+
+
+class WayAhead:
+    """Finds the first place at which an ego has to stop.
+
+    Args:
+        lights: the traffic lights on its path; None: it heeds none.
+        stops: that it serves; None: none.
+        crossings: at which it gives way; None: at none.
+        right_of_way: at junctions; None: it keeps to none.
+
+    Attributes:
+        systems: SUMO's ids of the traffic lights that matter.
+        visited: the junctions on the path, where it keeps to right of way.
+        stop: station [m] at which it had to stop when it last asked; inf: nowhere.
+    """
+
+    def __init__(
+        self,
+        lights: Lights | None = None,
+        stops: Stops | None = None,
+        crossings: Crossings | None = None,
+        right_of_way: RightOfWay | None = None,
+    ) -> None:
+        self.stops = stops
+        self.stop = math.inf
+        self._lights = lights
+        self._crossings = crossings
+        self._right_of_way = right_of_way
+        self.visited = () if right_of_way is None else right_of_way.junctions
+        watched = [part for part in (lights, crossings, right_of_way) if part is not None]
+        self.systems = frozenset[str]().union(*(part.systems for part in watched))
+
+    def junctions(self, front: float) -> frozenset[str]:
+        """SUMO's ids of the junctions whose traffic matters to an ego at ``front`` [m]."""
+        return frozenset() if self._right_of_way is None else self._right_of_way.look(front)
+
+    def look(
+        self, time: float, front: float, speed: float, states: Mapping[str, str], traffic: Traffic
+    ) -> None:
+        """Take note of lights and traffic, once after each of SUMO's steps.
+
+        Args:
+            time: SUMO's clock [s].
+            front: station of the front bumper [m].
+            speed: [m/s].
+            states: of each light system, one letter per movement (SUMO's).
+            traffic: who approaches the junctions that :meth:`junctions` named.
+        """
+        if self._lights is not None:
+            self._lights.update(states, front, speed)
+        if self._crossings is not None:
+            self._crossings.update(states)
+        if self._right_of_way is not None:
+            self._right_of_way.update(time, front, speed, states, traffic)
+
+    def stop_at(
+        self, front: float, speed: float, crowd: Crowd, leader: Leader
+    ) -> tuple[float, str]:
+        """Station [m] at which the front bumper has to stop first, and what for; (inf, "").
+
+        Args:
+            front: station of the front bumper [m].
+            speed: [m/s].
+            crowd: the pedestrians as the ego sees them.
+            leader: the vehicle ahead.
+        """
+        place, cause = math.inf, ""
+        if self._lights is not None:
+            place, cause = self._lights.stop_at(front, speed), "light"
+        if self.stops is not None:
+            place, cause = min((place, cause), (self.stops.stop_at(front, speed), "stop"))
+        if self._crossings is not None:
+            stop = self._crossings.stop_at(front, speed, crowd, leader)
+            place, cause = min((place, cause), (stop, "yield"))
+        if self._right_of_way is not None:
+            stop = self._right_of_way.stop_at(front, speed, leader)
+            place, cause = min((place, cause), (stop, "yield"))
+        self.stop = place
+        return place, cause if place < math.inf else ""

@@ -1,0 +1,49 @@
+"""Where two ways come so close to one another that bodies on them would touch."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from giveway.geometry.kernel import Array
+
+_SAMPLE = 0.25  # [m] between the points of the ways that are compared
+
+
+class Conflict(NamedTuple):
+    """The part of each way that no two bodies can be on at once; stations of their fronts [m]."""
+
+    enter: float
+    leave: float
+    other_enter: float
+    other_leave: float
+
+
+def conflict(own: Array, other: Array, apart: float) -> Conflict | None:
+    """The conflict of two ways; None: there is none.
+
+    Args:
+        own: (k, 2) [m] one way.
+        other: (m, 2) [m] the other.
+        apart: [m] between the ways' middles, so that bodies on them do not touch.
+    """
+    along, points = _sampled(own)
+    other_along, other_points = _sampled(other)
+    away = points[:, None, :] - other_points[None, :, :]
+    close = np.hypot(away[:, :, 0], away[:, :, 1]) < apart
+    mine, others = np.flatnonzero(close.any(axis=1)), np.flatnonzero(close.any(axis=0))
+    if not len(mine):
+        return None
+    return Conflict(
+        float(along[mine[0]]),
+        float(along[mine[-1]]),
+        float(other_along[others[0]]),
+        float(other_along[others[-1]]),
+    )
+
+
+def _sampled(points: Array) -> tuple[Array, Array]:
+    """Stations (n,) [m] along a polyline, at most ``_SAMPLE`` apart, and the points (n, 2) there."""
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    stations = np.linspace(0.0, at[-1], max(2, int(np.ceil(at[-1] / _SAMPLE)) + 1))
+    x, y = (np.interp(stations, at, column) for column in points.T)
+    return stations, np.column_stack([x, y])
