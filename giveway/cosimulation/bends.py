@@ -7,9 +7,9 @@ the way of an ego on the next one, until SUMO's next step puts it back.
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.cosimulation.lane_paths import LanePaths
+from giveway.cosimulation.lane_paths import LanePathPool, LanePaths, path_from
 from giveway.ego.corridor import fill_poses
-from giveway.geometry.kernel import Array
+from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.path import EgoPath
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.vehicles import SumoVehicles
@@ -47,28 +47,29 @@ class Bends:
         """
         self._rows.clear()
         reach = background.speed * self._soon
-        moving = [row for row, i in enumerate(near) if reach[i] > _STRAIGHT]
+        moving = np.flatnonzero(reach[near] > _STRAIGHT)
         chosen = near[moving]
         names = [background.ids[i] for i in chosen]
         known = background.speed[chosen] * self._times[-1]
         numbers, positions = self._lane_paths.of(names, known.tolist())
         self._lane_paths.forget(background.ids)
-        poses = np.empty((len(self._times), len(moving), 4))
-        for row, i, number, position in zip(moving, chosen, numbers, positions, strict=True):
-            if number < 0:
-                continue
-            path = self._path(background, int(i), self._lane_paths.onwards(number, position))
+        turning = np.zeros(len(moving), dtype=np.bool_)
+        if len(moving):
+            fronts = np.column_stack([background.x[chosen], background.y[chosen]])
+            pool, headings = self._lane_paths.pool, background.heading[chosen]
+            fill_turning(fronts, headings, positions, numbers, pool, reach[chosen], turning)
+        poses = np.empty((len(self._times), np.count_nonzero(turning), 4))
+        for k in np.flatnonzero(turning):
+            row, i = int(moving[k]), int(chosen[k])
+            onwards = self._lane_paths.onwards(int(numbers[k]), float(positions[k]))
+            path = self._path(background, i, onwards)
             length, speed = float(background.length[i]), float(background.speed[i])
-            aside, soon = path.headings[0], path.pose(length + reach[i])
-            off = np.sin(aside) * (soon.x - background.x[i])
-            off -= np.cos(aside) * (soon.y - background.y[i])
-            if abs(off) > _STRAIGHT:
-                road = path.vertices, path.stations, path.headings
-                driven: Array = speed * self._times
-                speeds = np.full(len(driven), speed)
-                fill_poses(*road, length, driven, speeds, length, len(self._rows), poses)
-                self._rows.append(row)
-        self._poses = poses[:, : len(self._rows)]
+            road = path.vertices, path.stations, path.headings
+            driven: Array = speed * self._times
+            speeds = np.full(len(driven), speed)
+            fill_poses(*road, length, driven, speeds, length, len(self._rows), poses)
+            self._rows.append(row)
+        self._poses = poses
 
     @staticmethod
     def _path(background: BackgroundVehicles, i: int, onwards: Array) -> EgoPath:
@@ -89,3 +90,35 @@ class Bends:
         if self._rows:
             rows = first + np.array(self._rows)
             poses[:, rows, :4] = self._poses[step : step + len(poses)]
+
+
+@kernel
+def fill_turning(
+    fronts: Array,
+    headings: Array,
+    positions: Array,
+    numbers: NDArray[np.int64],
+    pool: LanePathPool,
+    reach: Array,
+    turning: NDArray[np.bool_],
+) -> None:
+    """Fill in whose lanes lead them aside within their ``reach`` (n,) [m]."""
+    longest = 2
+    for i in range(len(numbers)):
+        if numbers[i] >= 0:
+            longest = max(longest, pool.start[numbers[i] + 1] - pool.start[numbers[i]] + 1)
+    path, stations = np.empty((longest, 2)), np.empty(longest)
+    for i in range(len(numbers)):
+        turning[i] = False
+        if numbers[i] < 0:
+            continue
+        count = path_from(fronts[i], positions[i], numbers[i], pool, reach[i], path, stations)
+        for k in range(1, count):
+            share = min(1.0, (reach[i] - stations[k - 1]) / (stations[k] - stations[k - 1]))
+            if share <= 0.0:
+                break
+            x = path[k - 1, 0] + share * (path[k, 0] - path[k - 1, 0]) - fronts[i, 0]
+            y = path[k - 1, 1] + share * (path[k, 1] - path[k - 1, 1]) - fronts[i, 1]
+            if abs(np.sin(headings[i]) * x - np.cos(headings[i]) * y) > _STRAIGHT:
+                turning[i] = True
+                break

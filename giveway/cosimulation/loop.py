@@ -79,7 +79,13 @@ class Loop:
         self.endings = {}
         self.remarks = []
         self._standstill = Standstill()
-        self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
+        self._mirror = Mirror(
+            parts.sumo,
+            parts.time_step,
+            parts.substeps,
+            parts.horizon,
+            turns=any(ego.config.heeds_priority for ego in parts.egos),
+        )
         self._traffic = TrafficWatch(parts.sumo)
         self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
         self._far_background = -self._far_steps

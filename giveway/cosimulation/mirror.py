@@ -33,6 +33,7 @@ class Mirror:
         time_step: of the control [s].
         substeps: control steps per SUMO step.
         horizon: N, the most steps that any ego looks ahead.
+        turns: background vehicles are foreseen to follow their lanes however short SUMO's step is.
 
     Attributes:
         background: SUMO's own vehicles at its latest instant.
@@ -45,14 +46,22 @@ class Mirror:
     poses: Array
     vehicles: Vehicles
 
-    def __init__(self, session: SumoSession, time_step: float, substeps: int, horizon: int) -> None:
+    def __init__(
+        self,
+        session: SumoSession,
+        time_step: float,
+        substeps: int,
+        horizon: int,
+        *,
+        turns: bool = False,
+    ) -> None:
         self._session = session
         self._time_step = time_step
         self._substeps = substeps
         self._horizon = horizon
         self._span = (substeps + horizon) * time_step  # [s]
         self._bends = None
-        if substeps * time_step > SHORT:
+        if turns or substeps * time_step > SHORT:
             self._bends = Bends(session.vehicles, time_step, substeps, horizon)
         self._since = 0  # control steps since SUMO's
         self._egos = 0
