@@ -1,14 +1,14 @@
 """Right of way among vehicles: where the ego waits at a junction for those who go first.
 
-Who goes first says the network (its links' states and ``request`` rows) and, where there is one, the
-running traffic light: red and yellow are :mod:`giveway.ego.lights`' business; with ``G`` the ego
-goes first; with ``g``, ``s`` (after a stop), ``o`` and no light at all it lets those go first whom
-``request`` names, unless their light is red. At an all-way stop the one who stood first goes first.
+Who goes first says the network (its links' states and ``request`` rows) and, where there is one,
+the running traffic light: red and yellow are :mod:`giveway.ego.lights`' business; with ``G`` the
+ego goes first; with ``g``, ``s`` (after a stop), ``o`` and no light at all it lets those go first
+whom ``request`` names, unless their light is red. At an all-way stop who stood first goes first.
 
 Those with priority come first if the ego, going on, would find them in its way: it needs its
-critical gap (:mod:`giveway.ego.gaps`) from its line on, and a second after it has cleared their way.
-It waits at the line, or where SUMO's vehicles wait inside the junction if it may go as far as that.
-It does not enter a junction that a slow vehicle ahead keeps it from leaving.
+critical gap (:mod:`giveway.ego.gaps`) from its line on, and a second after it has cleared their
+way. It waits at the line, or where SUMO's vehicles wait inside the junction if it may go as far. It
+does not enter a junction that a slow vehicle ahead keeps it from leaving.
 """
 
 import math
@@ -23,10 +23,11 @@ from giveway.geometry.conflict import Conflict
 from giveway.sumo.junctions import Movement
 
 SIGHT = 60.0  # [m] before a junction from which on others are looked at
-_PULL_AWAY = 1.5  # [m/s^2] of the ego
-_COMING, _LEAVING = 1.0, 1.0  # [m/s^2] of others: a little sooner, and no later
+_PULL_AWAY, _BRISK = 1.5, 3.0  # [m/s^2] of the ego: no less, no more
+_COMING = 1.0  # [m/s^2] of others, who may speed up
 _USUAL = 13.9  # [m/s] that others may speed up to
 _AFTER, _BEFORE = 1.0, 0.5  # [s] between the ego and whoever passes after or before it
+_GOING = 0.3  # [s] to whoever passes after it, for an ego that has decided to go
 _STAYS = 3.0  # [s] after which one who stands and need not will go on standing
 _STANDING = 0.2  # [m/s]
 _CRAWLING = 2.0  # [m/s] a vehicle ahead that is slower may come to a stand
@@ -189,8 +190,9 @@ class RightOfWay:
         )
         if first and before and letter not in "GM" and self._time - self._followed < follow_up:
             return line
+        margin = _AFTER
         if first and self._going:
-            critical = 0.0
+            critical, margin = 0.0, _GOING
         stop, stay = math.inf, set[str]()
         for other in traffic.get(place.movement.junction, ()):
             where = None if other.name == self._name else place.conflicts.get(other.number)
@@ -202,7 +204,7 @@ class RightOfWay:
                 continue
             if not self._goes_first(place, letter, other, where, states):
                 continue
-            if not self._meets(place, other, where, front, speed, critical):
+            if not self._meets(place, other, where, front, speed, critical, margin):
                 continue
             inside = [w for w in place.waiting if front <= w + STOP_BEFORE and w <= where.enter]
             if inside:
@@ -260,23 +262,26 @@ class RightOfWay:
         front: float,
         speed: float,
         critical: float,
+        margin: float,
     ) -> bool:
         """Whether the ego, going on, would find it in its way."""
         fastest = max(self._fastest, speed)
-        line, enter, clear = (
+        line, clear = (
             travel_time(station - front, speed, _PULL_AWAY, fastest)
-            for station in (place.entry, where.enter, where.leave + self._length)
+            for station in (place.entry, where.leave + self._length)
         )
+        enter = travel_time(where.enter - front, speed, _BRISK, fastest)
         to_enter = other.distance + where.other_enter
         to_leave = other.distance + where.other_leave + other.length
         comes = travel_time(to_enter, other.speed, _COMING, max(_USUAL, other.speed))
-        slow = other.speed < _STANDING
-        goes = math.inf if slow else travel_time(to_leave, other.speed, _LEAVING, other.speed)
-        if (
-            place.movement.state == "Z" and other.distance > 0.0
-        ):  # a zip: who comes first goes first
+        goes = math.inf
+        if other.speed >= _STANDING:  # in the junction it drives no faster than its lanes allow
+            inside = min(other.speed, place.movements[other.number].speed)
+            outside = min(max(other.distance, 0.0), to_leave)
+            goes = outside / other.speed + (to_leave - outside) / inside
+        if place.movement.state == "Z" and other.distance > 0.0:  # who comes first goes first
             return comes < enter < goes + _BEFORE
-        in_time = comes >= max(clear + _AFTER, line + critical if front <= place.entry else 0.0)
+        in_time = comes >= max(clear + margin, line + critical if front <= place.entry else 0.0)
         return not in_time and goes + _BEFORE > enter
 
 

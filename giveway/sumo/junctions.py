@@ -18,6 +18,7 @@ class Movement(NamedTuple):
     inside: tuple[str, ...]  # lanes in between, in order; a vehicle may wait where one ends
     state: str  # SUMO's letter of the link where no light governs it
     direction: str  # SUMO's letter: "s" straight on, "l", "L" left, "r", "R" right, "t" turn
+    speed: float  # [m/s] that the lanes inside allow
     system: str  # SUMO's id of the traffic light; empty: none
     link: int  # index of the movement in the light's state
     yields_to: frozenset[int]  # numbers of links whose vehicles go first
@@ -81,6 +82,7 @@ class Junctions:
                         inside,
                         link[5],
                         link[6],
+                        min(map(self._lanes.speed_limit, inside)),
                         *self._lanes.signals.get((source, link[0]), ("", -1)),
                         *logic.requests[number],
                     )
