@@ -84,7 +84,7 @@ class RegulationConfig(Section):
         "s",
         "after the vehicle before it has gone through the same gap; none: likewise",
         flag="--follow-up-gap",
-        ge=0,
+        ge=0.1,
         le=60,
         because="it is a headway of vehicles that start one after the other",
     )

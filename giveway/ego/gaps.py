@@ -11,10 +11,7 @@ from typing import NamedTuple
 
 from giveway.sumo.junctions import Movement
 
-_LEFT, _RIGHT = (
-    "lLt",
-    "rR",
-)  # SUMO's letters of directions; a turn back crosses what a left turn does
+_LEFT, _RIGHT = "lLt", "rR"  # SUMO's letters; a turn back crosses what a left turn does
 
 
 class Gap(NamedTuple):

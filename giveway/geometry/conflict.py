@@ -42,7 +42,7 @@ def conflict(own: Array, other: Array, apart: float) -> Conflict | None:
 
 
 def _sampled(points: Array) -> tuple[Array, Array]:
-    """Stations (n,) [m] along a polyline, at most ``_SAMPLE`` apart, and the points (n, 2) there."""
+    """Stations (n,) [m] along a polyline, and the points (n, 2) [m] there."""
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     stations = np.linspace(0.0, at[-1], max(2, int(np.ceil(at[-1] / _SAMPLE)) + 1))
     x, y = (np.interp(stations, at, column) for column in points.T)

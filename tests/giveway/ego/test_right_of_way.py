@@ -1,0 +1,209 @@
+"""Where the ego waits for others: its line at 50 m, ways that cross at 55 to 60 m."""
+
+import math
+from typing import Any
+
+import pytest
+
+from giveway.ego.crossings import STOP_BEFORE
+from giveway.ego.gaps import MINOR_STRAIGHT, PERMITTED
+from giveway.ego.junctions import PathJunction
+from giveway.ego.leader import Leader
+from giveway.ego.right_of_way import Approach, RightOfWay
+from giveway.geometry.conflict import Conflict
+from giveway.sumo.junctions import Movement
+
+ENTRY = 50.0
+LINE = ENTRY - STOP_BEFORE
+OWN, OTHER = 0, 1
+NOBODY = frozenset[int]()
+
+
+def junction(
+    state: str = "m", *, waiting: tuple[float, ...] = (), lights: bool = False, named: bool = True
+) -> PathJunction:
+    system = "tls" if lights else ""
+    yields_to = frozenset({OTHER}) if named else NOBODY
+    own, other = (
+        Movement(
+            "j",
+            number,
+            source,
+            target,
+            (f":j_{number}_0",),
+            letter,
+            "s",
+            10.0,
+            system,
+            number if lights else -1,
+            first,
+            frozenset({1 - number}),
+        )
+        for number, source, target, letter, first in (
+            (OWN, "south_0", "north_0", state, yields_to),
+            (OTHER, "west_0", "east_0", "M", NOBODY),
+        )
+    )
+    where = Conflict(55.0, 60.0, 4.0, 8.0)
+    movements, conflicts = {OWN: own, OTHER: other}, {OTHER: where}
+    gaps = MINOR_STRAIGHT, PERMITTED
+    return PathJunction(ENTRY, 65.0, waiting, own, movements, conflicts, *gaps)
+
+
+def other(distance: float, speed: float = 10.0, standing: float = 0.0) -> Approach:
+    return Approach("car", OTHER, distance, speed, 4.5, standing)
+
+
+class Drive:
+    """An ego that looks at a junction step by step."""
+
+    def __init__(self, place: PathJunction, **options: Any) -> None:
+        self.keeps = RightOfWay([place], name="ego", length=5.0, fastest=8.0, **options)
+        self.time = 0.0
+
+    def stop(
+        self, front: float, speed: float, *others: Approach, lights: str = "", after: float = 0.1
+    ) -> float:
+        self.time += after
+        assert self.keeps.look(front) == {"j"}
+        states = {"tls": lights} if lights else {}
+        self.keeps.update(self.time, front, speed, states, {"j": others})
+        return self.keeps.stop_at(front, speed)
+
+
+def stop(place: PathJunction, front: float, speed: float, *others: Approach, **more: Any) -> float:
+    return Drive(place).stop(front, speed, *others, **more)
+
+
+def test_it_waits_for_whoever_comes_within_its_critical_gap() -> None:
+    at_line = LINE, 0.0
+    # from standing it is over its line after 1.2 s; who is 6.5 s from there is 77 m away at 10 m/s
+    assert stop(junction(), *at_line, other(60.0)) == LINE
+    assert stop(junction(), *at_line, other(110.0)) == math.inf
+    assert stop(junction(), *at_line) == math.inf
+
+
+def test_who_has_passed_before_it_comes_costs_no_stop() -> None:
+    assert stop(junction(), 20.0, 5.0, other(5.0)) == math.inf
+    assert stop(junction(), 20.0, 5.0, other(45.0)) == LINE
+
+
+def test_who_has_to_let_it_go_first_does_not_stop_it() -> None:
+    assert stop(junction(named=False), LINE, 0.0, other(20.0)) == math.inf
+
+
+def test_nobody_makes_it_brake_harder_than_3() -> None:
+    assert stop(junction(), 40.0, 7.6, other(15.0)) == LINE
+    assert stop(junction(), 40.0, 7.9, other(15.0)) == math.inf
+
+
+def test_who_is_in_its_way_inside_the_junction_is_waited_for_whoever_he_is() -> None:
+    there = other(-5.0, speed=0.0, standing=9.0)
+    assert stop(junction(named=False), LINE, 0.0, there) == LINE
+    gone = other(-8.0 - 4.6, speed=1.0)
+    assert stop(junction(), LINE, 0.0, gone) == math.inf
+
+
+@pytest.mark.parametrize(
+    ("lights", "stops"),
+    [("Gr", False), ("gG", True), ("gr", False), ("gy", False), ("og", True)],
+)
+def test_at_lights_the_letters_decide(lights: str, stops: bool) -> None:
+    place = junction(lights=True)
+    # at yellow it could stop with 2 m/s^2
+    assert (stop(place, LINE, 0.0, other(25.0), lights=lights) == LINE) == stops
+
+
+def test_who_cannot_stop_at_yellow_any_more_is_waited_for() -> None:
+    assert stop(junction(lights=True), LINE, 0.0, other(10.0), lights="gy") == LINE
+
+
+def test_inside_a_turn_it_waits_where_others_wait() -> None:
+    turn = junction(waiting=(54.0,), lights=True)
+    assert stop(turn, 45.0, 4.0, other(30.0), lights="gG") == 54.0
+    drive = Drive(turn)
+    assert drive.stop(54.0, 0.0, other(30.0), lights="gG") == 54.0
+    # its own light does not matter any more there, and theirs has changed
+    assert drive.stop(54.0, 0.0, other(30.0), lights="rr") == math.inf
+
+
+@pytest.mark.parametrize("state", ["s", "w"])
+def test_at_a_stop_line_it_halts_though_nobody_comes(state: str) -> None:
+    drive = Drive(junction(state))
+    assert drive.stop(40.0, 5.0) == LINE
+    assert drive.stop(LINE, 0.0) == math.inf
+
+
+def test_a_green_arrow_beside_red_is_a_stop_line() -> None:
+    drive = Drive(junction(lights=True))
+    assert drive.stop(40.0, 5.0, lights="sr") == LINE
+    assert drive.stop(LINE, 0.0, other(30.0), lights="sG") == LINE
+    assert drive.stop(LINE, 0.0, other(30.0), lights="sr") == math.inf
+
+
+def test_at_an_all_way_stop_who_stood_first_goes_first() -> None:
+    drive = Drive(junction("w"))
+    drive.stop(LINE, 0.0)  # it stands from now on
+    assert drive.stop(LINE, 0.0, other(1.0, 0.0, standing=2.0), after=1.0) == LINE
+    assert drive.stop(LINE, 0.0, other(1.0, 0.0, standing=0.5), after=1.0) == math.inf
+    assert drive.stop(LINE, 0.0, other(20.0)) == math.inf
+
+
+def test_in_a_zip_who_is_there_first_goes_first() -> None:
+    # the ego is at the zip after 3.1 s, and past it after another 2 s
+    assert stop(junction("Z"), 30.0, 8.0, other(24.0)) == LINE
+    assert stop(junction("Z"), 30.0, 8.0, other(60.0)) == math.inf
+
+
+def test_it_is_not_polite_for_ever_to_who_stands() -> None:
+    drive = Drive(junction())
+    assert drive.stop(LINE, 0.0, other(1.0, 0.0, standing=20.0)) == LINE
+    for _ in range(31):
+        last = drive.stop(LINE, 0.0, other(1.0, 0.0, standing=20.0))
+    assert last == math.inf
+
+
+def test_a_queue_whose_light_has_just_turned_green_will_start() -> None:
+    drive = Drive(junction(lights=True))
+    for _ in range(50):
+        assert drive.stop(LINE, 0.0, other(1.0, 0.0, standing=20.0), lights="gr") == math.inf
+    drive = Drive(junction(lights=True))
+    for _ in range(20):
+        drive.stop(LINE, 0.0, other(1.0, 0.0, standing=20.0), lights="rr")
+    assert drive.stop(LINE, 0.0, other(1.0, 0.0, standing=22.0), lights="gG") == LINE
+
+
+def test_once_it_goes_it_keeps_going() -> None:
+    drive = Drive(junction())
+    assert drive.stop(LINE, 0.0, other(100.0)) == math.inf
+    # less than the critical gap by now, and still enough to get across
+    assert drive.stop(LINE + 0.3, 1.5, other(70.0)) == math.inf
+    assert stop(junction(), LINE + 0.3, 1.5, other(60.0)) == LINE + 0.3
+
+
+def test_options_are_gaps_in_seconds() -> None:
+    assert Drive(junction(), critical_gap=12.0).stop(LINE, 0.0, other(110.0)) == LINE
+    assert Drive(junction(), critical_gap=1.0).stop(LINE, 0.0, other(75.0)) == math.inf
+
+
+def test_it_follows_another_through_the_same_gap_after_the_follow_up_gap() -> None:
+    drive = Drive(junction(), follow_up_gap=4.0)
+    ahead = Approach("leader", OWN, -0.1, 2.0, 4.5, 0.0)
+    drive.stop(LINE - 5.0, 2.0)
+    assert drive.stop(LINE, 1.0, ahead) == LINE
+    assert drive.stop(LINE, 0.0, after=3.0) == LINE
+    assert drive.stop(LINE, 0.0, after=1.0) == math.inf
+
+
+@pytest.mark.parametrize(("station", "stops"), [(58.0, True), (70.0, True), (72.0, False)])
+def test_it_enters_no_junction_that_it_cannot_leave(station: float, stops: bool) -> None:
+    drive = Drive(junction(named=False))
+    drive.stop(40.0, 5.0)
+    place = drive.keeps.stop_at(40.0, 5.0, Leader(station, 0.5))
+    assert (place == LINE) == stops
+    assert drive.keeps.stop_at(40.0, 5.0, Leader(station, 5.0)) == math.inf
+
+
+def test_itself_is_not_in_its_way() -> None:
+    itself = Approach("ego", OTHER, 20.0, 10.0, 5.0, 0.0)
+    assert stop(junction(), LINE, 0.0, itself) == math.inf
