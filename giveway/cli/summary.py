@@ -9,7 +9,8 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
-    from giveway.results.run_result import EgoResult, RunResult
+    from giveway.results.ego_result import EgoResult
+    from giveway.results.run_result import RunResult
 
 _SHOWN = (
     ("Time to the goal", "completion_time", "s"),

@@ -8,6 +8,7 @@ from giveway.config import EgoRunConfig
 from giveway.config.option import LANE
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
+from giveway.cosimulation.ways import way_of
 from giveway.ego.controllers import make_controller
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
@@ -18,6 +19,7 @@ from giveway.ego.waiting import WaitingEgo
 from giveway.errors import ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.path import EgoPath
+from giveway.records.way import EgoWay
 from giveway.sumo.lanes import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.sumo.vehicles import VehicleState
@@ -35,12 +37,14 @@ class Entrance:
 
     Attributes:
         remarks: what the user should know.
+        ways: of those that have entered, by their ids.
     """
 
     def __init__(self, session: SumoSession, time_step: float) -> None:
         self._session = session
         self._time_step = time_step
         self.remarks: list[str] = []
+        self.ways: dict[str, EgoWay] = {}
 
     def insert(self, ego: WaitingEgo, path: EgoPath, lane_path: LanePath) -> Ego:
         """Put an ego where its route begins.
@@ -137,6 +141,14 @@ class Entrance:
             lane_path.lights if config.regulation.traffic_lights else (),
             comfortable=config.regulation.comfortable_deceleration,
             hardest=hardest,
+        )
+        self.ways[ego.id] = way_of(
+            ego.id,
+            path,
+            departure,
+            crossings=self._session.lanes.crossings,
+            lights=lane_path.lights,
+            stops=stops,
         )
         halts = Stops(stops, clock=self._session.time, time_step=self._time_step, hardest=hardest)
         return Ego(

@@ -24,6 +24,7 @@ from fmus import FmuError
 from giveway.cosimulation.assembly import Parts
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.standstill import Standstill
+from giveway.cosimulation.ways import LawRecords
 from giveway.crowd.disturbance import disturbance_of
 from giveway.crowd.reachable import spawn_remark, way_of
 from giveway.ego.ego import Ego
@@ -66,6 +67,7 @@ class Loop:
     def __init__(self, parts: Parts, recorder: Recorder) -> None:
         self._parts = parts
         self._recorder = recorder
+        self._law = LawRecords(parts.sumo, recorder)
         heartbeat = recorder.journal.heartbeat
         self._pulse, self._instant = heartbeat.slots, heartbeat.instant
         self._start = parts.sumo.time
@@ -173,6 +175,7 @@ class Loop:
             self._egos += arrivals
             for ego in arrivals:
                 self._recorder.drive(ego.id, ego.shape, ego.goal)
+                self._law.depart(parts.departures.ways[ego.id])
                 end = ego.departure + ego.goal
                 self._ways.append(way_of(ego.path.vertices, ego.path.stations, ego.departure, end))
             if arrivals and parts.config.crowd.pedestrians and not parts.departures.waiting:
@@ -183,6 +186,7 @@ class Loop:
         for ego in self._egos:
             if ego.light_systems:
                 ego.see_lights(parts.sumo.light_states(ego.light_systems))
+        self._law.signals(self._start + self._k * self._time_step)
         background, yielding = self._mirror.background, parts.yielding
         if yielding is not None and (background.ids or yielding.limited):
             yielding.update(background, self._roster.crowd, self._egos)
@@ -248,6 +252,7 @@ class Loop:
         if len(roster.ids) > self._named:
             self._recorder.name_pedestrians(roster.ids[self._named :])
             self._named = len(roster.ids)
+        self._law.walks(roster)
         crowd = roster.crowd
         within = self._near if self._k % self._far_steps else np.inf
         self._recorder.crowd(roster.present, crowd.position, crowd.velocity, self._places(), within)
