@@ -18,6 +18,10 @@ AHEAD = 4.0
 BRAKING = 3.0
 """[m/s^2] Who cannot be stopped for by braking so hard comes too late to be met."""
 
+AFTER = 5.0
+"""[s] Who has left the ego's way this long before it could be there is not met: the largest
+post-encroachment time that SSAM looks at (Gettman & Head 2003, FHWA)."""
+
 BY = 20.0
 """[m] before a crossing from which on the ego may push people back there."""
 
@@ -59,7 +63,7 @@ def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
     there = walk.priority & (to_leave > 0.0)
     meets = there & (to_go <= AHEAD * walk.desired_speed)
     meets &= (room > 0.0) & (speed**2 <= 2.0 * BRAKING * room)
-    meets &= room <= drive.ego.speed.max() * to_leave / walk.desired_speed
+    meets &= room <= drive.ego.speed.max() * (to_leave / walk.desired_speed + AFTER)
     if not meets.any():
         return []
     owed = np.zeros(len(meets), dtype=np.bool_)
