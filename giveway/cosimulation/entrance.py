@@ -146,6 +146,7 @@ class Entrance:
             ego.id,
             path,
             departure,
+            shape.length,
             crossings=self._session.lanes.crossings,
             lights=lane_path.lights,
             stops=stops,

@@ -18,7 +18,8 @@ from giveway.sumo.lanes import Light
 from giveway.sumo.session import SumoSession
 
 _SAMPLE = 0.5  # [m] between the points of the path that are looked at
-_BESIDE = 4.0  # [m] from the path's line to a crossing that a body on it may touch
+_BESIDE = 4.0  # [m] from the path's line to the kerb of a crossing that a body on it may touch
+_BEFORE = 1.5  # [m] from there to the crossing's marking
 _DECIMALS = 6  # micrometres, as in all tables
 
 
@@ -26,6 +27,7 @@ def way_of(
     ego_id: str,
     path: EgoPath,
     departure: float,
+    length: float,
     *,
     crossings: Sequence[Crossing],
     lights: Sequence[Light],
@@ -38,6 +40,7 @@ def way_of(
         ego_id: SUMO's.
         path: the ego's.
         departure: station [m] of the front bumper where the ego's position is 0.
+        length: of the ego's body [m].
         crossings: of the network.
         lights: on the path.
         junctions: entry, exit and waiting places [m] of each junction on the path.
@@ -47,7 +50,7 @@ def way_of(
         ego=ego_id,
         points=tuple((_rounded(x), _rounded(y)) for x, y in path.vertices.tolist()),
         departure=_rounded(departure),
-        crossings=_near(path, crossings),
+        crossings=_near(path, departure - length, crossings),
         lines=tuple(
             StopLine(_rounded(light.station), light.system, light.link) for light in lights
         ),
@@ -59,11 +62,13 @@ def way_of(
     )
 
 
-def _near(path: EgoPath, crossings: Sequence[Crossing]) -> tuple[CrossingOnWay, ...]:
-    """The crossings that the path leads over or close by, in its order."""
+def _near(path: EgoPath, begin: float, crossings: Sequence[Crossing]) -> tuple[CrossingOnWay, ...]:
+    """The crossings that the path leads over or close by from station ``begin`` [m] on."""
     if not crossings:
         return ()
-    stations = np.linspace(0.0, path.length, max(2, round(path.length / _SAMPLE)))
+    begin = max(0.0, begin)
+    count = 2 + round((path.length - begin) / _SAMPLE)
+    stations = np.linspace(begin, path.length, count)
     x = np.interp(stations, path.stations, path.vertices[:, 0])
     y = np.interp(stations, path.stations, path.vertices[:, 1])
     found: list[tuple[float, CrossingOnWay]] = []
@@ -76,7 +81,7 @@ def _near(path: EgoPath, crossings: Sequence[Crossing]) -> tuple[CrossingOnWay, 
         u = (x - x_0) * c + (y - y_0) * s
         w = (y - y_0) * c - (x - x_0) * s
         near = (u >= -_BESIDE) & (u <= length + _BESIDE)
-        near &= np.abs(w) <= crossing.width / 2 + _BESIDE
+        near &= np.abs(w) <= crossing.width / 2 + _BEFORE
         if near.any():
             ends = (_rounded(x_0), _rounded(y_0)), (_rounded(x_1), _rounded(y_1))
             place = CrossingOnWay(
