@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.geometry.kernel import Array
 from giveway.metrics.law.areas import Area
 from giveway.metrics.law.drive import Drive, runs
 from giveway.metrics.law.walks import Walk
@@ -21,6 +22,9 @@ BRAKING = 3.0
 AFTER = 5.0
 """[s] Who has left the ego's way this long before it could be there is not met: the largest
 post-encroachment time that SSAM looks at (Gettman & Head 2003, FHWA)."""
+
+PULL_AWAY = 2.0
+"""[m/s^2] with which it could come."""
 
 BY = 20.0
 """[m] before a crossing from which on the ego may push people back there."""
@@ -63,7 +67,7 @@ def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
     there = walk.priority & (to_leave > 0.0)
     meets = there & (to_go <= AHEAD * walk.desired_speed)
     meets &= (room > 0.0) & (speed**2 <= 2.0 * BRAKING * room)
-    meets &= room <= drive.ego.speed.max() * (to_leave / walk.desired_speed + AFTER)
+    meets &= room <= _comes(speed, drive.ego.speed.max(), to_leave / walk.desired_speed + AFTER)
     if not meets.any():
         return []
     owed = np.zeros(len(meets), dtype=np.bool_)
@@ -77,7 +81,13 @@ def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
     return [Encounter(area, walk, int(walk.steps[np.argmax(meets)]), owed, too_early)]
 
 
-def _leaves(drive: Drive, walk: Walk, to_leave: NDArray[np.float64], end: int) -> float:
+def _comes(speed: Array, fastest: float, time: Array) -> Array:
+    """How far [m] an ego comes within ``time`` [s] that speeds up to its ``fastest`` [m/s]."""
+    faster = np.clip((fastest - speed) / PULL_AWAY, 0.0, np.maximum(time, 0.0))
+    return speed * faster + PULL_AWAY / 2.0 * faster**2 + fastest * (time - faster)
+
+
+def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:
     """When [s] a person whose record ``end`` is the first without a claim gave it up."""
     time = drive.ego.time[walk.steps]
     if end == len(time):

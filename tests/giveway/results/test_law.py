@@ -2,12 +2,15 @@
 
 import numpy as np
 
+from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.law import Event
+from giveway.recording.recorded import RecordedEgo
 from giveway.records.columns import LEDGER_COLUMNS
 from giveway.records.scene import SCENE_FILE, Scene
 from giveway.records.tracks import PeopleTrack
 from giveway.records.way import CrossingOnWay, EgoWay, StopLine
-from giveway.results.law import ledger_table, people_table, remark
+from giveway.results.law import ledger_table, others_of, people_table, remark
+from tests.support.crossing_world import SHAPE, ego, traffic
 
 MET = Event(3.0, "encounter", False, "ped0", ":c0", 1.0, 2.0, 0.5, "s", "met")
 FAILED = Event(4.0, "failure to yield", True, "ped0", ":c0", 1.0, 2.0, 0.5, "s", "too early")
@@ -29,6 +32,22 @@ def test_the_events_of_all_egos_stand_in_order_of_time():
     assert list(table["ego"]) == ["two", "one", "one"]
     assert list(table["violation"]) == [True, False, True]
     assert list(ledger_table([]).columns) == list(table.columns)
+
+
+def test_other_egos_are_vehicles_like_any_other_and_oneself_is_none():
+    one, two = ego((0.2, 0.0)), ego((0.1, 0.0), front=50.0)
+    long = VehicleShape(12.0, 2.5)
+    egos = [
+        RecordedEgo("one", SHAPE, 99.0, 0, one, None),
+        RecordedEgo("two", long, 99.0, 0, two, None),
+    ]
+    background = traffic([("car", [0.0, 0.1], [9.0, 9.5], 0.0, 0.0)])
+    seen = others_of(egos[0], egos, background)
+    assert seen.time.tolist() == sorted(seen.time.tolist())
+    assert set(seen.id) == {"car", "two"}
+    assert set(seen.length[seen.id == "two"]) == {12.0}
+    assert seen.x[seen.id == "two"].tolist() == two.front_x.tolist()
+    assert others_of(egos[0], egos[:1], background) is background
 
 
 def test_the_places_of_each_way_are_numbered():

@@ -209,3 +209,11 @@ def test_how_long_people_stand_at_a_zebra():
     assert found.summary.longest_zebra_wait == pytest.approx(3.0, abs=0.11)
     assert found.summary.mean_zebra_wait == pytest.approx(1.5, abs=0.06)
     assert np.isnan(judged(WAITS).summary.mean_zebra_wait)
+
+
+@pytest.mark.parametrize(("front", "encounters"), [(2.0, 1), (-4.0, 0)])
+def test_an_ego_that_stands_would_have_to_speed_up_first(front, encounters):
+    """In 6.8 s it comes 23.2 m far with 2 m/s^2 to 4 m/s, and not 27.2 m."""
+    person = walker(-3.0, since=0.0)
+    track = ego((0.1, 0.0), (4.0, 1.0), (8.0, 0.0), front=front, speed=0.0)
+    assert judged(track, person, front=front).summary.encounters == encounters
