@@ -1,6 +1,7 @@
 """The law's tables, other egos as vehicles, and the note that names violations."""
 
 import numpy as np
+from support.crossing_world import SHAPE, ego, traffic
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.law import Event
@@ -10,7 +11,6 @@ from giveway.records.scene import SCENE_FILE, Scene
 from giveway.records.tracks import PeopleTrack
 from giveway.records.way import CrossingOnWay, EgoWay, StopLine
 from giveway.results.law import ledger_table, others_of, people_table, remark
-from tests.support.crossing_world import SHAPE, ego, traffic
 
 MET = Event(3.0, "encounter", False, "ped0", ":c0", 1.0, 2.0, 0.5, "s", "met")
 FAILED = Event(4.0, "failure to yield", True, "ped0", ":c0", 1.0, 2.0, 0.5, "s", "too early")

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from support.crossing_world import Person, drive, ego, to_a_stand, walker
 
 from giveway.metrics.law import ledger
 from giveway.records.way import CrossingOnWay, Halt, JunctionOnWay, StopLine
-from tests.support.crossing_world import Person, drive, ego, to_a_stand, walker
 
 ALWAYS = np.arange(0.0, 40.0, 0.05)
 STANDS = to_a_stand(30.0, (4.0, 0.0), (6.0, 1.5))  # until 12.5 s

@@ -2,10 +2,7 @@
 
 import numpy as np
 import pytest
-
-from giveway.metrics.law import ledger
-from giveway.metrics.law.areas import areas_of
-from tests.support.crossing_world import (
+from support.crossing_world import (
     ENTRY,
     NORTH,
     SIGNALLED,
@@ -18,6 +15,9 @@ from tests.support.crossing_world import (
     to_a_stand,
     walker,
 )
+
+from giveway.metrics.law import ledger
+from giveway.metrics.law.areas import areas_of
 
 THROUGH = ego((15.0, 0.0))  # at 4 m/s over the crossing, on it from 5 s on
 WAITS = to_a_stand(19.0, (8.0, 0.0), (5.0, 1.5))  # stands from 5.75 s to 13.75 s

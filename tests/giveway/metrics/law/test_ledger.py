@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.crossing_world import ZEBRA, drive, ego, to_a_stand, turned, walker
 
 from giveway.metrics import VehicleContact
 from giveway.metrics.law import LAW_FIELDS, count, ledger
 from giveway.records.way import StopLine
-from tests.support.crossing_world import ZEBRA, drive, ego, to_a_stand, turned, walker
 
 PEOPLE = (walker(-4.3, since=3.6), walker(4.3, speed=-1.4, since=1.9))
 RED = {"lines": (StopLine(15.0, "tls", 0),), "lights": [(0.0, "r")]}

@@ -1,10 +1,10 @@
 """Stop lines that are passed against the light: 20 m from the start, reached at 5 s."""
 
 import pytest
+from support.crossing_world import drive, ego, to_a_stand
 
 from giveway.metrics.law import ledger
 from giveway.records.way import StopLine
-from tests.support.crossing_world import drive, ego, to_a_stand
 
 LINE = StopLine(20.0, "tls", 1)
 THROUGH = ego((12.0, 0.0))  # at 4 m/s; 2 m/s^2 stop it within 4 m

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from support.crossing_world import Person, drive, to_a_stand
 
 from giveway.metrics.law import ledger
 from giveway.records.way import JunctionOnWay
-from tests.support.crossing_world import Person, drive, to_a_stand
 
 ALWAYS = np.arange(0.0, 30.0, 0.05)
 
