@@ -114,9 +114,10 @@ def drive(track, *people, crossings=(ZEBRA,), lights=(), vehicles=(), turn=0.0, 
         lights: time [s] and state of the light "tls", which every place of the way obeys.
         vehicles: id, times (n,), x (n,), y (n,), heading of each other vehicle, 4 m by 2 m.
         turn: [rad] by which the world is turned; the track already is.
-        way: further fields of the way, or of the drive.
+        way: further fields of the way, or of the drive; ``points``: another path.
     """
     own = {name: way.pop(name) for name in ("goal", "comfortable", "shape") if name in way}
+    points = way.pop("points", ((0.0, LANE), (90.0, LANE)))
     front = way.pop("front", 0.0)
     instants = len(track.time)
     records = [
@@ -144,7 +145,7 @@ def drive(track, *people, crossings=(ZEBRA,), lights=(), vehicles=(), turn=0.0, 
         body_radius=R,
         way=EgoWay(
             "ego",
-            tuple(tuple(map(float, turned(*place, turn))) for place in ((0, LANE), (90, LANE))),
+            tuple(tuple(map(float, turned(*place, turn))) for place in points),
             front,
             tuple(
                 crossing._replace(

@@ -38,6 +38,15 @@ def test_the_area_is_where_the_body_sweeps_over_the_crossing():
     assert (area.low, area.high) == pytest.approx((NORTH + 0.75, NORTH + 2.75))
 
 
+def test_in_a_bend_only_what_is_on_the_crossing_counts():
+    """The lane turns left 3 m behind the crossing: the front goes north, the rear swings south."""
+    bend = ((0.0, -1.75), (27.0, -1.75), (27.0, 30.0))
+    (area,) = areas_of(drive(THROUGH, points=bend))
+    assert 3.5 < area.low < NORTH + 0.75 - 0.2
+    assert NORTH + 2.75 + 0.2 < area.high <= area.length
+    assert area.leave > 30.0
+
+
 def test_an_area_beyond_the_end_of_the_drive_counts_for_nothing():
     assert areas_of(drive(THROUGH, goal=19.0)) == ()
     assert len(areas_of(drive(THROUGH, goal=21.0))) == 1
@@ -90,13 +99,12 @@ def test_a_tenth_of_a_second_decides(margin, fails):
         assert event.value == pytest.approx(-margin, abs=0.02)
 
 
-@pytest.mark.parametrize(("room", "encounters"), [(2.72, 1), (2.60, 0)])
+@pytest.mark.parametrize(("room", "encounters"), [(2.70, 1), (2.64, 0)])
 def test_who_comes_when_it_cannot_stop_any_more_is_not_met(room, encounters):
     """From 4 m/s 3 m/s^2 stops it within 2.67 m; then somebody is there who was not before."""
-    since = round((ENTRY - room) / 4.0, 2)
-    track = ego((15.0, 0.0), front=ENTRY - room - 4.0 * since)
-    person = walker(-3.4, speed=0.0, since=since)
-    found = judged(track, person, front=ENTRY - room - 4.0 * since)
+    front = ENTRY - room - 16.0
+    person = walker(-3.4, speed=0.0, since=4.0)
+    found = judged(ego((15.0, 0.0), front=front), person, front=front)
     assert found.summary.encounters == encounters
     assert found.summary.failures_to_yield == encounters
 
@@ -113,12 +121,33 @@ def test_who_stands_farther_than_a_metre_from_the_kerb_is_not_met(beyond, encoun
     assert judged(THROUGH, walker(SOUTH - beyond, speed=0.0)).summary.encounters == encounters
 
 
+@pytest.mark.parametrize(("x", "encounters"), [(19.5, 1), (19.1, 0)])
+def test_beside_the_crossing_the_distance_to_its_edge_counts(x, encounters):
+    person = walker(-4.2, speed=0.0, x=x, way=((21.0, -3.4), (21.0, 20.0)))
+    assert judged(THROUGH, person).summary.encounters == encounters
+
+
+@pytest.mark.parametrize(("y", "encounters"), [(CLEAR - 0.1, 1), (CLEAR + 0.1, 0)])
+def test_who_has_left_the_way_is_not_met(y, encounters):
+    assert judged(THROUGH, walker(y, speed=0.0, since=3.0)).summary.encounters == encounters
+
+
+@pytest.mark.parametrize(("beyond", "encounters"), [(1.2, 1), (0.8, 0)])
+def test_who_is_first_seen_on_the_crossing_has_entered_by_right(beyond, encounters):
+    person = walker(SOUTH + beyond, speed=0.0, since=3.0)
+    found = judged(THROUGH, person, crossings=[SIGNALLED], lights=[(0.0, "r")])
+    assert found.summary.encounters == encounters
+    found = judged(THROUGH, person, crossings=[UNMARKED])
+    assert found.summary.encounters == 0
+
+
 @pytest.mark.parametrize(
     "way",
     [
         ((40.0, -4.0),),  # along the kerb
         ((22.0, -20.0),),  # away from it
         ((22.0, -3.3), (22.0, -20.0)),  # a step onto it and back
+        ((22.0, -3.2),),  # a step onto it
     ],
 )
 def test_who_does_not_head_for_the_crossing_is_not_met(way):
@@ -209,6 +238,9 @@ def test_how_long_people_stand_at_a_zebra():
     assert found.summary.longest_zebra_wait == pytest.approx(3.0, abs=0.11)
     assert found.summary.mean_zebra_wait == pytest.approx(1.5, abs=0.06)
     assert np.isnan(judged(WAITS).summary.mean_zebra_wait)
+    at_lights = judged(WAITS, person, crossings=[SIGNALLED], lights=[(0.0, "G")])
+    assert at_lights.summary.encounters == 1
+    assert np.isnan(at_lights.summary.longest_zebra_wait)
 
 
 @pytest.mark.parametrize(("front", "encounters"), [(2.0, 1), (-4.0, 0)])
