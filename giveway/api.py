@@ -22,7 +22,8 @@ from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.journal import Journal
 from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
-from giveway.results import mismatch, vehicle_contacts
+from giveway.results import law, mismatch, vehicle_contacts
+from giveway.results.ego_result import EgoResult, results_of_egos
 from giveway.results.folder import (
     release_folder,
     require_parquet,
@@ -31,7 +32,7 @@ from giveway.results.folder import (
     write_results,
 )
 from giveway.results.provenance import manifest
-from giveway.results.run_result import EgoResult, RunResult, results_of_egos
+from giveway.results.run_result import RunResult
 from sumo_scenarios import Scenario
 
 __all__ = ["RunResult", "run", "run_checked", "simulate"]
@@ -217,6 +218,9 @@ def _result(
     egos = results_of_egos(parts.config, rows, ending, loop.endings)
     touched = [text for text in map(vehicle_contacts.remark, egos) if text]
     remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos), *touched)
+    judged = ((ego.id, ego.ledger) for ego in egos if ego.ledger is not None)
+    against = (law.remark(name, found.violations) for name, found in judged)
+    remarks = (*remarks, *(text for text in against if text))
     if recorder.journal.failure:
         remarks = (*remarks, recorder.journal.failure)
     return RunResult(
@@ -228,6 +232,8 @@ def _result(
         egos=egos,
         crowd_track=rows.crowd_track(),
         background_track=rows.background_track(),
+        signal_track=rows.signal_track(),
+        people_track=rows.people_track(),
         timings=rows.timings(),
         elapsed=elapsed,
         manifest=manifest(

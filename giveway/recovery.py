@@ -19,9 +19,10 @@ from giveway.processes.supervisor import Verdict, journals, verdict_on_left
 from giveway.recording.journal_reader import JournalContents, read_journal
 from giveway.recording.recorded import RecordedRows
 from giveway.records.progress import Ending
+from giveway.results.ego_result import results_of_egos
 from giveway.results.folder import is_marked_only, release_folder, taken_folder
 from giveway.results.provenance import manifest
-from giveway.results.run_result import RunResult, results_of_egos
+from giveway.results.run_result import RunResult
 from sumo_scenarios import Scenario
 
 
@@ -184,6 +185,8 @@ def _result_of(
         egos=results_of_egos(config, rows, ending, endings),
         crowd_track=rows.crowd_track(),
         background_track=rows.background_track(),
+        signal_track=rows.signal_track(),
+        people_track=rows.people_track(),
         timings=rows.timings(),
         elapsed=float(np.nansum(rows.timings().seconds[:, -1])),
         manifest=manifest(

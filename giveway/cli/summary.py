@@ -9,7 +9,10 @@ from rich.table import Table
 from rich.text import Text
 
 if TYPE_CHECKING:
-    from giveway.results.run_result import EgoResult, RunResult
+    from collections.abc import Iterator
+
+    from giveway.results.ego_result import EgoResult
+    from giveway.results.run_result import RunResult
 
 _SHOWN = (
     ("Time to the goal", "completion_time", "s"),
@@ -27,6 +30,16 @@ _SHOWN = (
     ("Steps below the safe distance", "share_below_safe_distance", "%"),
     ("Steps in which the MPC acted", "mpc_feasibility_rate", "%"),
     ("Steps in which the safety layer acted", "safety_share", "%"),
+)
+_OF_THE_LAW = (  # shown where the law of the road has a say on an ego's way
+    ("People met at crossings", "encounters", ""),
+    ("of these let pass", "yielding_rate", "%"),
+    ("Failures to yield", "failures_to_yield", ""),
+    ("Red lights run", "red_lights_run", ""),
+    ("Crossings blocked", "blocked_crossings", ""),
+    ("Junctions blocked", "blocked_junctions", ""),
+    ("Stops without a cause", "stops_without_cause", ""),
+    ("Farthest that somebody was pushed back", "pushed_back", "m"),
 )
 _COUNTED = (
     ("Pedestrians added", "added"),
@@ -49,8 +62,8 @@ def summary_table(result: RunResult) -> Table:
     if not result.egos:
         table.add_column(justify="right")
     table.add_column()
-    for label, name, unit in _SHOWN if result.egos else ():
-        cells = [_formatted(ego.summary[name], unit) for ego in result.egos]
+    for label, name, unit in _shown(result):
+        cells = [_formatted(ego.summary.get(name), unit) for ego in result.egos]
         table.add_row(label, *(value for value, _ in cells), max(unit for _, unit in cells))
     blanks = [""] * max(0, len(result.egos) - 1)
     for label, count in _counts(result):
@@ -58,6 +71,17 @@ def summary_table(result: RunResult) -> Table:
     factor, unit = _formatted(result.timing_summary["real_time_factor"], "x")
     table.add_row("Real-time factor", factor, *blanks, unit)
     return table
+
+
+def _shown(result: RunResult) -> Iterator[tuple[str, str, str]]:
+    """Label, column and unit of what is shown of each ego."""
+    if result.egos:
+        yield from _SHOWN
+    judged = [ego.summary for ego in result.egos if ego.ledger is not None]
+    for label, name, unit in _OF_THE_LAW:
+        always = name in {"encounters", "yielding_rate"}
+        if any(always or summary[name] > 0.0 for summary in judged):
+            yield label, name, unit
 
 
 def _title(result: RunResult) -> str:

@@ -60,6 +60,7 @@ class Departures:
         self._queued: set[str] = set()  # egos that SUMO is to insert
         self._entrance = Entrance(session, time_step)
         self.remarks = self._entrance.remarks  # what the user should know
+        self.ways = self._entrance.ways  # of those that have departed
 
     def _require_declared(self, name: str) -> None:
         """Refuse to wait for a vehicle that no file declares."""

@@ -8,10 +8,11 @@ from giveway.config import EgoRunConfig
 from giveway.config.option import LANE
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
+from giveway.cosimulation.ways import way_of
 from giveway.ego.controllers import make_controller
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
-from giveway.ego.junctions import junctions_on
+from giveway.ego.junctions import PathJunction, junctions_on
 from giveway.ego.lights import Lights
 from giveway.ego.right_of_way import RightOfWay
 from giveway.ego.speed_profile import SpeedProfile, profile_of
@@ -21,6 +22,7 @@ from giveway.ego.way_ahead import WayAhead
 from giveway.errors import ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.path import EgoPath
+from giveway.records.way import EgoWay
 from giveway.sumo.lanes import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.sumo.vehicles import VehicleState
@@ -38,12 +40,14 @@ class Entrance:
 
     Attributes:
         remarks: what the user should know.
+        ways: of those that have entered, by their ids.
     """
 
     def __init__(self, session: SumoSession, time_step: float) -> None:
         self._session = session
         self._time_step = time_step
         self.remarks: list[str] = []
+        self.ways: dict[str, EgoWay] = {}
 
     def insert(self, ego: WaitingEgo, path: EgoPath, lane_path: LanePath) -> Ego:
         """Put an ego where its route begins.
@@ -136,12 +140,25 @@ class Entrance:
         hardest = config.mpc.force_limit / config.vehicle.mass
         ego.start(speed)
         goal = config.ego.travel_distance
+        junctions = junctions_on(
+            path, lane_path.passages, shape.width, self._session.junctions, self._session.lanes
+        )
+        self.ways[ego.id] = way_of(
+            ego.id,
+            path,
+            departure,
+            shape.length,
+            crossings=self._session.lanes.crossings,
+            lights=lane_path.lights,
+            junctions=[(place.entry, place.exit, place.waiting) for place in junctions],
+            stops=stops,
+        )
         halts = Stops(stops, clock=self._session.time, time_step=self._time_step, hardest=hardest)
         way = WayAhead(
             self._lights(config, lane_path, hardest),
             halts if stops else None,
             self._crossings(config, path, shape),
-            self._right_of_way(config, path, lane_path, shape, profile),
+            self._right_of_way(config, junctions, shape, profile),
         )
         return Ego(
             ego,
@@ -178,21 +195,16 @@ class Entrance:
     def _right_of_way(
         self,
         config: EgoRunConfig,
-        path: EgoPath,
-        lane_path: LanePath,
+        junctions: Sequence[PathJunction],
         shape: VehicleShape,
         profile: SpeedProfile | None,
     ) -> RightOfWay | None:
         """Who goes first at the junctions; None: there are none, or the ego keeps to no law."""
-        if not config.heeds_priority:
+        if not (config.heeds_priority and junctions):
             return None
-        session, regulation = self._session, config.regulation
-        passages = lane_path.passages
-        found = junctions_on(path, passages, shape.width, session.junctions, session.lanes)
-        if not found:
-            return None
+        regulation = config.regulation
         return RightOfWay(
-            found,
+            junctions,
             name=config.ego_id,
             length=shape.length,
             fastest=float(regulation.reference_speed) if profile is None else profile.fastest,

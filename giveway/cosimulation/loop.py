@@ -26,6 +26,7 @@ from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.priority import rooms_before
 from giveway.cosimulation.standstill import Standstill
 from giveway.cosimulation.traffic import TrafficWatch
+from giveway.cosimulation.ways import LawRecords
 from giveway.crowd.disturbance import disturbance_of
 from giveway.crowd.reachable import spawn_remark, way_of
 from giveway.ego.ego import Ego
@@ -68,6 +69,7 @@ class Loop:
     def __init__(self, parts: Parts, recorder: Recorder) -> None:
         self._parts = parts
         self._recorder = recorder
+        self._law = LawRecords(parts.sumo, recorder)
         heartbeat = recorder.journal.heartbeat
         self._pulse, self._instant = heartbeat.slots, heartbeat.instant
         self._start = parts.sumo.time
@@ -182,6 +184,7 @@ class Loop:
             self._egos += arrivals
             for ego in arrivals:
                 self._recorder.drive(ego.id, ego.shape, ego.goal)
+                self._law.depart(parts.departures.ways[ego.id])
                 end = ego.departure + ego.goal
                 self._ways.append(way_of(ego.path.vertices, ego.path.stations, ego.departure, end))
             if arrivals and parts.config.crowd.pedestrians and not parts.departures.waiting:
@@ -190,6 +193,7 @@ class Loop:
             parts.exchange.update(self._places())
         self._mirror.read(self._egos, self._roster.crowd.position)
         rooms = self._look_ahead()
+        self._law.signals(self._start + self._k * self._time_step)
         background, yielding = self._mirror.background, parts.yielding
         if yielding is not None and (background.ids or yielding.limited):
             yielding.update(background, self._roster.crowd, self._egos, rooms)
@@ -216,8 +220,8 @@ class Loop:
     def _remark_on_missed_stops(self, ego: Ego) -> None:
         if ego.way.stops is not None and ego.way.stops.missed:
             self.remarks.append(
-                f"ego '{ego.id}': it drove past {ego.way.stops.missed} of its stops, which were too "
-                "near to halt at"
+                f"ego '{ego.id}': it drove past {ego.way.stops.missed} of its stops, which were "
+                "too near to halt at"
             )
 
     def _places(self) -> Array:
@@ -267,6 +271,7 @@ class Loop:
         if len(roster.ids) > self._named:
             self._recorder.name_pedestrians(roster.ids[self._named :])
             self._named = len(roster.ids)
+        self._law.walks(roster)
         crowd = roster.crowd
         within = self._near if self._k % self._far_steps else np.inf
         self._recorder.crowd(roster.present, crowd.position, crowd.velocity, self._places(), within)

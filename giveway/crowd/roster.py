@@ -17,6 +17,7 @@ class Roster:
         crowd: the state of those who are in it now.
         present: (n,) index into ``ids`` of each of them.
         names: the ids of each of them.
+        newcomers: indices of those who joined since somebody last emptied the list.
         added: ids of those that giveway added; the others are the scenario's own.
     """
 
@@ -26,6 +27,7 @@ class Roster:
         self.present = np.arange(len(self.ids))
         self.names = list(ids)
         self.added = frozenset(ids)
+        self.newcomers = list(range(len(self.ids)))
         self._index = {name: i for i, name in enumerate(self.ids)}
         self._counts = {"taken_over": 0, "handed_back": 0, "arrived": 0, "continued": 0}
 
@@ -48,6 +50,7 @@ class Roster:
                 self.ids.append(name)
             indices.append(self._index[name])
         self.present = np.concatenate([self.present, np.array(indices, dtype=np.int64)])
+        self.newcomers += indices
         self.names += names
         self.crowd = self.crowd.concatenate(crowd) if len(self.crowd) else crowd
         self._counts["taken_over"] += len(indices)

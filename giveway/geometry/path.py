@@ -87,10 +87,10 @@ class EgoPath:
 
     def project(self, points: ArrayLike) -> tuple[Array, Array]:
         """Stations (n,) [m] and lateral offsets (n,) [m, left positive] of ``points`` (n, 2)."""
-        points = np.asarray(points, dtype=np.float64).reshape(-1, 2)
-        frenet = np.array([project(self.vertices, self.stations, x, y) for x, y in points])
-        frenet = frenet.reshape(-1, 2)
-        return frenet[:, 0], frenet[:, 1]
+        points = np.ascontiguousarray(points, dtype=np.float64).reshape(-1, 2)
+        frenet = np.empty((2, len(points)))
+        project_all(self.vertices, self.stations, points, frenet)
+        return frenet[0], frenet[1]
 
 
 @kernel
@@ -154,6 +154,13 @@ def project(vertices: Array, stations: Array, x: float, y: float) -> tuple[float
             if e_x * d_y - e_y * d_x < 0.0:
                 best_lateral = -best_lateral
     return best_station, best_lateral
+
+
+@kernel
+def project_all(vertices: Array, stations: Array, points: Array, frenet: Array) -> None:
+    """Fill ``frenet`` (2, n) with stations and signed lateral offsets [m] of ``points`` (n, 2)."""
+    for i in range(len(points)):
+        frenet[0, i], frenet[1, i] = project(vertices, stations, points[i, 0], points[i, 1])
 
 
 def heading_to_angle(heading: float) -> float:

@@ -1,5 +1,6 @@
 """The rows of a run, as a recorder or a journal hands them over, and as tracks."""
 
+import json
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -9,7 +10,16 @@ from numpy.typing import NDArray
 from giveway.geometry.bodies import VehicleShape
 from giveway.recording.journal import Array
 from giveway.records.rows import LEDGER
-from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
+from giveway.records.tracks import (
+    BackgroundTrack,
+    CrowdTrack,
+    EgoTrack,
+    PeopleTrack,
+    PredictionTrack,
+    SignalTrack,
+    Timings,
+)
+from giveway.records.way import EgoWay
 
 
 class RecordedEgo(NamedTuple):
@@ -108,6 +118,28 @@ class RecordedRows:
             who, what = names[vehicle.astype(np.int64)], names[kind.astype(np.int64)]
             self._background = BackgroundTrack(time, who, what, *numbers)
         return self._background
+
+    def ways(self) -> dict[str, EgoWay]:
+        """The ways of those egos on whose way the law of the road has a say, by their ids."""
+        ways = (EgoWay.from_dict(json.loads(text)) for text in self._names["ways"])
+        return {way.ego: way for way in ways}
+
+    def signal_track(self) -> SignalTrack:
+        """The rows of traffic lights as arrays."""
+        time, system, state = self._rows["signals"].T
+        return SignalTrack(time.copy(), self._words(system), self._words(state))
+
+    def people_track(self) -> PeopleTrack:
+        """The rows of where people mean to walk as arrays."""
+        rows = self._rows["people"]
+        step, pedestrian, desired_speed, x, y = rows[rows[:, 0] < len(self.time)].T
+        return PeopleTrack(
+            step.astype(np.int64),
+            pedestrian.astype(np.int64),
+            desired_speed.copy(),
+            x.copy(),
+            y.copy(),
+        )
 
     def timings(self) -> Timings:
         """The computing times as an array."""

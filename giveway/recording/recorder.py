@@ -11,6 +11,7 @@ from giveway.recording.journal import Journal
 from giveway.recording.recorded import RecordedRows
 from giveway.records.rows import EGO_NUMBERS, LEDGER, EgoRow
 from giveway.records.tracks import Timings
+from giveway.records.way import EgoWay
 from giveway.sumo.background import BackgroundVehicles
 
 Indices = NDArray[np.int64]
@@ -34,6 +35,9 @@ class Recorder:
         self._drives = rows("drives", 4)  # ego, length, width, goal
         self._ledger = rows("ledger", len(LEDGER))
         self._predictions = rows("predictions", 6)  # instant, ego, pedestrian, look-ahead, x, y
+        self._signals = rows("signals", 3)  # time, system, state
+        self._people = rows("people", 5)  # instant, pedestrian, desired speed, x, y
+        self._ways = names("ways")  # as JSON
         self._words = names("words")
         self._egos = names("egos")
         self._pedestrians = names("pedestrians")
@@ -54,6 +58,28 @@ class Recorder:
         """Note an ego that departs: its body and the distance [m] it is to drive."""
         row = (self._egos.index(ego_id), shape.length, shape.width, goal)
         self._drives.block(1)[0] = row
+
+    def way(self, way: EgoWay) -> None:
+        """Note what the law of the road speaks of on the way of an ego that departs."""
+        self._ways.index(way.to_json())
+
+    def signal(self, time: float, system: str, state: str) -> None:
+        """Record the state that a traffic light has from ``time`` [s] on."""
+        self._signals.block(1)[0] = (time, self._words.index(system), self._words.index(state))
+
+    def walk(self, pedestrian: int, desired_speed: float, places: Array) -> None:
+        """Record where a pedestrian means to walk from the present instant on.
+
+        Args:
+            pedestrian: its index.
+            desired_speed: [m/s].
+            places: (k, 2) [m] where it is and its way-points.
+        """
+        block = self._people.block(len(places))
+        block[:, 0] = self._steps - 1
+        block[:, 1] = pedestrian
+        block[:, 2] = desired_speed
+        block[:, 3:] = places
 
     def ledger(self, counts: Mapping[str, int]) -> None:
         """Note how many pedestrians are where, at one of SUMO's instants."""
@@ -144,8 +170,11 @@ class Recorder:
                 "drives": self._drives.filled,
                 "ledger": self._ledger.filled,
                 "predictions": self._predictions.filled,
+                "signals": self._signals.filled,
+                "people": self._people.filled,
             },
             {
+                "ways": self._ways.names,
                 "words": self._words.names,
                 "egos": self._egos.names,
                 "pedestrians": self._pedestrians.names,

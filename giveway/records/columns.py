@@ -104,6 +104,35 @@ TRAJECTORY_COLUMNS = (
     Column("vy", "number", "m/s", "velocity's y component"),
 )
 
+SIGNAL_COLUMNS = (
+    Column("time", "number", "s", "simulation time from which on it holds"),
+    Column("system", "string", None, "SUMO id of the traffic light"),
+    Column("state", "string", None, "one letter per movement, SUMO's"),
+)
+
+PEOPLE_COLUMNS = (
+    Column("time", "number", "s", "simulation time from which on it holds"),
+    Column("id", "string", None, "the pedestrian"),
+    Column("desired_speed", "number", "m/s", "speed at which it would walk if nobody was there"),
+    Column("number", "integer", None, "0: where it is then; 1, 2, ...: its way-points"),
+    Column("x", "number", "m", "network x of the place"),
+    Column("y", "number", "m", "network y of the place"),
+)
+
+LEDGER_COLUMNS = (
+    Column("time", "number", "s", "simulation time of the event, or of its begin"),
+    Column("ego", "string", None, "SUMO id of the ego"),
+    Column("kind", "string", None, "what happened"),
+    Column("violation", "boolean", None, "whether the ego is answerable for it"),
+    Column("other", "string", None, "the pedestrian, vehicle or traffic light concerned"),
+    Column("place", "string", None, "SUMO id of the crossing or its number among the junctions"),
+    Column("x", "number", "m", "network x of where it happened"),
+    Column("y", "number", "m", "network y of where it happened"),
+    Column("value", "number", None, "how bad it was"),
+    Column("unit", "string", None, "of the value"),
+    Column("words", "string", None, "the event in words"),
+)
+
 PREDICTION_COLUMNS = (
     Column("time", "number", "s", "control instant t_k at which the prediction was made"),
     Column("ego", "string", None, "SUMO id of the ego whose MPC made it"),

@@ -7,8 +7,11 @@ which may be gone by then.
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from giveway.records.way import EgoWay
 
 SCENE_FILE = "scene.json"
 
@@ -23,10 +26,12 @@ class Scene:
     Attributes:
         road: closed outlines [m] of lanes, crossings and walkingareas.
         bodies: length and width [m] of vehicles, by their ids.
+        ways: of the egos, where the law of the road has a say on them.
     """
 
     road: tuple[Outline, ...] = ()
     bodies: dict[str, Body] | None = None
+    ways: tuple[EgoWay, ...] = ()
 
     def body(self, vehicle: str, otherwise: Body) -> Body:
         """Length and width [m] of a vehicle; ``otherwise`` if they are not known."""
@@ -34,7 +39,10 @@ class Scene:
 
     def to_json(self) -> str:
         """The scene as one line of JSON."""
-        return json.dumps(asdict(self), separators=(",", ":"), ensure_ascii=False) + "\n"
+        kept: dict[str, Any] = {"road": self.road, "bodies": self.bodies}
+        if self.ways:
+            kept |= {"ways": [way.as_dict() for way in self.ways]}
+        return json.dumps(kept, separators=(",", ":"), ensure_ascii=False) + "\n"
 
     @classmethod
     def read(cls, folder: Path) -> Scene:
@@ -46,6 +54,7 @@ class Scene:
                 str(name): (float(length), float(width))
                 for name, (length, width) in (kept["bodies"] or {}).items()
             }
+            ways = tuple(map(EgoWay.from_dict, kept.get("ways", ())))
         except (OSError, ValueError, TypeError, KeyError, AttributeError):
             return cls()
-        return cls(road, bodies)
+        return cls(road, bodies, ways)

@@ -91,6 +91,29 @@ class BackgroundTrack:
 
 
 @dataclass(frozen=True)
+class SignalTrack:
+    """The states of traffic lights, as changes in time order."""
+
+    time: NDArray[np.float64]  # (S,) [s] from when on
+    system: NDArray[np.str_]  # (S,) SUMO's id of the light
+    state: NDArray[np.str_]  # (S,) one letter per movement
+
+
+@dataclass(frozen=True)
+class PeopleTrack:
+    """Where pedestrians mean to walk and how fast, as flat records in time order.
+
+    A pedestrian's way is the records of one step: where it was then, and each way-point after that.
+    """
+
+    step: NDArray[np.int64]  # (P,) index into the control instants, from when on
+    pedestrian: NDArray[np.int64]  # (P,) index into the crowd's ``ids``
+    desired_speed: NDArray[np.float64]  # (P,) [m/s]
+    x: NDArray[np.float64]  # (P,) [m]
+    y: NDArray[np.float64]  # (P,) [m]
+
+
+@dataclass(frozen=True)
 class Timings:
     """Computing times of each control step, apart from all that is equal in equal runs."""
 

@@ -7,7 +7,8 @@ from giveway.figures.study_pairs import PairSide, pair_figure
 from giveway.reports.choice import ExamplePair
 from giveway.reports.pictures import Picture
 from giveway.reports.wording import quantity, shown_ego
-from giveway.results.run_result import EgoResult, RunResult
+from giveway.results.ego_result import EgoResult
+from giveway.results.run_result import RunResult
 from giveway.studies.statistics import metric
 
 TITLES = {

@@ -17,6 +17,7 @@ from giveway.config.layers import options
 from giveway.errors import ResultsError
 from giveway.figures.style import house_style, save_figure
 from giveway.metrics import SUMMARY_FIELDS
+from giveway.metrics.law import LAW_FIELDS
 from giveway.reports import findings, tables
 from giveway.reports.choice import ExamplePair, WorstRun, example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
@@ -227,7 +228,7 @@ def _execution(study: StudyFolder) -> dict[str, str]:
 
 
 def _glossary() -> list[dict[str, str]]:
-    meanings = {field.name: field.description for field in SUMMARY_FIELDS}
+    meanings = {field.name: field.description for field in (*SUMMARY_FIELDS, *LAW_FIELDS)}
     return [
         {
             "name": metric.name,

@@ -5,7 +5,17 @@ from giveway.records.scene import SCENE_FILE
 SUMO_FOLDER = "sumo"
 MARKS = ("", *(f"_{number}" for number in range(2, 100)))
 """Ends of the names of pictures, of the first ego, the second one and so on."""
-TABLES = ("ego", "trajectories", "pedestrians", "summary", "timing", "predictions")
+TABLES = (
+    "ego",
+    "trajectories",
+    "pedestrians",
+    "summary",
+    "timing",
+    "predictions",
+    "ledger",
+    "people",
+    "signals",
+)
 """All tables that a run can have; its ``schemas`` say which of them it has."""
 FILES = frozenset(
     {

@@ -16,8 +16,9 @@ from giveway.figures import (
 )
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
+from giveway.results.ego_result import EgoResult
 from giveway.results.names import MARKS
-from giveway.results.run_result import EgoResult, RunResult
+from giveway.results.run_result import RunResult
 from pedestrian_model import VciParameters, Vehicles, vehicle_influence
 
 _CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle

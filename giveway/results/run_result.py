@@ -1,13 +1,12 @@
 """What a run leaves behind: tracks, tables, summaries."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import pandas as pd
 
-from giveway.config import EgoRunConfig, RunConfig
+from giveway.config import RunConfig
 from giveway.config.layers import dump_toml
 from giveway.config.presets import parameters_of
 from giveway.geometry.bodies import VehicleShape
@@ -15,86 +14,36 @@ from giveway.geometry.kernel import Array
 from giveway.metrics import (
     PEDESTRIAN_FIELDS,
     SUMMARY_FIELDS,
-    VehicleContact,
-    conflicts,
-    pedestrian_metrics,
-    summarise,
-    vehicle_contacts,
 )
-from giveway.recording.recorded import RecordedRows
+from giveway.metrics.law import LAW_FIELDS
 from giveway.records.columns import (
     EGO_COLUMNS,
+    LEDGER_COLUMNS,
+    PEOPLE_COLUMNS,
     PREDICTION_COLUMNS,
+    SIGNAL_COLUMNS,
     SUMMARY_HEAD,
     TIMING_COLUMNS,
     TRAJECTORY_COLUMNS,
     Column,
 )
 from giveway.records.progress import Ending
-from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack, Timings
+from giveway.records.tracks import (
+    BackgroundTrack,
+    CrowdTrack,
+    EgoTrack,
+    PeopleTrack,
+    SignalTrack,
+    Timings,
+)
+from giveway.results.ego_result import EgoResult
+from giveway.results.law import (
+    ledger_table,
+    people_table,
+    signal_table,
+)
 from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
 from sumo_scenarios import Scenario
-
-
-@dataclass(frozen=True)
-class EgoResult:
-    """What one ego leaves behind.
-
-    Attributes:
-        config: of the ego.
-        id: in SUMO.
-        shape: its body.
-        goal: the distance [m] after which it is done.
-        first: the control instant at which it departed.
-        track: its rows, from that instant on.
-        ending: why its drive ended.
-        crowd: the crowd's records of these instants, counted from ``first``.
-        predictions: what its controller expected of the crowd, if that was recorded.
-        background: the background vehicles of the run.
-    """
-
-    config: EgoRunConfig
-    id: str
-    shape: VehicleShape
-    goal: float
-    first: int
-    track: EgoTrack
-    ending: Ending
-    crowd: CrowdTrack
-    predictions: PredictionTrack
-    background: BackgroundTrack
-
-    @property
-    def body_radius(self) -> float:
-        """The pedestrians' body radius [m]."""
-        return float(parameters_of(self.config.crowd.preset).body_radius)
-
-    @cached_property
-    def pedestrians(self) -> pd.DataFrame:
-        """One row per pedestrian: closest approach to this ego, TTC, PET."""
-        return pedestrian_metrics(self.track, self.crowd, self.shape, self.body_radius)
-
-    @cached_property
-    def vehicle_contacts(self) -> tuple[VehicleContact, ...]:
-        """The background vehicles that it came into contact with."""
-        return vehicle_contacts(self.track, self.background, self.shape)
-
-    @cached_property
-    def summary(self) -> dict[str, Any]:
-        """The drive in one row."""
-        config = self.config
-        body = self.shape, self.body_radius
-        figures = summarise(
-            self.track,
-            self.pedestrians,
-            conflicts(self.track, self.crowd, *body, config.record.stop_speed),
-            goal=self.goal,
-            safe_distance=config.regulation.safe_distance,
-            stop_speed=config.record.stop_speed,
-            controller=config.controller,
-            vehicles=self.vehicle_contacts,
-        )
-        return figures.as_dict()
 
 
 @dataclass(frozen=True)
@@ -109,6 +58,8 @@ class RunResult:
         time: (T,) [s] the control instants.
         egos: the egos that were on the road, in the order of their departure.
         crowd_track, background_track: the rows as arrays, in SI units.
+        signal_track: the changes of the traffic lights that govern something on an ego's way.
+        people_track: where people mean to walk, if the law of the road has a say on an ego's way.
         elapsed: wall clock of the loop [s].
         manifest: versions, hashes, seeds, the pedestrians' ledger.
         sumo_messages: what SUMO printed.
@@ -124,6 +75,8 @@ class RunResult:
     egos: tuple[EgoResult, ...]
     crowd_track: CrowdTrack
     background_track: BackgroundTrack
+    signal_track: SignalTrack
+    people_track: PeopleTrack
     timings: Timings
     elapsed: float
     manifest: dict[str, Any]
@@ -192,6 +145,22 @@ class RunResult:
         return _stacked(tables, names, by="time")
 
     @cached_property
+    def ledger(self) -> pd.DataFrame:
+        """One row per encounter and violation of the law of the road."""
+        judged = [(ego.id, ego.ledger) for ego in self.egos if ego.ledger is not None]
+        return ledger_table([(name, event) for name, found in judged for event in found.events])
+
+    @cached_property
+    def signals(self) -> pd.DataFrame:
+        """The changes of the traffic lights on the egos' ways."""
+        return signal_table(self.signal_track)
+
+    @cached_property
+    def people(self) -> pd.DataFrame:
+        """Where people mean to walk, and how fast."""
+        return people_table(self.time, self.people_track, self.crowd_track.ids)
+
+    @cached_property
     def timing(self) -> pd.DataFrame:
         """Computing times per control step; the only table that differs between equal runs."""
         return timing_table(self.time, self.timings)
@@ -238,45 +207,22 @@ class RunResult:
     def schemas(self) -> dict[str, tuple[Column, ...]]:
         """The columns of each CSV file."""
         predicted = self.config.record.predictions is not None
+        optional: dict[str, tuple[Column, ...]]
         optional = {"predictions": PREDICTION_COLUMNS} if predicted else {}
+        summary: tuple[Column, ...] = (*SUMMARY_HEAD, *SUMMARY_FIELDS)
+        if any(ego.law is not None for ego in self.egos):
+            summary = (*summary, *LAW_FIELDS)
+            optional |= {"ledger": LEDGER_COLUMNS, "people": PEOPLE_COLUMNS}
+        if len(self.signal_track.time):
+            optional |= {"signals": SIGNAL_COLUMNS}
         return {
             "ego": EGO_COLUMNS,
             "trajectories": TRAJECTORY_COLUMNS,
             "pedestrians": PEDESTRIAN_TABLE,
-            "summary": (*SUMMARY_HEAD, *SUMMARY_FIELDS),
+            "summary": summary,
             "timing": TIMING_COLUMNS,
             **optional,
         }
-
-
-def results_of_egos(
-    config: RunConfig, rows: RecordedRows, ending: Ending, endings: Mapping[str, Ending]
-) -> tuple[EgoResult, ...]:
-    """What each ego leaves behind.
-
-    Args:
-        config: the run's.
-        rows: the run's.
-        ending: of the run.
-        endings: of those egos whose drive ended by itself.
-    """
-    crowd, background = rows.crowd_track(), rows.background_track()
-    configs = {own.ego_id: own for own in config.each_ego()}
-    return tuple(
-        EgoResult(
-            config=configs[ego.id],
-            id=ego.id,
-            shape=ego.shape,
-            goal=ego.goal,
-            first=ego.first,
-            track=ego.track,
-            ending=endings.get(ego.id, ending),
-            crowd=crowd.during(ego.first, len(ego.track.time)),
-            predictions=ego.predictions,
-            background=background,
-        )
-        for ego in rows.egos()
-    )
 
 
 PEDESTRIAN_TABLE = (

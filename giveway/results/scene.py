@@ -25,7 +25,9 @@ def scene_of(result: RunResult) -> Scene:
         for outline in result.road
         if (outline.max(axis=0) >= low).all() and (outline.min(axis=0) <= high).all()
     ]
-    return Scene(tuple(tuple((x, y) for x, y in _rounded(outline)) for outline in near), bodies)
+    ways = tuple(ego.law.way for ego in result.egos if ego.law is not None)
+    road = tuple(tuple((x, y) for x, y in _rounded(outline)) for outline in near)
+    return Scene(road, bodies, ways)
 
 
 def _rounded(outline: Array) -> list[list[float]]:

@@ -1,6 +1,6 @@
 """Contact with background vehicles, in words."""
 
-from giveway.results.run_result import EgoResult
+from giveway.results.ego_result import EgoResult
 
 _NAMED = 3
 

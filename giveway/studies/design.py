@@ -8,6 +8,7 @@ from typing import Any
 from giveway.config.layers import Layer, merge, options
 from giveway.errors import ConfigError
 from giveway.metrics import SUMMARY_FIELDS
+from giveway.metrics.law import LAW_FIELDS
 from giveway.studies.columns import (
     COMPARISON_COLUMNS,
     LEVEL_COLUMNS,
@@ -21,6 +22,7 @@ _RESERVED = frozenset({"run", "cell", "seed", "ego", "ending", "runs", "failed",
     column.name
     for columns in (
         SUMMARY_FIELDS,
+        LAW_FIELDS,
         COMPARISON_COLUMNS,
         LEVEL_COLUMNS,
         SITUATION_COLUMNS,

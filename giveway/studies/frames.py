@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from giveway.metrics import SUMMARY_FIELDS
+from giveway.metrics.law import LAW_FIELDS
 from giveway.records.columns import Column
 from giveway.studies.design import Cell, Design, Level
 from giveway.studies.record import CRASHED, RunRecord, run_id
@@ -20,6 +21,7 @@ _EGO = (
     Column("ego", "string", None, "SUMO id of the ego; empty without one"),
     Column("ending", "string", None, "why it ended; failed and crashed runs have no numbers"),
 )
+_NUMBERS = (*SUMMARY_FIELDS, *LAW_FIELDS)
 EXECUTION_COLUMNS = (
     Column("run", "string", None, "id of the run"),
     Column("seconds", "number", "s", "wall clock of the run: set-up, loop, metrics"),
@@ -50,7 +52,7 @@ def runs_columns(design: Design) -> tuple[Column, ...]:
         Column(f.name, _type_of(f.levels), f.unit, f"level of the factor {f.name}")
         for f in design.factors
     )
-    return (*_HEAD, *factors, *_EGO, *SUMMARY_FIELDS)
+    return (*_HEAD, *factors, *_EGO, *_NUMBERS)
 
 
 def _type_of(levels: Iterable[Level]) -> Any:
@@ -74,7 +76,7 @@ def runs_frame(records: Iterable[tuple[Cell, int, RunRecord]], design: Design) -
         head = {"run": run_id(cell.number, seed), "cell": cell.number, "seed": seed}
         head |= {name: level.value for name, level in cell.levels.items()}
         for row in record.rows or ({"ending": record.ending},):
-            known = {field.name: row[field.name] for field in SUMMARY_FIELDS if field.name in row}
+            known = {field.name: row[field.name] for field in _NUMBERS if field.name in row}
             rows.append(head | {"ego": row.get("ego", ""), "ending": row["ending"]} | known)
     columns = runs_columns(design)
     frame = pd.DataFrame(rows, columns=[column.name for column in columns])

@@ -10,9 +10,13 @@ import pytest
 from fmus import VehicleProfile, make_profile
 from giveway.config.layers import options
 from giveway.metrics import PEDESTRIAN_FIELDS, SUMMARY_FIELDS
+from giveway.metrics.law import LAW_FIELDS
 from giveway.records.columns import (
     EGO_COLUMNS,
+    LEDGER_COLUMNS,
+    PEOPLE_COLUMNS,
     PREDICTION_COLUMNS,
+    SIGNAL_COLUMNS,
     TIMING_COLUMNS,
     TRAJECTORY_COLUMNS,
 )
@@ -29,6 +33,10 @@ DOCS = Path(__file__).parents[2] / "docs"
         TIMING_COLUMNS,
         PEDESTRIAN_FIELDS,
         SUMMARY_FIELDS,
+        LAW_FIELDS,
+        LEDGER_COLUMNS,
+        PEOPLE_COLUMNS,
+        SIGNAL_COLUMNS,
     ],
 )
 def test_every_column_is_documented_as_it_is_declared(columns: tuple) -> None:

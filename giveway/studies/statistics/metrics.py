@@ -6,6 +6,7 @@ from typing import Literal
 
 from giveway.errors import ConfigError
 from giveway.metrics import SUMMARY_FIELDS
+from giveway.metrics.law import LAW_FIELDS
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Metric:
     label: str
 
 
-_UNITS = {column.name: column.unit or "" for column in SUMMARY_FIELDS}
+_UNITS = {column.name: column.unit or "" for column in (*SUMMARY_FIELDS, *LAW_FIELDS)}
 
 
 def _lower(name: str, label: str) -> Metric:
@@ -60,6 +61,15 @@ METRICS = (
     _higher("minimum_pet", "minimum post-encroachment time"),
     _lower("maximum_drac", "maximum deceleration to avoid a crash"),
     _higher("minimum_ttc_moving", "minimum time to collision while moving"),
+    _higher("yielding_rate", "yielding rate"),
+    _lower("failures_to_yield", "failures to yield"),
+    _lower("red_lights_run", "red lights run"),
+    _lower("blocked_crossings", "blocked crossings"),
+    _lower("blocked_junctions", "blocked junctions"),
+    _lower("pushed_back", "farthest pushed back"),
+    _lower("stops_without_cause", "stops without cause"),
+    _lower("mean_zebra_wait", "mean wait at zebras"),
+    _lower("longest_zebra_wait", "longest wait at zebras"),
 )
 
 

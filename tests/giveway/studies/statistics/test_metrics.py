@@ -4,9 +4,10 @@ import pytest
 
 from giveway.errors import ConfigError
 from giveway.metrics import SUMMARY_FIELDS
+from giveway.metrics.law import LAW_FIELDS
 from giveway.studies.statistics import METRICS, metric
 
-UNITS = {column.name: column.unit or "" for column in SUMMARY_FIELDS}
+UNITS = {column.name: column.unit or "" for column in (*SUMMARY_FIELDS, *LAW_FIELDS)}
 
 
 @pytest.mark.parametrize("each", METRICS, ids=lambda each: each.name)
@@ -19,6 +20,7 @@ def test_what_is_left_out_says_nothing_about_a_controller() -> None:
     left = set(UNITS) - {each.name for each in METRICS}
     said = {"completed", "simulated_time", "travelled_distance", "maximum_speed"}
     said |= {"vehicle_contacts", "vehicle_contact_time"}  # SUMO drives those into it
+    said |= {"encounters"}  # how many people come is not up to it
     assert left == said | {"hard_brakes", "hard_brakes_without_cause"}  # of drives in traffic
 
 

@@ -1,0 +1,105 @@
+"""Where the ego's body sweeps over crossings: the areas that it shares with people."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
+from giveway.metrics.law.drive import Drive, runs
+from giveway.records.way import CrossingOnWay
+
+_STEP = 0.05  # [m] between two places of the body
+_GRAIN = 0.25  # [m] between two points of its outline, at most
+
+
+class Area(NamedTuple):
+    """The part of a crossing that the ego's body sweeps over in one visit.
+
+    Lengths along the crossing count from the first of its ends.
+    """
+
+    crossing: CrossingOnWay
+    kerb: Array  # (2,) [m] the first end
+    along: Array  # (2,) unit vector to the second
+    length: float  # [m] between the ends
+    entry: float  # [m] station of the front bumper from which on the body is on the crossing
+    leave: float  # [m] and up to which it is
+    low: float  # [m] along the crossing, where the body's way over it begins
+    high: float  # [m] and ends
+
+    def place(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """Lengths along the crossing and to the side of its middle line [m] of points."""
+        d_x, d_y = x - self.kerb[0], y - self.kerb[1]
+        c, s = self.along
+        return d_x * c + d_y * s, d_y * c - d_x * s
+
+
+def areas_of(drive: Drive) -> tuple[Area, ...]:
+    """The areas on a drive's way, in its order; those beyond its end are left out."""
+    if not drive.way.crossings:
+        return ()
+    line = _Line(drive)
+    found: list[Area] = []
+    for crossing in drive.way.crossings:
+        found += _visits(line, drive.shape, crossing)
+    kept = (area for area in found if area.entry < drive.end)
+    return tuple(sorted(kept, key=lambda area: area.entry))
+
+
+class _Line:
+    """The path, which goes on straight before its beginning and beyond its end.
+
+    Args:
+        drive: whose path it is.
+    """
+
+    def __init__(self, drive: Drive) -> None:
+        path, more = drive.path, drive.shape.length + 1.0
+        first, last = path.headings[0], path.headings[-1]
+        before = path.vertices[0] - more * np.array([np.cos(first), np.sin(first)])
+        after = path.vertices[-1] + more * np.array([np.cos(last), np.sin(last)])
+        self.vertices = np.concatenate([[before], path.vertices, [after]])
+        self.stations = np.concatenate([[-more], path.stations, [path.length + more]])
+
+    def at(self, station: Array) -> Array:
+        """(n, 2) [m] the points at ``station`` (n,) [m]."""
+        columns = [np.interp(station, self.stations, column) for column in self.vertices.T]
+        return np.stack(columns, axis=-1)
+
+
+def _visits(line: _Line, shape: VehicleShape, crossing: CrossingOnWay) -> list[Area]:
+    ends = np.array(crossing.ends)
+    length = float(np.hypot(*(ends[1] - ends[0])))
+    if length <= 0.0:
+        return []
+    base = Area(crossing, ends[0], (ends[1] - ends[0]) / length, length, 0.0, 0.0, 0.0, 0.0)
+    coarse = np.arange(line.stations[0] + shape.length, line.stations[-1], 1.0)
+    away = np.hypot(*(line.at(coarse) - ends.mean(axis=0)).T)
+    near = coarse[away <= (length + crossing.width) / 2 + shape.length + shape.width + 1.0]
+    if not len(near):
+        return []
+    stations = np.arange(near[0] - 1.0, min(near[-1] + 1.0, line.stations[-1]), _STEP)
+    u, w = base.place(*_outline(line, shape, stations))
+    inside: NDArray[np.bool_] = (u >= 0.0) & (u <= length) & (np.abs(w) <= crossing.width / 2)
+    areas = []
+    for begin, end in runs(np.asarray(inside.any(axis=1))):
+        swept = u[begin:end][inside[begin:end]]
+        entry, leave = float(stations[begin]), float(stations[end - 1])
+        low, high = float(swept.min()), float(swept.max())
+        areas.append(base._replace(entry=entry, leave=leave, low=low, high=high))
+    return areas
+
+
+def _outline(line: _Line, shape: VehicleShape, stations: Array) -> tuple[Array, Array]:
+    """X and y (n, p) [m] of points of the body with its front at each of the stations (n,)."""
+    front, rear = line.at(stations), line.at(stations - shape.length)
+    heading = np.arctan2(front[:, 1] - rear[:, 1], front[:, 0] - rear[:, 0])[:, None]
+    back = np.linspace(0.0, shape.length, 1 + int(np.ceil(shape.length / _GRAIN)))
+    side = np.linspace(-0.5, 0.5, 1 + int(np.ceil(shape.width / _GRAIN))) * shape.width
+    # both sides from front to rear, and the front
+    a = np.concatenate([-back, -back, np.zeros(len(side))])
+    b = np.concatenate([np.full(len(back), side[0]), np.full(len(back), side[-1]), side])
+    c, s = np.cos(heading), np.sin(heading)
+    return front[:, :1] + a * c - b * s, front[:, 1:] + a * s + b * c

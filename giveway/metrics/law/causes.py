@@ -1,0 +1,168 @@
+"""Stops of the ego for which the road shows no cause.
+
+A cause is looked for in where everybody was, not in what the ego took for one.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.kernel import Array
+from giveway.metrics.law.areas import Area
+from giveway.metrics.law.drive import Drive, runs
+from giveway.metrics.law.encounters import AHEAD, Encounter
+
+BEFORE, AFTER = 1.0, 2.0
+"""[s] A cause counts from so long before it is there until so long after."""
+
+SIGHT = 10.0
+"""[m] A cause counts this far in front of the ego."""
+
+_ASIDE = 0.5  # [m] beside the ego's way people are on it as well
+_FOE = 6.0  # [s] before another vehicle comes by
+_ROOM = 5.0  # [m] that the ego wants behind a crossing or a junction, besides its own length
+_STARTING = 3.0  # [s] in which an ego drives off that departs standing
+_HALT = 1.0  # [m] about a scheduled stop
+_SAME = 1e-6  # [s]
+_POINTS = 5  # of a vehicle's middle line, front to rear
+_GO = np.array(list("GgOo"))
+
+Mask = NDArray[np.bool_]
+
+
+class Uncaused(NamedTuple):
+    """A stop without a cause."""
+
+    first: int  # the first control instant without one
+    duration: float  # [s] for which there was none
+
+
+class _Stand(NamedTuple):
+    """Where the ego stands, and when."""
+
+    front: float  # [m] station
+    sight: float  # [m] how far ahead a vehicle keeps it from driving on
+    begin: int  # the first control instant
+    end: int  # and the one after the last
+
+
+def stops_without_cause(
+    drive: Drive, areas: Sequence[Area], encounters: Sequence[Encounter]
+) -> list[Uncaused]:
+    """The stops in which the ego stood while there was no cause, nor had been just before.
+
+    Args:
+        drive: the ego's.
+        areas: on its way.
+        encounters: of the drive.
+    """
+    time, found = drive.ego.time, []
+    lasting = np.append(np.diff(time), 0.0)
+    owed = _owed(drive, encounters)
+    for begin, end in runs(drive.ego.speed < drive.stop_speed):
+        front = float(drive.front[begin:end].mean())
+        stand = _Stand(front, _sight(drive, areas, front), begin, end)
+        caused = np.zeros(len(time), dtype=np.bool_)
+        if begin == 0:
+            caused |= time <= time[0] + _STARTING
+        for there, before in _causes(drive, stand, owed):
+            caused |= _spread(time, there, before + BEFORE, AFTER)
+        wrong = ~caused[begin:end]
+        if wrong.any():
+            duration = float(lasting[begin:end][wrong].sum())
+            found.append(Uncaused(begin + int(np.argmax(wrong)), duration))
+    return found
+
+
+def _owed(drive: Drive, encounters: Sequence[Encounter]) -> list[tuple[float, Mask]]:
+    """Of each crossing's area its entry [m] and when (T,) the ego owed somebody the way there."""
+    found: dict[float, Mask] = {}
+    for met in encounters:
+        there = found.setdefault(met.area.entry, np.zeros(len(drive.ego.time), dtype=np.bool_))
+        there[met.walk.steps[met.owed]] = True
+    return list(found.items())
+
+
+def _sight(drive: Drive, areas: Sequence[Area], front: float) -> float:
+    """How far ahead a vehicle keeps the ego from leaving what it has to keep free [m]."""
+    length = drive.shape.length
+    kept_free = [(area.entry, area.leave) for area in areas]
+    kept_free += [(place.entry, place.exit + length) for place in drive.way.junctions]
+    rooms = (leave + _ROOM - front for entry, leave in kept_free if entry - SIGHT <= front < leave)
+    return max([SIGHT, *rooms])
+
+
+def _causes(
+    drive: Drive, stand: _Stand, owed: Sequence[tuple[float, Mask]]
+) -> Iterator[tuple[Mask, float]]:
+    """When (T,) there was a cause of a stand, and how long [s] before that it counts."""
+    time, front = drive.ego.time, stand.front
+    for entry, there in owed:
+        if front <= entry <= front + SIGHT:
+            yield there, 0.0
+    for line in drive.way.lines:
+        if front <= line.station <= front + SIGHT:
+            yield ~np.isin(drive.letters(line.system, line.link, time), _GO), 0.0
+    if any(halt.start - _HALT <= front <= halt.end + _HALT for halt in drive.way.halts):
+        yield np.ones(len(time), dtype=np.bool_), 0.0
+    yield _people_ahead(drive, stand), AHEAD
+    yield _vehicles_ahead(drive, stand, SIGHT), _FOE
+    yield _vehicles_ahead(drive, stand, stand.sight), 0.0
+
+
+def _people_ahead(drive: Drive, stand: _Stand) -> Mask:
+    """(T,) when somebody was on the ego's way in front of it."""
+    crowd, front = drive.crowd, stand.front
+    x, y, _ = drive.path.pose(front)
+    rows = _during(drive, stand, drive.ego.time[crowd.step])
+    reach = SIGHT + drive.shape.width + _ASIDE
+    rows = rows[np.hypot(crowd.x[rows] - x, crowd.y[rows] - y) <= reach]
+    station, aside = _on_path(drive, crowd.x[rows], crowd.y[rows])
+    on = aside <= drive.shape.width / 2 + drive.body_radius + _ASIDE
+    on &= (station > front - drive.body_radius) & (station <= front + SIGHT)
+    there = np.zeros(len(drive.ego.time), dtype=np.bool_)
+    there[crowd.step[rows[on]]] = True
+    return there
+
+
+def _vehicles_ahead(drive: Drive, stand: _Stand, sight: float) -> Mask:
+    """(T,) when another vehicle was on the ego's way up to ``sight`` [m] ahead of it."""
+    others, time, front = drive.vehicles, drive.ego.time, stand.front
+    x, y, _ = drive.path.pose(front)
+    rows = _during(drive, stand, others.time)
+    reach = sight + others.length[rows] + others.width[rows]
+    rows = rows[np.hypot(others.x[rows] - x, others.y[rows] - y) <= reach]
+    back = np.linspace(0.0, 1.0, _POINTS) * others.length[rows, None]
+    p_x = others.x[rows, None] - back * np.cos(others.heading[rows, None])
+    p_y = others.y[rows, None] - back * np.sin(others.heading[rows, None])
+    station, aside = (each.reshape(back.shape) for each in _on_path(drive, p_x, p_y))
+    on = aside <= (drive.shape.width + others.width[rows, None]) / 2
+    on &= (station > front) & (station <= front + sight)
+    there = np.zeros(len(time), dtype=np.bool_)
+    there[drive.instants(others.time[rows[on.any(axis=1)]])] = True
+    return there
+
+
+def _during(drive: Drive, stand: _Stand, time: Array) -> NDArray[np.intp]:
+    """The rows (of ascending ``time`` [s]) that may be the cause of a stand."""
+    own = drive.ego.time
+    since, until = own[stand.begin] - AFTER, own[stand.end - 1] + _FOE + BEFORE
+    return np.arange(*np.searchsorted(time, (since, until)))
+
+
+def _on_path(drive: Drive, x: Array, y: Array) -> tuple[Array, Array]:
+    """Stations and distances (n,) [m] of points beside the ego's path."""
+    station, lateral = drive.path.project(np.column_stack([x.ravel(), y.ravel()]))
+    return station, np.abs(lateral)
+
+
+def _spread(time: Array, there: Mask, before: float, after: float) -> Mask:
+    """(T,) ``there`` from so long [s] before until so long [s] after."""
+    hits = time[there]
+    if not len(hits):
+        return there
+    following = np.minimum(np.searchsorted(hits, time - after - _SAME), len(hits) - 1)
+    near = hits[following]
+    return np.asarray((near >= time - after - _SAME) & (near <= time + before + _SAME))

@@ -1,0 +1,126 @@
+"""Encounters at crossings: who had priority there, and whether the ego let them pass.
+
+The definitions, and the reason for each number, stand in docs/law.md.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.kernel import Array
+from giveway.metrics.law.areas import Area
+from giveway.metrics.law.drive import Drive, runs
+from giveway.metrics.law.walks import Walk
+
+AHEAD = 4.0
+"""[s] Who would reach the ego's way later than this is not met yet."""
+
+BRAKING = 3.0
+"""[m/s^2] Who cannot be stopped for by braking so hard comes too late to be met."""
+
+AFTER = 5.0
+"""[s] Who has left the ego's way this long before it could be there is not met: the largest
+post-encroachment time that SSAM looks at (Gettman & Head 2003, FHWA)."""
+
+PULL_AWAY = 2.0
+"""[m/s^2] with which it could come."""
+
+BY = 20.0
+"""[m] before a crossing from which on the ego may push people back there."""
+
+
+class Encounter(NamedTuple):
+    """Somebody with priority whom the ego meets at a crossing."""
+
+    area: Area
+    walk: Walk
+    first: int  # the control instant at which it begins
+    owed: NDArray[np.bool_]  # (m,) at which of the walk's records the ego has to let them pass
+    too_early: float  # [s] the ego entered before the person had left; 0: it let them pass
+
+    @property
+    def failed(self) -> bool:
+        """Whether the ego failed to yield."""
+        return self.too_early > 0.0
+
+
+class PushedBack(NamedTuple):
+    """Somebody with priority who went back on a crossing."""
+
+    area: Area
+    walk: Walk
+    farthest: int  # the record of the walk from which on they went back
+    distance: float  # [m]
+
+
+def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
+    """The encounter of one walk with the ego, if it is one.
+
+    Args:
+        drive: the ego's.
+        area: of the crossing.
+        walk: over it.
+    """
+    to_go, to_leave = walk.reach - walk.progress, walk.clear - walk.progress
+    speed, room = drive.ego.speed[walk.steps], area.entry - drive.front[walk.steps]
+    there = walk.priority & (to_leave > 0.0)
+    meets = there & (to_go <= AHEAD * walk.desired_speed)
+    meets &= (room > 0.0) & (speed**2 <= 2.0 * BRAKING * room)
+    meets &= room <= _comes(speed, drive.ego.speed.max(), to_leave / walk.desired_speed + AFTER)
+    if not meets.any():
+        return []
+    owed = np.zeros(len(meets), dtype=np.bool_)
+    too_early, enters = 0.0, drive.time_at(area.entry)
+    for begin, end in runs(there):
+        if not meets[begin:end].any():
+            continue
+        since = begin + int(np.argmax(meets[begin:end]))
+        owed[since:end] = True
+        too_early = max(too_early, _leaves(drive, walk, to_leave, end) - enters)
+    return [Encounter(area, walk, int(walk.steps[np.argmax(meets)]), owed, too_early)]
+
+
+def _comes(speed: Array, fastest: float, time: Array) -> Array:
+    """How far [m] an ego comes within ``time`` [s] that speeds up to its ``fastest`` [m/s]."""
+    faster = np.clip((fastest - speed) / PULL_AWAY, 0.0, np.maximum(time, 0.0))
+    return speed * faster + PULL_AWAY / 2.0 * faster**2 + fastest * (time - faster)
+
+
+def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:
+    """When [s] a person whose record ``end`` is the first without a claim gave it up."""
+    time = drive.ego.time[walk.steps]
+    if end == len(time):
+        return float(time[-1])
+    before, after = to_leave[end - 1], to_leave[end]
+    share = before / (before - after) if after <= 0.0 else 1.0
+    return float(time[end - 1] + share * (time[end] - time[end - 1]))
+
+
+def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
+    """How far somebody with priority went back while the ego was near, if at all.
+
+    Args:
+        drive: the ego's.
+        area: of the crossing.
+        walk: over it.
+    """
+    front = drive.front[walk.steps]
+    counts = walk.priority & (front >= area.entry - BY) & (front <= area.leave)
+    worst: PushedBack | None = None
+    for begin, end in runs(counts):
+        progress = walk.progress[begin:end]
+        farthest = np.maximum.accumulate(progress)
+        back = farthest - progress
+        k = int(np.argmax(back))
+        if back[k] > (0.0 if worst is None else worst.distance):
+            at = begin + int(np.argmax(progress[: k + 1]))
+            worst = PushedBack(area, walk, at, float(back[k]))
+    return [] if worst is None else [worst]
+
+
+def waiting_time(drive: Drive, found: Encounter) -> float:
+    """How long [s] somebody stood although the ego had to let them pass."""
+    steps = found.walk.steps
+    lasting = np.append(np.diff(drive.ego.time), 0.0)[steps]
+    return float(lasting[found.owed & (found.walk.speed < drive.stop_speed)].sum())

@@ -1,0 +1,95 @@
+"""Where the ego came to a stand: on crossings and in junctions that it has to keep free."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.metrics.law.areas import Area
+from giveway.metrics.law.drive import Drive, runs
+
+LONG = 2.0
+"""[s] A shorter stand blocks nobody."""
+
+NEAR = 3.0
+"""[m] Somebody who is this near in front keeps the ego from driving on."""
+
+_SAME = 1e-6  # [s]
+_WAITING = (-2.0, 0.5)  # [m] behind and beyond a waiting place at which the ego waits there
+
+
+class Blocked(NamedTuple):
+    """A crossing or a junction that the ego blocked."""
+
+    place: str  # the crossing's id or the junction's number
+    first: int  # the control instant
+    duration: float  # [s]
+
+
+def blocked_crossings(drive: Drive, areas: tuple[Area, ...]) -> list[Blocked]:
+    """The crossings on which the ego stood without having to, stand by stand.
+
+    Args:
+        drive: the ego's.
+        areas: on its way.
+    """
+    free = _stands(drive) & ~somebody_in_front(drive)
+    front = drive.front
+    return [
+        Blocked(area.crossing.lane, *longest)
+        for area in areas
+        for longest in _longest(drive, free & (front > area.entry) & (front < area.leave))
+    ]
+
+
+def blocked_junctions(drive: Drive) -> list[Blocked]:
+    """The junctions in which the ego stood without having to, elsewhere than it may wait.
+
+    Args:
+        drive: the ego's.
+    """
+    free, found = _stands(drive) & ~somebody_in_front(drive), list[Blocked]()
+    for number, junction in enumerate(drive.way.junctions):
+        inside = (drive.front > junction.entry) & (drive.front < junction.exit + drive.shape.length)
+        for place in junction.waiting:
+            off = drive.front - place
+            inside &= (off < _WAITING[0]) | (off > _WAITING[1])
+        found += [Blocked(str(number), *longest) for longest in _longest(drive, free & inside)]
+    return found
+
+
+def _stands(drive: Drive) -> NDArray[np.bool_]:
+    return np.asarray(drive.ego.speed < drive.stop_speed)
+
+
+def _longest(drive: Drive, wrong: NDArray[np.bool_]) -> list[tuple[int, float]]:
+    """Of each stand its longest uninterrupted wrong part: first instant, duration [s]."""
+    time, found = drive.ego.time, []
+    for begin, end in runs(_stands(drive)):
+        parts = [
+            (float(time[min(begin + b, len(time) - 1)] - time[begin + a]), begin + a)
+            for a, b in runs(wrong[begin:end])
+        ]
+        duration, first = max(parts, default=(0.0, 0))
+        if duration >= LONG - _SAME:
+            found.append((first, duration))
+    return found
+
+
+def somebody_in_front(drive: Drive, within: float = NEAR) -> NDArray[np.bool_]:
+    """(T,) whether a body reaches into the ego's straight way ahead within some distance [m].
+
+    Args:
+        drive: the ego's.
+        within: the distance from the front bumper.
+    """
+    ego, crowd = drive.ego, drive.crowd
+    k = crowd.step
+    d_x, d_y = crowd.x - ego.front_x[k], crowd.y - ego.front_y[k]
+    c, s = np.cos(ego.heading[k]), np.sin(ego.heading[k])
+    ahead, aside = d_x * c + d_y * s, np.abs(d_y * c - d_x * s)
+    near = (ahead > -drive.body_radius) & (ahead <= within + drive.body_radius)
+    near &= aside <= drive.shape.width / 2 + drive.body_radius
+    found = np.zeros(len(ego.time), dtype=np.bool_)
+    found[k[near]] = True
+    return found

@@ -1,0 +1,165 @@
+"""People at a crossing: how far over it they are, and when they have priority there."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.kernel import Array
+from giveway.metrics.law.areas import Area
+from giveway.metrics.law.drive import Drive
+
+KERB = 1.0
+"""[m] Who is this near to a crossing's kerb and heads for it is about to use it."""
+
+_OVER = 0.5  # [m] along a crossing; whose way leads less far over it does not cross there
+_ON = 1.0  # [m] beyond the kerb; who is first seen there has entered by right
+_GREEN = np.array(["G", "g"])
+_OUT = np.array(["O", "o"])
+_SLOWEST = 0.1  # [m/s] of desired speeds, which may be zero
+
+
+class Walk(NamedTuple):
+    """One person's records near a crossing, on one of their ways over it, in order of time."""
+
+    pedestrian: int
+    steps: NDArray[np.int64]  # (m,) control instants
+    progress: Array  # (m,) [m] in the person's own direction, from the kerb they come from
+    priority: NDArray[np.bool_]  # (m,)
+    x: Array  # (m,) [m]
+    y: Array  # (m,) [m]
+    speed: Array  # (m,) [m/s]
+    desired_speed: float  # [m/s]
+    reach: float  # [m] progress at which the body reaches the ego's way
+    clear: float  # [m] and at which it has left it
+
+
+def walks_over(drive: Drive, area: Area) -> list[Walk]:
+    """Everybody's walks over an area's crossing.
+
+    Args:
+        drive: whose crowd it is.
+        area: on its way.
+    """
+    crowd, people = drive.crowd, drive.people
+    if not len(crowd.step) or not len(people.step):
+        return []
+    u, w = area.place(crowd.x, crowd.y)
+    margin = area.crossing.width / 2 + KERB
+    near = (u >= -KERB) & (u <= area.length + KERB) & (np.abs(w) <= margin)
+    open_at = _open(drive, area)
+    walks = []
+    for route in _routes(drive, area):
+        mine = (crowd.pedestrian == route.pedestrian) & near
+        rows = np.flatnonzero(mine & (crowd.step >= route.begin) & (crowd.step < route.end))
+        if not len(rows):
+            continue
+        progress = u[rows] if route.onwards else area.length - u[rows]
+        low, high = area.low, area.high
+        if not route.onwards:
+            low, high = area.length - high, area.length - low
+        steps = crowd.step[rows]
+        priority = _priority(drive, area, progress, w[rows], open_at[steps])
+        walks.append(
+            Walk(
+                route.pedestrian,
+                steps,
+                progress,
+                priority,
+                crowd.x[rows],
+                crowd.y[rows],
+                np.hypot(crowd.vx[rows], crowd.vy[rows]),
+                max(route.desired_speed, _SLOWEST),
+                low - drive.body_radius,
+                high + drive.body_radius,
+            )
+        )
+    return walks
+
+
+def _open(drive: Drive, area: Area) -> NDArray[np.bool_]:
+    """(T,) whether people who are about to enter the crossing have priority."""
+    crossing = area.crossing
+    if not crossing.system:
+        return np.full(len(drive.ego.time), crossing.zebra)
+    letters = drive.letters(crossing.system, crossing.link, drive.ego.time)
+    return np.isin(letters, _GREEN) | (np.isin(letters, _OUT) & crossing.zebra)
+
+
+def _priority(
+    drive: Drive, area: Area, progress: Array, aside: Array, is_open: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """(m,) whether a person has priority, record by record.
+
+    At the kerb whoever finds the crossing open has it, and on the crossing whoever had it there.
+    """
+    half = area.crossing.width / 2
+    on = (progress >= 0.0) & (progress <= area.length)
+    on &= np.abs(aside) <= half + drive.body_radius
+    beside = np.maximum(np.abs(aside) - half, 0.0)
+    kerb = (progress < 0.0) & (np.hypot(progress, beside) <= KERB)
+    priority = np.empty(len(progress), dtype=np.bool_)
+    before = bool(on[0] and progress[0] > _ON)
+    if before and not area.crossing.system and not area.crossing.zebra:
+        before = False  # nobody enters such a crossing by right
+    for k, (now, there, enters) in enumerate(
+        zip(is_open.tolist(), on.tolist(), kerb.tolist(), strict=True)
+    ):
+        before = (there and (before or now)) or (enters and now)
+        priority[k] = before
+    return priority
+
+
+class _Route(NamedTuple):
+    """A way of one person that leads over a crossing."""
+
+    pedestrian: int
+    begin: int  # the control instant from which on it holds
+    end: int  # and the one from which on the next one does
+    onwards: bool  # from the crossing's first end to its second
+    desired_speed: float  # [m/s]
+
+
+def _routes(drive: Drive, area: Area) -> list[_Route]:
+    """The ways that lead over the crossing."""
+    people = drive.people
+    u, w = area.place(people.x, people.y)
+    another = np.diff(people.pedestrian, prepend=-1) != 0
+    another[1:] |= np.diff(people.step) != 0
+    begins = np.flatnonzero(another)
+    joined = np.ones(len(u), dtype=np.bool_)
+    joined[begins] = False  # the legs end at the places of a way but its first
+    half = area.crossing.width / 2 + drive.body_radius
+    over = _along(u, w, area.length, half)
+    over = np.add.reduceat(np.where(joined, over, 0.0), begins)
+    found: list[_Route] = []
+    ends: dict[int, int] = {}
+    for number in range(len(begins) - 1, -1, -1):
+        first = begins[number]
+        who, begin = int(people.pedestrian[first]), int(people.step[first])
+        end = ends.get(who, len(drive.ego.time))
+        ends[who] = begin
+        if abs(over[number]) > _OVER:
+            speed = float(people.desired_speed[first])
+            found.append(_Route(who, begin, end, bool(over[number] > 0.0), speed))
+    return found[::-1]
+
+
+def _along(u: Array, w: Array, length: float, half: float) -> Array:
+    """(n,) [m] how far the leg to each place from the one before leads along the crossing.
+
+    Only its part on the crossing counts: |w| at most ``half``, u from 0 to ``length``.
+    """
+    u_0, w_0 = np.roll(u, 1), np.roll(w, 1)
+    d_u, d_w = u - u_0, w - w_0
+    begin, end = np.zeros(len(u)), np.ones(len(u))
+    for at, by, low, high in ((u_0, d_u, 0.0, length), (w_0, d_w, -half, half)):
+        still = np.abs(by) < 1e-9
+        safe = np.where(still, 1.0, by)
+        one, other = (low - at) / safe, (high - at) / safe
+        inside = (at >= low) & (at <= high)
+        begin = np.maximum(
+            begin, np.where(still, np.where(inside, 0.0, 2.0), np.minimum(one, other))
+        )
+        end = np.minimum(end, np.where(still, 1.0, np.maximum(one, other)))
+    return d_u * np.maximum(end - begin, 0.0)

@@ -1,0 +1,121 @@
+"""What stands on an ego's way that the law of the road speaks of, as it is when the ego departs.
+
+The recorder keeps one line of JSON per ego, so that the judgement over the tables
+(:mod:`giveway.metrics.law`) needs neither SUMO nor what the ego made of the network.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
+
+Point = tuple[float, float]
+
+
+class CrossingOnWay(NamedTuple):
+    """A pedestrian crossing that the path leads over."""
+
+    lane: str  # SUMO's id
+    ends: tuple[Point, Point]  # [m] the middle of each kerb
+    width: float  # [m]
+    zebra: bool  # people have priority wherever no light says otherwise
+    system: str  # SUMO's id of the traffic light; empty: none
+    link: int  # index of the movement in the light's state
+
+
+class StopLine(NamedTuple):
+    """Where a traffic light holds the ego."""
+
+    station: float  # [m] along the path
+    system: str  # SUMO's id of the traffic light
+    link: int  # index of the movement in the light's state
+
+
+class JunctionOnWay(NamedTuple):
+    """A stretch of the path that crosses or joins the ways of other vehicles."""
+
+    entry: float  # [m] station at which it begins
+    exit: float  # [m] and ends
+    waiting: tuple[float, ...]  # [m] stations in it at which a front bumper may wait
+
+
+class Halt(NamedTuple):
+    """A scheduled stop."""
+
+    start: float  # [m] station from which on a halt counts
+    end: float  # [m] station that the ego drives up to
+
+
+@dataclass(frozen=True)
+class EgoWay:
+    """An ego's way and what stands on it; stations count along ``points``.
+
+    Attributes:
+        ego: SUMO's id.
+        points: of the path's polyline [m].
+        departure: station [m] of the front bumper where the ego's position is 0.
+        crossings: that the path leads over.
+        lines: stop lines of traffic lights, in order.
+        junctions: in order.
+        halts: scheduled stops, in order.
+    """
+
+    ego: str
+    points: tuple[Point, ...]
+    departure: float = 0.0
+    crossings: tuple[CrossingOnWay, ...] = ()
+    lines: tuple[StopLine, ...] = ()
+    junctions: tuple[JunctionOnWay, ...] = ()
+    halts: tuple[Halt, ...] = ()
+
+    @property
+    def is_ruled(self) -> bool:
+        """Whether there is anything on it at which somebody has priority."""
+        return bool(self.crossings or self.lines or self.junctions)
+
+    @property
+    def systems(self) -> frozenset[str]:
+        """The traffic lights that govern anything on it."""
+        found = [crossing.system for crossing in self.crossings]
+        found += [line.system for line in self.lines]
+        return frozenset(system for system in found if system)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The way as JSON has it."""
+        plain = asdict(self)
+        for name in ("crossings", "lines", "junctions", "halts"):
+            plain[name] = [place._asdict() for place in getattr(self, name)]
+        return plain
+
+    def to_json(self) -> str:
+        """The way as one line of JSON."""
+        return json.dumps(self.as_dict(), separators=(",", ":"), ensure_ascii=False)
+
+    @classmethod
+    def from_dict(cls, kept: dict[str, Any]) -> EgoWay:
+        """The way that ``as_dict`` was made of.
+
+        Raises:
+            KeyError, TypeError, ValueError: it is something else.
+        """
+        return cls(
+            ego=str(kept["ego"]),
+            points=tuple(map(_point, kept["points"])),
+            departure=float(kept["departure"]),
+            crossings=tuple(
+                CrossingOnWay(**place | {"ends": tuple(map(_point, place["ends"]))})
+                for place in kept["crossings"]
+            ),
+            lines=tuple(StopLine(**place) for place in kept["lines"]),
+            junctions=tuple(
+                JunctionOnWay(**place | {"waiting": tuple(place["waiting"])})
+                for place in kept["junctions"]
+            ),
+            halts=tuple(Halt(**place) for place in kept["halts"]),
+        )
+
+
+def _point(kept: Any) -> Point:
+    x, y = kept
+    return float(x), float(y)

@@ -1,0 +1,147 @@
+"""What one ego of a run leaves behind: its rows, and what they come to."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import pandas as pd
+
+from giveway.config import EgoRunConfig, RunConfig
+from giveway.config.presets import parameters_of
+from giveway.geometry.bodies import VehicleShape
+from giveway.metrics import (
+    VehicleContact,
+    conflicts,
+    pedestrian_metrics,
+    summarise,
+    vehicle_contacts,
+)
+from giveway.metrics.law import Drive, Ledger, ledger
+from giveway.recording.recorded import RecordedEgo, RecordedRows
+from giveway.records.progress import Ending
+from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack
+from giveway.results.law import LawRows, others_of, people_from
+
+
+@dataclass(frozen=True)
+class EgoResult:
+    """What one ego leaves behind.
+
+    Attributes:
+        config: of the ego.
+        id: in SUMO.
+        shape: its body.
+        goal: the distance [m] after which it is done.
+        first: the control instant at which it departed.
+        track: its rows, from that instant on.
+        ending: why its drive ended.
+        crowd: the crowd's records of these instants, counted from ``first``.
+        predictions: what its controller expected of the crowd, if that was recorded.
+        background: the background vehicles of the run.
+        law: what its drive is judged by; None: the law of the road has no say on its way.
+    """
+
+    config: EgoRunConfig
+    id: str
+    shape: VehicleShape
+    goal: float
+    first: int
+    track: EgoTrack
+    ending: Ending
+    crowd: CrowdTrack
+    predictions: PredictionTrack
+    background: BackgroundTrack
+    law: LawRows | None = None
+
+    @property
+    def body_radius(self) -> float:
+        """The pedestrians' body radius [m]."""
+        return float(parameters_of(self.config.crowd.preset).body_radius)
+
+    @cached_property
+    def pedestrians(self) -> pd.DataFrame:
+        """One row per pedestrian: closest approach to this ego, TTC, PET."""
+        return pedestrian_metrics(self.track, self.crowd, self.shape, self.body_radius)
+
+    @cached_property
+    def vehicle_contacts(self) -> tuple[VehicleContact, ...]:
+        """The background vehicles that it came into contact with."""
+        return vehicle_contacts(self.track, self.background, self.shape)
+
+    @cached_property
+    def ledger(self) -> Ledger | None:
+        """How it kept to the law of the road; None: that has no say on its way."""
+        if self.law is None:
+            return None
+        drive = Drive(
+            ego=self.track,
+            shape=self.shape,
+            body_radius=self.body_radius,
+            way=self.law.way,
+            crowd=self.crowd,
+            people=self.law.people,
+            signals=self.law.signals,
+            vehicles=self.law.vehicles,
+            comfortable=self.config.regulation.comfortable_deceleration,
+            goal=self.goal,
+            stop_speed=self.config.record.stop_speed,
+        )
+        return ledger(drive, self.vehicle_contacts)
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """The drive in one row."""
+        config = self.config
+        body = self.shape, self.body_radius
+        figures = summarise(
+            self.track,
+            self.pedestrians,
+            conflicts(self.track, self.crowd, *body, config.record.stop_speed),
+            goal=self.goal,
+            safe_distance=config.regulation.safe_distance,
+            stop_speed=config.record.stop_speed,
+            controller=config.controller,
+            vehicles=self.vehicle_contacts,
+        )
+        return figures.as_dict() | ({} if self.ledger is None else self.ledger.summary.as_dict())
+
+
+def results_of_egos(
+    config: RunConfig, rows: RecordedRows, ending: Ending, endings: Mapping[str, Ending]
+) -> tuple[EgoResult, ...]:
+    """What each ego leaves behind.
+
+    Args:
+        config: the run's.
+        rows: the run's.
+        ending: of the run.
+        endings: of those egos whose drive ended by itself.
+    """
+    crowd, background = rows.crowd_track(), rows.background_track()
+    configs = {own.ego_id: own for own in config.each_ego()}
+    ways, signals, people = rows.ways(), rows.signal_track(), rows.people_track()
+    recorded = list(rows.egos())
+
+    def law_of(ego: RecordedEgo) -> LawRows | None:
+        if ego.id not in ways:
+            return None
+        others = others_of(ego, recorded, background)
+        return LawRows(ways[ego.id], signals, people_from(people, ego.first), others)
+
+    return tuple(
+        EgoResult(
+            config=configs[ego.id],
+            id=ego.id,
+            shape=ego.shape,
+            goal=ego.goal,
+            first=ego.first,
+            track=ego.track,
+            ending=endings.get(ego.id, ending),
+            crowd=crowd.during(ego.first, len(ego.track.time)),
+            predictions=ego.predictions,
+            background=background,
+            law=law_of(ego),
+        )
+        for ego in recorded
+    )

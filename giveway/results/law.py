@@ -1,0 +1,103 @@
+"""The law of the road over a run's rows: what each ego's drive is judged by, and in words."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from giveway.geometry.kernel import Array
+from giveway.metrics.law import Event, count
+from giveway.recording.recorded import RecordedEgo
+from giveway.records.columns import LEDGER_COLUMNS, PEOPLE_COLUMNS, SIGNAL_COLUMNS
+from giveway.records.tracks import BackgroundTrack, PeopleTrack, SignalTrack
+from giveway.records.way import EgoWay
+
+
+class LawRows(NamedTuple):
+    """What a drive is judged by besides its own tracks and the crowd's."""
+
+    way: EgoWay
+    signals: SignalTrack
+    people: PeopleTrack  # counted from the ego's first instant
+    vehicles: BackgroundTrack  # all others, egos among them
+
+
+def people_from(people: PeopleTrack, first: int) -> PeopleTrack:
+    """The records counted from the control instant ``first`` on."""
+    return PeopleTrack(
+        people.step - first, people.pedestrian, people.desired_speed, people.x, people.y
+    )
+
+
+def others_of(
+    ego: RecordedEgo, egos: Sequence[RecordedEgo], background: BackgroundTrack
+) -> BackgroundTrack:
+    """All vehicles but one ego, in order of time."""
+    more = [_as_background(other) for other in egos if other.id != ego.id]
+    if not more:
+        return background
+    parts = [background, *more]
+    columns = [
+        np.concatenate([getattr(part, name) for part in parts])
+        for name in BackgroundTrack.__dataclass_fields__
+    ]
+    order = np.argsort(columns[0], kind="stable")
+    return BackgroundTrack(*(column[order] for column in columns))
+
+
+def _as_background(ego: RecordedEgo) -> BackgroundTrack:
+    track, count_ = ego.track, len(ego.track.time)
+    return BackgroundTrack(
+        track.time,
+        np.full(count_, ego.id),
+        np.full(count_, "ego"),
+        track.front_x,
+        track.front_y,
+        track.heading,
+        track.speed,
+        np.full(count_, ego.shape.length),
+        np.full(count_, ego.shape.width),
+    )
+
+
+def ledger_table(events: Sequence[tuple[str, Event]]) -> pd.DataFrame:
+    """``ledger.csv``: one row per event.
+
+    Args:
+        events: with the id of the ego of each.
+    """
+    rows = [{"ego": ego} | event._asdict() for ego, event in events]
+    table = pd.DataFrame(rows, columns=[column.name for column in LEDGER_COLUMNS])
+    return table.sort_values("time", kind="stable", ignore_index=True)
+
+
+def signal_table(track: SignalTrack) -> pd.DataFrame:
+    """``signals.csv``: the traffic lights' changes."""
+    names = [column.name for column in SIGNAL_COLUMNS]
+    values = (track.time, track.system, track.state)
+    return pd.DataFrame(dict(zip(names, values, strict=True)))
+
+
+def people_table(time: Array, track: PeopleTrack, ids: Sequence[str]) -> pd.DataFrame:
+    """``people.csv``: where people mean to walk, and how fast."""
+    names = [column.name for column in PEOPLE_COLUMNS]
+    another = np.diff(track.pedestrian, prepend=-1) != 0
+    another[1:] |= np.diff(track.step) != 0
+    begins = np.flatnonzero(another)
+    number = np.arange(len(track.step)) - np.repeat(begins, np.diff(begins, append=len(track.step)))
+    who = np.array(ids, dtype=object)[track.pedestrian]
+    values = (time[track.step], who, track.desired_speed, number, track.x, track.y)
+    return pd.DataFrame(dict(zip(names, values, strict=True)))
+
+
+def remark(ego_id: str, violations: Sequence[Event]) -> str:
+    """The remark on an ego that did not keep to the law of the road; empty: it did."""
+    if not violations:
+        return ""
+    kinds = [f"{number} x {kind}" for kind, number in count(violations).items()]
+    first = violations[0]
+    return (
+        f"ego '{ego_id}': against the law of the road: {', '.join(kinds)}; the first at "
+        f"{first.time:.2f} s ({first.words}); see ledger.csv"
+    )

@@ -1,0 +1,93 @@
+"""At the zebra behind the bundled junction: the ledger of an ego that gives way, or does not."""
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from giveway.api import run_checked
+from giveway.config.loading import as_layer, load
+from giveway.cosimulation.preflight import preflight
+from giveway.metrics.law import LAW_FIELDS
+from giveway.processes.heartbeat import Phase, Pulse
+from giveway.processes.supervisor import Verdict
+from giveway.recovery import recover
+from giveway.results.run_result import RunResult
+
+LAW = ("ledger.csv", "people.csv", "signals.csv")
+
+
+def run(folder: Path, priority: str) -> RunResult:
+    settings = {
+        "scenario": "junction",
+        "regulation": {"priority": priority},
+        "ego": {
+            "route": ["east_out", "far_east_out"],  # from behind the junction on
+            "depart_time": 51.0,
+            "depart_position": 10.0,
+            "travel_distance": 55.0,
+        },
+    }
+    (folder / "journal").mkdir()
+    checked = preflight(*load([as_layer(settings)]))
+    return run_checked(
+        checked, results=folder / "results", pictures=False, journal=folder / "journal"
+    )
+
+
+@pytest.fixture(scope="module", params=["road", "none"])
+def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory):
+    folder = tmp_path_factory.mktemp("law")
+    return request.param, folder, run(folder, request.param)
+
+
+def test_the_ledger_tells_who_gave_way_from_who_did_not(made) -> None:
+    priority, _, result = made
+    kinds = set(result.ledger.loc[result.ledger["violation"], "kind"])
+    notes = [text for text in result.remarks if "law of the road" in text]
+    assert result.summary["encounters"] >= 1
+    if priority == "road":
+        assert result.summary["yielding_rate"] == 1.0
+        assert (kinds, notes) == (set(), [])
+    else:
+        assert result.summary["failures_to_yield"] >= 1
+        assert "failure to yield" in kinds
+        assert len(notes) == 1
+
+
+def test_every_table_is_there_and_described(made) -> None:
+    _, folder, _ = made
+    results = folder / "results"
+    names = {path.name for path in results.iterdir()}
+    assert {"ledger.csv", "people.csv"} <= names
+    assert "signals.csv" not in names  # no light on this way
+    package = json.loads((results / "datapackage.json").read_text())
+    described = {resource["name"] for resource in package["resources"]}
+    assert {"ledger", "people"} <= described
+    summary = pd.read_csv(results / "summary.csv")
+    assert list(summary.columns)[-len(LAW_FIELDS) :] == [column.name for column in LAW_FIELDS]
+    walkers = set(pd.read_csv(results / "people.csv")["id"])
+    seen = pd.read_csv(results / "trajectories.csv")
+    assert walkers == set(seen.loc[seen["type"] == "pedestrian", "id"])
+    (way,) = json.loads((results / "scene.json").read_text())["ways"]
+    assert [place["lane"] for place in way["crossings"]] == [":zebra_c0_0"]
+
+
+def test_a_journal_keeps_what_the_judgement_needs(made) -> None:
+    _, folder, result = made
+    rescued = recover(
+        folder / "journal",
+        Verdict(139, True, False, "SIGSEGV", Pulse(Phase.SUMO, 100, 5.0, 0, 0), "", ""),
+    ).result
+    assert rescued is not None
+    assert rescued.summary["encounters"] == result.summary["encounters"]
+    pd.testing.assert_frame_equal(rescued.ledger, result.ledger)
+
+
+def test_where_the_law_has_no_say_the_files_are_the_same_as_ever(tmp_path: Path) -> None:
+    checked = preflight(*load([as_layer({"time_limit": 0.2, "crowd": {"pedestrians": 3}})]))
+    result = run_checked(checked, results=tmp_path / "plaza", pictures=False)
+    assert not {column.name for column in LAW_FIELDS} & set(result.summary)
+    assert not set(LAW) & {path.name for path in (tmp_path / "plaza").iterdir()}
+    assert "ways" not in json.loads((tmp_path / "plaza" / "scene.json").read_text())
