@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from giveway.cosimulation.departure_time import departure_time
 from giveway.cosimulation.entrance import Entrance, initial_speed, require_way, shape_of
 from giveway.cosimulation.room import Entry, has_room
 from giveway.ego.ego import Ego
@@ -37,6 +38,9 @@ class Departures:
         config_file: the scenario, for messages.
         time_step: [s] of the co-simulation.
 
+    Attributes:
+        times: at which each ego that is to be inserted is due [s], by its id.
+
     Raises:
         ScenarioError, ConfigError: an ego to be inserted has no route, or no file declares one that
             is to be taken over.
@@ -54,6 +58,7 @@ class Departures:
             else:
                 self._require_undeclared(ego.id)
         self._departed: dict[str, None] = dict.fromkeys(session.vehicles.present())
+        self.times = {ego.id: departure_time(ego.config) for ego in egos if not ego.taken_over}
         self._paths = {ego.id: self._path_of_inserted(ego) for ego in egos if not ego.taken_over}
         self._begin = session.time
         self._blocked: dict[str, float] = {}  # [s] since when an ego lacks room
@@ -143,7 +148,7 @@ class Departures:
         """Whether an ego enters the road now; ``entered``: those that do so at this instant."""
         if ego.taken_over or ego.id in self._queued:
             return self._is_free_to_take(ego)
-        if self._session.time < ego.config.ego.depart_time - 1e-9:
+        if self._session.time < self.times[ego.id] - 1e-9:
             return False
         if self._has_room(ego, entered):
             return True
@@ -241,7 +246,7 @@ class Departures:
                 "--ego-route)"
             )
         if not ego.taken_over:
-            departure = ego.config.ego.depart_time
+            departure = self.times[ego.id]
             return (
                 f"ego '{ego.id}': {self._config_file} ends at {self._session.time:.12g} s, "
                 f"before its departure at {departure:.12g} s; let it depart earlier"
@@ -261,9 +266,10 @@ class Departures:
 
     def _path_of_inserted(self, ego: WaitingEgo) -> tuple[EgoPath, LanePath]:
         settings = ego.config.ego
-        if settings.depart_time >= self._session.end:
+        departure = self.times[ego.id]
+        if departure >= self._session.end:
             raise ConfigError(
-                f"--ego-depart-time {settings.depart_time:.12g}: {self._config_file} ends at "
+                f"--ego-depart-time {departure:.12g}: {self._config_file} ends at "
                 f"{self._session.end:.12g} s; let the ego depart before [s]"
             )
         if not settings.route:
