@@ -63,6 +63,7 @@ class Departures:
         self._begin = session.time
         self._blocked: dict[str, float] = {}  # [s] since when an ego lacks room
         self._queued: set[str] = set()  # egos that SUMO is to insert
+        self._cautious: set[str] = set()  # of these, who have room where SUMO may insert others
         self._entrance = Entrance(session, time_step)
         self.remarks = self._entrance.remarks  # what the user should know
 
@@ -150,8 +151,11 @@ class Departures:
             return self._is_free_to_take(ego)
         if self._session.time < self.times[ego.id] - 1e-9:
             return False
-        if self._has_room(ego, entered):
+        room = has_room(self._entry(ego), self._session.vehicles, entered)
+        if room and not self._may_meet(ego, entered):
             return True
+        if room:
+            self._cautious.add(ego.id)
         self._blocked[ego.id] = self._session.time
         self._queue(ego)
         return False
@@ -183,20 +187,18 @@ class Departures:
         touched = np.flatnonzero(rectangles_overlap(body, others.bodies))
         return any(not vehicles.parked(others.ids[i]) for i in touched)
 
-    def _has_room(self, ego: WaitingEgo, entered: Sequence[Ego]) -> bool:
-        """Whether an ego that is to be inserted can enter now, and SUMO inserts nobody there."""
-        entry, session = self._entry(ego), self._session
-        if not has_room(entry, session.vehicles, entered):
-            return False
+    def _may_meet(self, ego: WaitingEgo, entered: Sequence[Ego]) -> bool:
+        """Whether SUMO may insert somebody now where an ego is to be inserted."""
+        session = self._session
         edge = ego.config.ego.route[0]
         near = {edge, *ego.config.ego.route[:2], *session.lanes.edges_before(edge)}
         if near & session.vehicles.edges_of_entry({other.id for other in entered}):
-            return False
+            return True
         starts = flows_due(
             session.start.read, session.time - session.step_length, session.time, self._begin
         )
         edges = (start.edge or session.vehicles.first_edge(start.route) for start in starts)
-        return not any(not first or first in near for first in edges)
+        return any(not first or first in near for first in edges)
 
     def _entry(self, ego: WaitingEgo) -> Entry:
         path, lane_path = self._paths[ego.id]
@@ -297,6 +299,8 @@ class Departures:
         if ego.id not in self._blocked:
             return
         since, now = self._blocked[ego.id], self._session.time
+        if ego.id in self._cautious and now - since < 1.5 * self._session.step_length:
+            return  # there was room, and SUMO's own insertion takes a step
         waited = f"{now - since:.12g} s later, at {now:.12g} s"
         if ego.taken_over:
             text = f"overlapped another vehicle at {since:.12g} s; it was taken over {waited}"
