@@ -22,8 +22,8 @@ from typing import Any
 
 SEVERAL_EGOS = [
     {"ego": {"take_over": ["westbound.0"]}, "controller": "pid-tuned"},
-    {"ego": {"take_over": ["eastbound.1"]}, "controller": "mpc-paper"},
-    {"ego": {"id": "shuttle", "depart_time": 20.0}},
+    {"ego": {"take_over": ["eastbound.0"]}, "controller": "mpc-paper"},
+    {"ego": {"id": "shuttle", "depart_time": 8.0}},
 ]
 #: What is run: four controllers, three scenarios, SUMO steps of 1 s, 0.1 s and 0.05 s, several
 #: egos, an FMU that is not ours, walkers that are taken over, walls, noise, exact integration.
@@ -49,7 +49,7 @@ RUNS: dict[str, dict[str, Any]] = {
         "scenario": "junction",
         "egos": SEVERAL_EGOS,
         "crowd": {"zone": "everywhere"},
-        "time_limit": 25.0,
+        "time_limit": 40.0,
     },
     "an FMU that is not ours": {"crowd": {"pedestrians": 20}, "vehicle": {"fmu": "FOREIGN"}},
     "noise": {

@@ -240,7 +240,7 @@ def _result(
             parts.config,
             scenario,
             config_text=dump_toml(parts.config),
-            vehicles={ego.id: ego.description for ego in parts.egos},
+            vehicles={ego.id: ego.description | _departure(parts, ego.id) for ego in parts.egos},
             pedestrians=parts.roster.ledger,
             traffic={} if parts.yielding is None else parts.yielding.report,
             sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
@@ -253,6 +253,12 @@ def _result(
         road=parts.sumo.lanes.areas(),
         remarks=remarks,
     )
+
+
+def _departure(parts: Parts, ego: str) -> dict[str, object]:
+    """When an inserted ego was due, which may have been drawn; of one taken over, nothing."""
+    times = parts.departures.times
+    return {"depart_time": times[ego]} if ego in times else {}
 
 
 def _mismatches(parts: Parts, egos: Sequence[EgoResult]) -> list[str]:

@@ -113,6 +113,23 @@ def _speed_or_lane(value: Any) -> Any:
         raise PydanticCustomError("speed", "{expected}", {"expected": msg}) from None
 
 
+def _time_or_window(value: Any) -> Any:
+    """A time, or the earliest and the latest one; anything else is named here."""
+    times = value.split(",") if isinstance(value, str) else value
+    is_window = isinstance(times, list | tuple) and len(times) != 1
+    try:
+        read = [float(time) for time in (times if isinstance(times, list | tuple) else [times])]
+    except (TypeError, ValueError):
+        read = []
+    count = 2 if is_window else 1
+    if isinstance(value, bool) or len(read) != count or not 0.0 <= read[0] <= read[-1] <= _LATEST:
+        msg = f"expected a time, or the earliest and the latest one, from 0 to {_LATEST:g}"
+        raise PydanticCustomError("time", "{expected}", {"expected": msg})
+    return tuple(read) if is_window else read[0]
+
+
+_LATEST = 1e7  # [s] beyond it a millisecond is lost in rounding
+
 LANE: Literal["lane"] = "lane"
 """In place of a speed: what the ego's lane permits."""
 
@@ -120,6 +137,9 @@ LANE: Literal["lane"] = "lane"
 SpeedOrLane = Annotated[
     Annotated[float, Field(gt=0, le=60)] | Literal["lane"], BeforeValidator(_speed_or_lane)
 ]
+
+
+TimeOrWindow = Annotated[float | tuple[float, float], BeforeValidator(_time_or_window)]
 
 
 Rectangle = Annotated[tuple[float, float, float, float], BeforeValidator(_split)]

@@ -21,6 +21,7 @@ from giveway.config.option import (
     Section,
     SumoSeed,
     TextOrNumber,
+    TimeOrWindow,
     option,
 )
 
@@ -56,13 +57,11 @@ class EgoConfig(Section):
         ge=0,
         because="0 is the rightmost",
     )
-    depart_time: float = option(
+    depart_time: TimeOrWindow = option(
         0.0,
         "s",
-        "simulation time at which it enters; at begin if that is later",
-        ge=0,
-        le=1e7,
-        because="it is a time of the simulation",
+        "simulation time at which an inserted ego enters, or earliest,latest: drawn from the run's "
+        "seed; at begin if that is later",
     )
     depart_position: float = option(
         0.0,

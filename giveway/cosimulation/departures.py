@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from giveway.cosimulation.departure_time import departure_time
 from giveway.cosimulation.entrance import Entrance, initial_speed, require_way, shape_of
 from giveway.cosimulation.room import Entry, has_room
 from giveway.ego.ego import Ego
@@ -37,6 +38,9 @@ class Departures:
         config_file: the scenario, for messages.
         time_step: [s] of the co-simulation.
 
+    Attributes:
+        times: at which each ego that is to be inserted is due [s], by its id.
+
     Raises:
         ScenarioError, ConfigError: an ego to be inserted has no route, or no file declares one that
             is to be taken over.
@@ -54,10 +58,12 @@ class Departures:
             else:
                 self._require_undeclared(ego.id)
         self._departed: dict[str, None] = dict.fromkeys(session.vehicles.present())
+        self.times = {ego.id: departure_time(ego.config) for ego in egos if not ego.taken_over}
         self._paths = {ego.id: self._path_of_inserted(ego) for ego in egos if not ego.taken_over}
         self._begin = session.time
         self._blocked: dict[str, float] = {}  # [s] since when an ego lacks room
         self._queued: set[str] = set()  # egos that SUMO is to insert
+        self._cautious: set[str] = set()  # of these, who have room where SUMO may insert others
         self._entrance = Entrance(session, time_step)
         self.remarks = self._entrance.remarks  # what the user should know
         self.ways = self._entrance.ways  # of those that have departed
@@ -144,10 +150,13 @@ class Departures:
         """Whether an ego enters the road now; ``entered``: those that do so at this instant."""
         if ego.taken_over or ego.id in self._queued:
             return self._is_free_to_take(ego)
-        if self._session.time < ego.config.ego.depart_time - 1e-9:
+        if self._session.time < self.times[ego.id] - 1e-9:
             return False
-        if self._has_room(ego, entered):
+        room = has_room(self._entry(ego), self._session.vehicles, entered)
+        if room and not self._may_meet(ego, entered):
             return True
+        if room:
+            self._cautious.add(ego.id)
         self._blocked[ego.id] = self._session.time
         self._queue(ego)
         return False
@@ -179,20 +188,18 @@ class Departures:
         touched = np.flatnonzero(rectangles_overlap(body, others.bodies))
         return any(not vehicles.parked(others.ids[i]) for i in touched)
 
-    def _has_room(self, ego: WaitingEgo, entered: Sequence[Ego]) -> bool:
-        """Whether an ego that is to be inserted can enter now, and SUMO inserts nobody there."""
-        entry, session = self._entry(ego), self._session
-        if not has_room(entry, session.vehicles, entered):
-            return False
+    def _may_meet(self, ego: WaitingEgo, entered: Sequence[Ego]) -> bool:
+        """Whether SUMO may insert somebody now where an ego is to be inserted."""
+        session = self._session
         edge = ego.config.ego.route[0]
         near = {edge, *ego.config.ego.route[:2], *session.lanes.edges_before(edge)}
         if near & session.vehicles.edges_of_entry({other.id for other in entered}):
-            return False
+            return True
         starts = flows_due(
             session.start.read, session.time - session.step_length, session.time, self._begin
         )
         edges = (start.edge or session.vehicles.first_edge(start.route) for start in starts)
-        return not any(not first or first in near for first in edges)
+        return any(not first or first in near for first in edges)
 
     def _entry(self, ego: WaitingEgo) -> Entry:
         path, lane_path = self._paths[ego.id]
@@ -242,7 +249,7 @@ class Departures:
                 "--ego-route)"
             )
         if not ego.taken_over:
-            departure = ego.config.ego.depart_time
+            departure = self.times[ego.id]
             return (
                 f"ego '{ego.id}': {self._config_file} ends at {self._session.time:.12g} s, "
                 f"before its departure at {departure:.12g} s; let it depart earlier"
@@ -262,9 +269,10 @@ class Departures:
 
     def _path_of_inserted(self, ego: WaitingEgo) -> tuple[EgoPath, LanePath]:
         settings = ego.config.ego
-        if settings.depart_time >= self._session.end:
+        departure = self.times[ego.id]
+        if departure >= self._session.end:
             raise ConfigError(
-                f"--ego-depart-time {settings.depart_time:.12g}: {self._config_file} ends at "
+                f"--ego-depart-time {departure:.12g}: {self._config_file} ends at "
                 f"{self._session.end:.12g} s; let the ego depart before [s]"
             )
         if not settings.route:
@@ -292,6 +300,8 @@ class Departures:
         if ego.id not in self._blocked:
             return
         since, now = self._blocked[ego.id], self._session.time
+        if ego.id in self._cautious and now - since < 1.5 * self._session.step_length:
+            return  # there was room, and SUMO's own insertion takes a step
         waited = f"{now - since:.12g} s later, at {now:.12g} s"
         if ego.taken_over:
             text = f"overlapped another vehicle at {since:.12g} s; it was taken over {waited}"

@@ -4,7 +4,9 @@ import shlex
 from pathlib import Path
 from typing import Any
 
+from giveway.config.layers import read_toml
 from giveway.doctor.finding import Finding, note
+from sumo_scenarios import find
 
 _RADIUS = 50  # [m] of the zone round an ego: the default
 _WITHIN = "within 10 m of the moving vehicle"
@@ -22,7 +24,7 @@ def meetings(config_file: Path, seen: dict[str, Any]) -> list[Finding]:
     if not found["egos"]:
         text = f"{span} nobody on foot comes {_WITHIN}"
         return [note("people met", text, "add pedestrians with --pedestrians N --spawn-area ...")]
-    run = f"giveway run {shlex.quote(str(config_file))}"
+    run = f"giveway run {shlex.quote(str(config_file))}{_seed(config_file)}"
     findings = [note("people met", f"counted {span}: people {_WITHIN}; the most first")]
     for name, departure, people in found["egos"]:
         text = f"{name} meets {people}, departs at {departure:.12g} s"
@@ -41,3 +43,10 @@ def meetings(config_file: Path, seen: dict[str, Any]) -> list[Finding]:
         command = f"{run} --ego={shlex.quote(name)} --zone={shlex.quote(zone)}"
         findings.append(note("best zones", text, command))
     return findings
+
+
+def _seed(config_file: Path) -> str:
+    """What a run needs to see the trial's traffic, where the settings have it drawn by the run."""
+    settings = find(config_file).settings_file
+    drawn = settings is not None and read_toml(settings).values.get("sumo", {}).get("seed") == "run"
+    return " --sumo-seed=scenario" if drawn else ""

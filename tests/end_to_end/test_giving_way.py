@@ -1,4 +1,8 @@
-"""At the zebra behind the bundled junction: who is in the ego's way when it drives onto it?"""
+"""At the bundled junction: who is in the ego's way when it drives onto a crossing?
+
+On the zebra behind the signals, and on the southern arm, into which the ego turns on green while
+people cross it on theirs.
+"""
 
 import giveway
 
@@ -10,8 +14,9 @@ def in_the_way(priority):
     """Those on the zebra, in the way, when the ego's front comes onto it; whether it has waited."""
     run = {
         "scenario": "junction",
+        "seed": 2,
         "regulation": {"priority": priority},
-        "ego": {"depart_time": 51.0, "depart_position": 10.0, "travel_distance": 55.0},
+        "ego": {"depart_time": 90.0, "depart_position": 10.0, "travel_distance": 55.0},
     }
     run["ego"]["route"] = ["east_out", "far_east_out"]  # from behind the junction on
     result = giveway.run(run)
@@ -34,3 +39,28 @@ def test_without_the_law_of_the_road_somebody_is_there():
     somebody, waited = in_the_way("none")
     assert somebody
     assert not waited
+
+
+ARM = (-8.0 - 0.3, -4.0 + 0.3)  # [m] the southern crossing, from where to where across it (y)
+TURN = (-1.75 - 2.3, -1.75 + 2.3)  # [m] the body's way over it (x), and a body's radius
+
+
+def turning(priority):
+    """When the ego's front comes onto the southern crossing, and who is in its way there then."""
+    ego = {"route": ["west_in", "south_out"], "depart_time": 82.0, "depart_position": 70.0}
+    run = {"scenario": "junction", "seed": 4, "regulation": {"priority": priority}}
+    result = giveway.run(run | {"ego": ego | {"travel_distance": 70.0}})
+    ego = result.ego
+    onto = ego.time[ego.y <= ARM[1]].iloc[0]
+    everybody = result.trajectories
+    people = everybody[(everybody.type == "pedestrian") & ((everybody.time - onto).abs() < 1e-6)]
+    return onto, list(people[people.x.between(*TURN) & people.y.between(*ARM)].id)
+
+
+def test_it_turns_behind_those_who_cross_on_their_green():
+    lawful, nobody = turning("road")
+    lawless, somebody = turning("none")
+    assert nobody == []
+    assert len(somebody) == 2
+    assert 90.0 < lawless < lawful < 115.0  # [s] on the same green: it begins at 90 s
+    assert lawful > lawless + 2.0

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,7 +32,7 @@ def probe(tmp_path: Path, run_program: Callable[..., Any]) -> Callable[..., dict
     return run
 
 
-@pytest.fixture(params=["junction", "shared_space", "street"])
+@pytest.fixture(params=["crossings", "junction", "shared_space", "street"])
 def scenario(request: pytest.FixtureRequest) -> Scenario:
     return find(request.param)
 
@@ -49,5 +50,15 @@ def settings() -> Callable[[Scenario], dict[str, Any]]:
     def read(scenario: Scenario) -> dict[str, Any]:
         assert scenario.settings_file is not None
         return tomllib.loads(scenario.settings_file.read_text(encoding="utf-8"))
+
+    return read
+
+
+@pytest.fixture
+def xml_of() -> Callable[[str, str], ElementTree.Element]:
+    """One of a bundled scenario's files, by the scenario's name and the file's last part."""
+
+    def read(name: str, suffix: str) -> ElementTree.Element:
+        return ElementTree.parse(find(name).folder / f"{name}.{suffix}").getroot()
 
     return read

@@ -22,6 +22,7 @@ Drive = Callable[..., tuple[Any, Any]]  # the result of a run, and what was seen
 Give = Callable[..., Any]  # a completed process
 _HEADER = re.compile(rb"<!-- generated on .*?-->", re.DOTALL)
 ALONE = ("--no-ego", "--zone", "none", "--pedestrians", "0", "--fcd", "--no-pictures", "-q")
+OWN_SEED = ("--sumo-seed", "scenario")
 
 
 def content(file: Path) -> bytes:
@@ -46,7 +47,7 @@ def test_with_nothing_controlled_the_traffic_is_sumos_own_to_the_byte(
     made = {"city": city(0.1), "demonstration": demonstration}
     config = made[name] if name in made else find(name).config_file
     end = ("--sumo-end", until)
-    done = type_here("run", config, *ALONE, *end, "--out", "ours", cwd=tmp_path)
+    done = type_here("run", config, *ALONE, *OWN_SEED, *end, "--out", "ours", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     fcd = tmp_path / "plain.xml"
     plain = ("sumo", "-c", config, "--end", until, "--fcd-output", fcd, "--no-step-log")

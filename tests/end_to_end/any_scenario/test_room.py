@@ -52,8 +52,7 @@ def test_no_car_that_departs_in_the_same_step_ends_in_the_ego(
     assert result.summary["vehicle_contacts"] == 0
     assert result.ego_track.time[0] == step  # the ego came first in SUMO's own order
     assert result.ego_track.speed[0] == 4.0
-    (remark,) = about(result, "no room on lane 'ab_0' at 0 s")
-    assert f"SUMO inserted it {step:g} s later, at {step:g} s" in remark
+    assert about(result, "SUMO inserted it") == []  # there was room; its insertion takes a step
 
 
 def test_where_there_is_room_it_enters_at_its_time(

@@ -241,3 +241,14 @@ def test_the_command_prints_tables_and_its_exit_code_tells(
     shown = capsys.readouterr().out
     assert "-> put it there, or correct it" in shown
     assert "1 error: a run will not work before that is put right." in shown
+
+
+def test_where_runs_draw_the_traffic_the_commands_ask_for_the_trial_s() -> None:
+    findings = examine_scenario("junction")
+    ranked = [f for f in findings if f.subject in {"best egos", "best routes", "best zones"}]
+    assert len(ranked) > 5
+    assert all("--sumo-seed=scenario" in finding.remedy for finding in ranked)
+
+
+def test_where_they_do_not_the_commands_say_nothing_of_seeds(of_city: list[Finding]) -> None:
+    assert not any("--sumo-seed" in finding.remedy for finding in of_city)

@@ -43,7 +43,8 @@ def simulation(
     types = Path("types.add.xml").absolute()
     types.write_text(f"<additional>{EGO_TYPE.format(speed=speed)}{PERSON_TYPE}</additional>")
     step = [] if step_length is None else ["--step-length", str(step_length)]
-    command = ["sumo", "-c", config, *step, "--additional-files", str(types)]
+    own = map(str, sorted(Path(config).parent.glob("*.add.xml")))  # ours replace them otherwise
+    command = ["sumo", "-c", config, *step, "--additional-files", ",".join([str(types), *own])]
     libsumo.start([*command, "--seed", str(seed), *FLAGS])
     try:
         yield
@@ -59,12 +60,13 @@ def step_until(time: float) -> None:
 
 def add_ego(ego: dict[str, Any]) -> None:
     """Have the ego on the road when this returns: SUMO inserts it in a step of its own."""
+    depart = ego["depart_time"]
     libsumo.route.add("ego", ego["route"])
     libsumo.vehicle.add(
         "ego",
         "ego",
         typeID="ego",
-        depart=str(ego["depart_time"]),
+        depart=str(depart[0] if isinstance(depart, list) else depart),
         departLane=str(ego["lane"]),
         departPos=str(ego["depart_position"]),
         departSpeed=str(ego["initial_speed"]),
@@ -208,7 +210,7 @@ def watch_junction(config: str, step_length: float | None, seed: int) -> dict[st
     """Let cars and people meet for two minutes: who used which crossing, under which light."""
     used: dict[str, set[str]] = {}
     cars: set[str] = set()
-    on_red, lights, departed = [], {}, []
+    on_red, departed, driven = [], [], []
     with simulation(config, step_length, seed=seed):
         signals = {
             after: index
@@ -221,11 +223,12 @@ def watch_junction(config: str, step_length: float | None, seed: int) -> dict[st
         teleports = collisions = 0
         while libsumo.simulation.getTime() < 120.0:
             libsumo.simulationStep()
-            departed += libsumo.simulation.getDepartedPersonIDList()
+            now = libsumo.simulation.getTime()
+            departed += [(name, now) for name in libsumo.simulation.getDepartedPersonIDList()]
+            driven += [(name, now) for name in libsumo.simulation.getDepartedIDList()]
             teleports += libsumo.simulation.getStartingTeleportNumber()
             collisions += len(libsumo.simulation.getCollisions())
             state = libsumo.trafficlight.getRedYellowGreenState("centre")  # as it was in the step
-            lights[libsumo.simulation.getTime()] = state
             cars |= {name.partition(".")[0] for name in libsumo.vehicle.getIDList()}
             for person in libsumo.person.getIDList():
                 lane = libsumo.person.getLaneID(person)
@@ -240,7 +243,7 @@ def watch_junction(config: str, step_length: float | None, seed: int) -> dict[st
         "used": {crossing: len(people) for crossing, people in used.items()},
         "on_red": on_red,
         "departed": departed,
-        "lights": lights,
+        "driven": driven,
         "teleports": teleports,
         "collisions": collisions,
         "cars": sorted(cars),

@@ -1,0 +1,24 @@
+"""When an inserted ego is to enter: at its time, or at one drawn from the run's seed."""
+
+import numpy as np
+
+from giveway.config import EgoRunConfig
+
+_STREAM = 0xDE9  # tells this draw from others of the same seed
+
+
+def departure_time(config: EgoRunConfig) -> float:
+    """The time at which an ego is to be inserted [s].
+
+    A drawn one is uniform between the earliest and the latest, in whole milliseconds as SUMO counts
+    them. It depends on the run's seed and the ego's id alone: whichever controller drives, the ego
+    departs at the same instant.
+
+    Args:
+        config: of the ego.
+    """
+    times = config.ego.depart_time
+    if isinstance(times, float):
+        return times
+    random = np.random.default_rng((config.seed, _STREAM, *config.ego_id.encode()))
+    return round(float(random.uniform(*times)), 3)
