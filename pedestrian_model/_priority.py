@@ -14,7 +14,7 @@ ft/s^2) and the most that a vehicle of ours brakes for somebody at a crossing.
 from pedestrian_model._jit import inlined
 
 #: [m/s^2] people with priority expect vehicles to brake with this, if need be.
-DECELERATION = 3.0
+DECELERATION = 4.5
 #: [m] before the front of a vehicle that has stopped: nearer, it acts in full; a body's radius and
 #: the clearance of the contour come to this.
 LEAST_GAP = 0.5

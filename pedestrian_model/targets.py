@@ -23,7 +23,7 @@ def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
     return mask
 
 
-def targets(crowd: Crowd, rows: NDArray[np.integer]) -> NDArray[np.float64]:
+def targets(crowd: Crowd, rows: NDArray[np.int64]) -> NDArray[np.float64]:
     """(k, 2) [m] the current way-points of the pedestrians ``rows`` (k,), or where on their lines.
 
     Signals and standing cars do not count.
