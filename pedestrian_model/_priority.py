@@ -6,14 +6,14 @@ the kerb, whatever its driver is about to do. Drivers give way (Vienna Conventio
 priority is left out as long as the vehicle can stop before that person, and acts in full on whom
 it cannot stop for any more, and on whoever is beside or behind its front. All of this file is ours.
 
-A driver who begins in time brakes with 2 m/s^2 and stands a metre before the crossing; 3 m/s^2 is
-what a signal's yellow takes drivers to be ready for (Institute of Transportation Engineers: 10
-ft/s^2) and the most that a vehicle of ours brakes for somebody at a crossing.
+Most drivers brake with more than 4.5 m/s^2 where they have to (AASHTO, A Policy on Geometric Design
+of Highways and Streets, 2011, section 3.2.2), and so do SUMO's by default; who begins in time needs
+2 m/s^2.
 """
 
 from pedestrian_model._jit import inlined
 
-#: [m/s^2] people with priority expect vehicles to brake with this, if need be.
+#: [m/s^2] people with priority take vehicles to brake with this, if need be.
 DECELERATION = 4.5
 #: [m] before the front of a vehicle that has stopped: nearer, it acts in full; a body's radius and
 #: the clearance of the contour come to this.

@@ -25,6 +25,7 @@ class Use(NamedTuple):
     on: NDArray[np.bool_]  # between its kerbs
     waiting: NDArray[np.bool_]  # for its light, if it is closed; some do so a step from the kerb
     entering: NDArray[np.bool_]  # before a kerb, and they want to cross
+    leaving: NDArray[np.bool_]  # behind a kerb, and they walk away from it
     onward: Array  # cosine of the angle between where they walk to and the way from u = 0 on
 
 
@@ -68,7 +69,7 @@ def use_of(
     at = crowd.waypoint_start[rows] + crowd.waypoint_index[rows]
     waiting = (crowd.waypoint_signal[at] >= 0) & (far <= _WAITING)
     inward = np.where(u < 0.0, onward, -onward)
-    return Use(on, waiting, ~on & (inward >= _ONWARD), onward)
+    return Use(on, waiting, ~on & (inward >= _ONWARD), ~on & (inward <= -_ONWARD), onward)
 
 
 def have_priority(use: Use, can_enter: NDArray[np.bool_] | bool) -> NDArray[np.bool_]:

@@ -98,8 +98,7 @@ class PriorityOnFoot:
         use = use_of(crowd, rows, u, self._along[which], length)
         outside = np.maximum(-u, u - length)
         own = have_priority(use, self._are_open(which)) & (outside <= self._kerb_distance)
-        leaving = (outside > 0.0) & (np.where(u < 0.0, use.onward, -use.onward) < 0.0)
-        fading = np.where(leaving, np.maximum(0.0, 1.0 - outside / _FADE), 0.0)
+        fading = np.where(use.leaving, np.maximum(0.0, 1.0 - outside / _FADE), 0.0)
         np.maximum.at(crowd.priority, rows, np.where(own, 1.0, fading))
 
     def _pairs(self, crowd: Crowd) -> tuple[NDArray[np.intp], NDArray[np.int64]]:
