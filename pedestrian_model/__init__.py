@@ -1,6 +1,6 @@
 """The vehicle-crowd interaction (VCI) model: a social force model of pedestrians near vehicles."""
 
-from pedestrian_model.crowd import Crowd, arrived
+from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import (
     CrowdError,
     DivergenceError,
@@ -14,6 +14,7 @@ from pedestrian_model.model import LONGEST_STEP, CrowdModel, require_steady
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
 from pedestrian_model.prediction import Predictor
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
+from pedestrian_model.targets import arrived, targets
 from pedestrian_model.vehicles import Vehicles
 
 __all__ = [
@@ -37,5 +38,6 @@ __all__ = [
     "Walls",
     "arrived",
     "require_steady",
+    "targets",
     "vehicle_influence",
 ]

@@ -29,7 +29,8 @@ BLOCK = 8
  TX, TY, V0, SOFT,        # target, desired speed, [m^2] s_des^2 of the target
  WS, WX, WY,              # signed distance to the nearest wall, its normal
  NX, NY, NVX, NVY,        # next state
- ROWS) = range(23)
+ PRIORITY,                # 0 to 1; filled where anybody has it
+ ROWS) = range(24)
 # fmt: on
 
 #: Distance of the buffer's rows, not a multiple of 4096 bytes (cache sets).

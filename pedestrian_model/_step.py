@@ -19,6 +19,7 @@ from pedestrian_model._rows import (
     NVY,
     NX,
     NY,
+    PRIORITY,
     PX,
     PY,
     SOFT,
@@ -62,6 +63,7 @@ class Scene(NamedTuple):
     """What a crowd walks among and what it wants: no step changes it."""
 
     desired_speed: NDArray[np.float64]  # (n,) [m/s]
+    priority: NDArray[np.float64]  # (n,) 0 to 1
     routes: Routes
     closed: NDArray[np.bool_]  # (signals,)
     walls: NDArray[np.float64]  # the lines of ``Walls``
@@ -69,9 +71,28 @@ class Scene(NamedTuple):
 
 
 @inlined
+def _anybody(priority: NDArray[np.float64]) -> bool:
+    """Whether anybody has priority."""
+    most = 0.0
+    for i in range(priority.shape[0]):
+        most = max(most, priority[i])
+    return most > 0.0
+
+
+@inlined
+def _fill_priority(
+    rows: NDArray[np.float64], order: NDArray[np.int64], priority: NDArray[np.float64]
+) -> None:
+    """Copy everybody's priority into the rows in ``order``."""
+    for k in range(priority.shape[0]):
+        rows[PRIORITY, k] = priority[order[k]]
+
+
+@inlined
 def gather_forces(
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
+    priority: NDArray[np.float64],
     vehicles: NDArray[np.float64],
     travelled: float,
     scratch: Scratch,
@@ -81,12 +102,17 @@ def gather_forces(
     """Fill the rows and their pair and vehicle forces from the state."""
     n = position.shape[0]
     rows, index, buffer, back = scratch
+    relied_on = _anybody(priority)
     if n >= cell_list_from or n > LARGEST_RING:
         grid = add_near_pairs(rows, index, buffer, position, velocity, constants)
-        add_near_vehicles(rows, index[2], grid, n, vehicles, travelled, constants)
+        if relied_on:
+            _fill_priority(rows, index[0], priority)
+        add_near_vehicles(rows, index[2], grid, n, vehicles, travelled, relied_on, constants)
     else:
         add_all_pairs(rows, index, buffer, back, position, velocity, constants)
-        add_vehicles(rows, n, vehicles, travelled, constants[0])
+        if relied_on:
+            _fill_priority(rows, index[0], priority)
+        add_vehicles(rows, n, vehicles, travelled, relied_on, constants[0])
 
 
 @inlined
@@ -138,14 +164,17 @@ def march(
     """Advance the state in place by ``substeps`` steps of dt; ``FINE`` or the first bad index."""
     c = constants[0]
     position, velocity, waypoint_index = state
-    desired_speed, routes, closed, walls, wall_cells = scene
+    desired_speed, priority, routes, closed, walls, wall_cells = scene
     rows, index = scratch.rows, scratch.sorting
     n = position.shape[0]
     insane = first_insane(position, velocity)
     if n == 0 or insane != FINE:
         return insane
     for step in range(substeps):
-        gather_forces(position, velocity, vehicles, step * dt, scratch, constants, cell_list_from)
+        time = step * dt
+        gather_forces(
+            position, velocity, priority, vehicles, time, scratch, constants, cell_list_from
+        )
         order = index[0]
         add_walls(rows, n, FX, FY, walls, wall_cells, c)
         set_targets(rows, order, desired_speed, routes, waypoint_index, closed, c)
@@ -161,5 +190,5 @@ def march(
 @inlined
 def parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
     """What Python has handed over as one plain tuple, by name."""
-    scene = Scene(arrays[3], Routes(*arrays[4:8]), *arrays[8:11])
-    return State(*arrays[:3]), scene, Scratch(*arrays[11:])
+    scene = Scene(arrays[3], arrays[4], Routes(*arrays[5:9]), *arrays[9:12])
+    return State(*arrays[:3]), scene, Scratch(*arrays[12:])

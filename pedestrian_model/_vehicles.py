@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from pedestrian_model._cells import Grid
 from pedestrian_model._jit import fma, inlined, kernel
 from pedestrian_model._mathematics import cosine_sine, exponential
-from pedestrian_model._rows import BLOCK, PX, PY, VFX, VFY, VX, VY, S
+from pedestrian_model._priority import felt, place_of_full_force
+from pedestrian_model._rows import BLOCK, PRIORITY, PX, PY, VFX, VFY, VX, VY, S
 
 #: A vehicle's force is left out where it is less than this, if there are many vehicles.
 LEAST_FORCE = 1e-9  # [N]
@@ -81,6 +82,54 @@ def _influence(X: float, lateral: float, q: Contour) -> tuple[float, float, floa
     )
 
 
+class _Vehicle(NamedTuple):
+    """A vehicle at an instant, as it acts on people: scalars, so that no loop reads them again."""
+
+    x: float  # [m] the reference point
+    y: float
+    cos: float  # of the heading
+    sin: float
+    nose_x: float  # the direction of the nose: in reverse it points backwards
+    nose_y: float
+    u_x: float  # [m/s] the velocity that the angle of its force takes it to have
+    u_y: float
+    contour: Contour
+
+
+class _Law(NamedTuple):
+    """fexp(s - R; A, b) As(phi_v; l_v): its numbers."""
+
+    R: float
+    A: float
+    b: float
+    a_v: float
+    b_v: float
+    cap: float
+
+
+@inlined
+def _force(
+    x: float, y: float, vx: float, vy: float, v: _Vehicle, law: _Law
+) -> tuple[float, float, float, float]:
+    """f_v [N] on one person, the signed distance to the contour, and X along the nose [m]."""
+    dx, dy = x - v.x, y - v.y
+    across = fma(v.cos, dy, -(v.sin * dx))
+    X = fma(v.nose_x, dx, v.nose_y * dy)
+    s, e_x, e_y = _influence(X, abs(across), v.contour)
+    e_y = e_y if across >= 0.0 else -e_y
+    # As(phi_v; l_v) between the direction to the vehicle and the velocity relative to it
+    w_x, w_y = vx - v.u_x, vy - v.u_y
+    lengths = math.sqrt(fma(dx, dx, dy * dy) * fma(w_x, w_x, w_y * w_y))
+    cosine = -fma(dx, w_x, dy * w_y) / lengths
+    cosine = min(1.0, max(-1.0, cosine)) if lengths > 0.0 else 1.0  # at rest: seen
+    anisotropy = 1.0 if s < law.R else fma(law.b_v, cosine, law.a_v)
+    # fexp(s - R; A, b) As(phi_v; l_v) e
+    exponent = max(min(-law.b * (s - law.R), law.cap), _LEAST_EXPONENT)
+    f = law.A * exponential(exponent) * anisotropy
+    f_x = f * fma(e_x, v.nose_x, -(e_y * v.sin))
+    return f_x, f * fma(e_x, v.nose_y, e_y * v.cos), s, X
+
+
 @inlined
 def add_vehicle(
     rows: NDArray[np.float64],
@@ -88,6 +137,7 @@ def add_vehicle(
     stop: int,
     vehicle: NDArray[np.float64],
     travelled: float,
+    relied_on: bool,
     c: Any,
 ) -> None:
     """Add one vehicle's force f_v to the rows start ... stop - 1, lower their signed distance.
@@ -98,46 +148,51 @@ def add_vehicle(
         stop: last row plus one, dummies included.
         vehicle: (7,) its columns.
         travelled: [s] for which the vehicle has driven straight on since.
+        relied_on: whether anybody has priority; else the row of it need not be filled.
         c: the constants.
     """
     cos, sin = cosine_sine(vehicle[HEADING])
-    u_x, u_y = vehicle[SPEED] * cos, vehicle[SPEED] * sin
+    u = vehicle[SPEED]
+    u_x, u_y = u * cos, u * sin
     x_v, y_v = vehicle[X] + travelled * u_x, vehicle[Y] + travelled * u_y
-    if abs(vehicle[SPEED]) < c.u_angle:
+    if abs(u) < c.u_angle:
         u_x, u_y = 0.0, 0.0
-    contour = _contour(vehicle, c)
     # In reverse the contour is mirrored: its nose points backwards.
-    nose_x, nose_y = (-cos, -sin) if vehicle[SPEED] < 0.0 else (cos, sin)
-    R, A, b, a_v, b_v, cap = c.R, c.A, c.b, c.a_v, c.b_v, c.cap
+    nose_x, nose_y = (-cos, -sin) if u < 0.0 else (cos, sin)
+    v = _Vehicle(x_v, y_v, cos, sin, nose_x, nose_y, u_x, u_y, _contour(vehicle, c))
+    law = _Law(c.R, c.A, c.b, c.a_v, c.b_v, c.cap)
     x, y, vx, vy = rows[PX], rows[PY], rows[VX], rows[VY]
     f_x, f_y, s_min = rows[VFX], rows[VFY], rows[S]
+    if relied_on:
+        priority = rows[PRIORITY]
+        full = place_of_full_force(vehicle[REAR] if u < 0.0 else vehicle[FRONT], u)
+        for k in range(start, stop):
+            one_x, one_y, s, ahead = _force(x[k], y[k], vx[k], vy[k], v, law)
+            share = felt(ahead, full, priority[k])
+            f_x[k] += share * one_x
+            f_y[k] += share * one_y
+            s_min[k] = min(s_min[k], s)
+        return
     for k in range(start, stop):
-        dx, dy = x[k] - x_v, y[k] - y_v
-        across = fma(cos, dy, -(sin * dx))
-        s, e_x, e_y = _influence(fma(nose_x, dx, nose_y * dy), abs(across), contour)
-        e_y = e_y if across >= 0.0 else -e_y
-        # As(phi_v; l_v) between the direction to the vehicle and the velocity relative to it
-        w_x, w_y = vx[k] - u_x, vy[k] - u_y
-        lengths = math.sqrt(fma(dx, dx, dy * dy) * fma(w_x, w_x, w_y * w_y))
-        cosine = -fma(dx, w_x, dy * w_y) / lengths
-        cosine = min(1.0, max(-1.0, cosine)) if lengths > 0.0 else 1.0  # at rest: seen
-        anisotropy = 1.0 if s < R else fma(b_v, cosine, a_v)
-        # fexp(s - R; A, b) As(phi_v; l_v) e
-        exponent = max(min(-b * (s - R), cap), _LEAST_EXPONENT)
-        f = A * exponential(exponent) * anisotropy
-        f_x[k] += f * fma(e_x, nose_x, -(e_y * sin))
-        f_y[k] += f * fma(e_x, nose_y, e_y * cos)
+        one_x, one_y, s, _ = _force(x[k], y[k], vx[k], vy[k], v, law)
+        f_x[k] += one_x
+        f_y[k] += one_y
         s_min[k] = min(s_min[k], s)
 
 
 @inlined
 def add_vehicles(
-    rows: NDArray[np.float64], n: int, vehicles: NDArray[np.float64], travelled: float, c: Any
+    rows: NDArray[np.float64],
+    n: int,
+    vehicles: NDArray[np.float64],
+    travelled: float,
+    relied_on: bool,
+    c: Any,
 ) -> None:
     """Add the forces of all vehicles to the first n rows, padded to whole blocks."""
     padded = (n + BLOCK - 1) // BLOCK * BLOCK
     for v in range(vehicles.shape[0]):
-        add_vehicle(rows, 0, padded, vehicles[v], travelled, c)
+        add_vehicle(rows, 0, padded, vehicles[v], travelled, relied_on, c)
 
 
 @kernel
@@ -148,6 +203,7 @@ def add_near_vehicles(
     n: int,
     vehicles: NDArray[np.float64],
     travelled: float,
+    relied_on: bool,
     constants: NDArray[Any],
 ) -> None:
     """As ``add_vehicles`` for rows sorted by the cells of ``grid``: only where a vehicle reaches.
@@ -157,7 +213,7 @@ def add_near_vehicles(
     """
     c = constants[0]
     if vehicles.shape[0] < _MANY:
-        add_vehicles(rows, n, vehicles, travelled, c)
+        add_vehicles(rows, n, vehicles, travelled, relied_on, c)
         return
     for v in range(vehicles.shape[0]):
         cos, sin = cosine_sine(vehicles[v, HEADING])
@@ -174,11 +230,11 @@ def add_near_vehicles(
         if right < 0.0 or left >= grid.columns or high < 0.0 or low >= grid.strips:
             continue
         if not right - left + high - low < _ABSURD:  # a vehicle that is not finite spoils all
-            add_vehicle(rows, 0, n, vehicles[v], travelled, c)
+            add_vehicle(rows, 0, n, vehicles[v], travelled, relied_on, c)
             continue
         begin, end = max(int(left), 0), min(int(right), grid.columns - 1)
         for strip in range(max(int(low), 0), min(int(high), grid.strips - 1) + 1):
             base = strip * grid.columns
             start, stop = first[base + begin], first[base + end + 1]
             if start < stop:
-                add_vehicle(rows, start, stop, vehicles[v], travelled, c)
+                add_vehicle(rows, start, stop, vehicles[v], travelled, relied_on, c)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pedestrian_model._check import as_floats, check_not_negative, check_shape, check_values
 from pedestrian_model._jit import kernel
-from pedestrian_model._routes import Line, Routes, aim
+from pedestrian_model._routes import Routes
 from pedestrian_model._rows import Arrays
 from pedestrian_model.errors import CrowdError
 
@@ -30,6 +30,9 @@ class Crowd:
     direction; it counts as passed beyond the line, within its half-width. (0, 0, 0) is a point
     only. A way-point with a signal is not passed while ``Surroundings.closed[signal]``.
 
+    Priority is how far somebody relies on vehicles to stop: 1 on a crossing that is theirs, 0 as in
+    the paper. It may be changed in place; copies share it, as they share all that no step changes.
+
     Raises:
         CrowdError: if an array has a wrong shape, or a value is not finite or out of range.
     """
@@ -42,6 +45,7 @@ class Crowd:
     waypoint_index: NDArray[np.int64]  # (n,) current target, counted from the pedestrian's first
     waypoint_passage: NDArray[np.float64]  # (total, 3) unit direction, half-width [m]
     waypoint_signal: NDArray[np.int64]  # (total,) which signal must be open, -1 for none
+    priority: NDArray[np.float64]  # (n,) 0 to 1
 
     def __post_init__(self) -> None:
         n = self.position.shape[0]
@@ -51,12 +55,14 @@ class Crowd:
             ("desired_speed", (n,)),
             ("waypoints", (None, 2)),
             ("waypoint_passage", (self.waypoints.shape[0], 3)),
+            ("priority", (n,)),
         ):
             array = getattr(self, name)
             check_shape(array, shape, name, CrowdError)
             _check_memory(array, np.dtype(np.float64), name)
             check_values(array, name, CrowdError)
         check_not_negative(self.desired_speed, "desired_speed", CrowdError)
+        self._check_priority()
         for name, length in (
             ("waypoint_start", n + 1),
             ("waypoint_index", n),
@@ -66,6 +72,12 @@ class Crowd:
             _check_memory(getattr(self, name), np.dtype(np.int64), name)
         self._check_offsets()
         self._check_passages()
+
+    def _check_priority(self) -> None:
+        bad = (self.priority < 0.0) | (self.priority > 1.0)
+        if bad.any():
+            i = int(np.argmax(bad))
+            raise CrowdError(f"priority[{i}] = {self.priority[i]}, expected 0 to 1")
 
     def _check_offsets(self) -> None:
         start, total = self.waypoint_start, self.waypoints.shape[0]
@@ -113,6 +125,7 @@ class Crowd:
         *,
         passages: Sequence[ArrayLike] | None = None,
         signals: Sequence[ArrayLike] | None = None,
+        priority: ArrayLike = 0.0,
     ) -> Crowd:
         """A new crowd, each pedestrian on the way to the first of its way-points.
 
@@ -124,6 +137,7 @@ class Crowd:
             passages: for each pedestrian (k_i, 3) direction_x, direction_y (of any length) and
                 half_width [m]; (0, 0, anything) is none. Default: none.
             signals: for each pedestrian (k_i,) index of a signal, -1 for none. Default: none.
+            priority: (n,) or one number for all, 0 to 1.
 
         Raises:
             CrowdError: naming the array, the index and the value that is not as it should be.
@@ -134,6 +148,7 @@ class Crowd:
         n = x.shape[0]
         v = as_floats(velocity, "velocity", CrowdError)
         v0 = as_floats(desired_speed, "desired_speed", CrowdError)
+        relying = as_floats(priority, "priority", CrowdError)
         if len(waypoints) != n:
             raise CrowdError(
                 f"waypoints has {len(waypoints)} entries, expected one for each of {n}"
@@ -148,7 +163,7 @@ class Crowd:
         return cls(
             position=x.copy(),
             velocity=v.reshape(0, 2) if v.size == 0 else v.copy(),
-            desired_speed=np.full(n, v0) if v0.ndim == 0 or v0.size == 0 else v0.copy(),
+            desired_speed=_for_each(v0, n),
             waypoints=np.concatenate(routes) if routes else np.empty((0, 2)),
             waypoint_start=_offsets(np.array([len(route) for route in routes], dtype=np.int64)),
             waypoint_index=np.zeros(n, dtype=np.int64),
@@ -158,6 +173,7 @@ class Crowd:
             waypoint_signal=(
                 np.full(total, -1, dtype=np.int64) if signals is None else _signals(signals, routes)
             ),
+            priority=_for_each(relying, n),
         )
 
     @classmethod
@@ -174,8 +190,8 @@ class Crowd:
 
     @cached_property
     def wishes(self) -> Arrays:
-        """What the crowd brings to a ``Scene``: the desired speeds and the routes."""
-        return (self.desired_speed, *self.routes)
+        """What the crowd brings to a ``Scene``: the desired speeds, priority, and the routes."""
+        return (self.desired_speed, self.priority, *self.routes)
 
     @property
     def state(self) -> Arrays:
@@ -225,6 +241,7 @@ class Crowd:
                 "waypoint_index": self.waypoint_index[chosen],
                 "waypoint_passage": passage,
                 "waypoint_signal": signal,
+                "priority": self.priority[chosen],
             }
         )
 
@@ -243,19 +260,9 @@ class Crowd:
 _JOINED = tuple(field.name for field in fields(Crowd) if field.name != "waypoint_start")
 
 
-def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
-    """Mask (n,): on the way to the last way-point and within ``radius`` [m] of it, or its line."""
-    mask = np.empty(len(crowd), dtype=np.bool_)
-    _fill_arrived(
-        crowd.position,
-        crowd.waypoints,
-        crowd.waypoint_passage,
-        crowd.waypoint_start,
-        crowd.waypoint_index,
-        radius,
-        mask,
-    )
-    return mask
+def _for_each(values: NDArray[np.float64], n: int) -> NDArray[np.float64]:
+    """A value for each of n pedestrians, from one for all or one each."""
+    return np.full(n, values) if values.ndim == 0 or values.size == 0 else values.copy()
 
 
 def _passages(
@@ -313,28 +320,6 @@ def _unchecked(state: dict[str, Any]) -> Crowd:
     crowd = object.__new__(Crowd)
     crowd.__dict__.update(state)
     return crowd
-
-
-@kernel
-def _fill_arrived(
-    position: NDArray[np.float64],
-    waypoints: NDArray[np.float64],
-    passage: NDArray[np.float64],
-    start: NDArray[np.int64],
-    waypoint_index: NDArray[np.int64],
-    radius: float,
-    mask: NDArray[np.bool_],
-) -> None:
-    """Who is on the way to the last way-point and within ``radius`` of it, or of its line."""
-    w, q = waypoints, passage
-    for i in range(len(mask)):
-        last = start[i + 1] - 1
-        x, y = position[i, 0], position[i, 1]
-        p = Line(w[last, 0], w[last, 1], q[last, 0], q[last, 1], q[last, 2])
-        to_x, to_y = aim(x, y, p, 0.0)
-        dx, dy = to_x - x, to_y - y
-        on_the_way = start[i] + waypoint_index[i] == last
-        mask[i] = on_the_way and dx * dx + dy * dy <= radius * radius
 
 
 @kernel

@@ -66,6 +66,6 @@ def _fill_influence(
         rows[VX, i], rows[VY, i] = velocities[min(i, n - 1), 0], velocities[min(i, n - 1), 1]
         rows[VFX, i], rows[VFY, i], rows[S, i] = 0.0, 0.0, np.inf
     for v in range(vehicles.shape[0]):
-        add_vehicle(rows, 0, n, vehicles[v], 0.0, constants[0])
+        add_vehicle(rows, 0, n, vehicles[v], 0.0, False, constants[0])
     for i in range(n):
         out[i, 0], out[i, 1], out[i, 2] = rows[VFX, i], rows[VFY, i], rows[S, i]

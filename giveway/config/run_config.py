@@ -159,6 +159,12 @@ class RunConfig(Section):
             expected = expectation(first, field) if field is not None else first["msg"]
             raise ValueError(f"egos[{number}]: {key} = {first['input']!r}: {expected}") from None
 
+    @property
+    def heeds_priority(self) -> bool:
+        """Whether the law of the road holds: an ego gives way by it, people rely on it."""
+        priority = self.regulation.priority
+        return not self.controller.endswith("-paper") if priority is None else priority == "road"
+
     def _one_per_vehicle(self) -> list[EgoRunConfig]:
         """One for each vehicle that is taken over, or the one of an inserted ego."""
         taken = [{"take_over": (name,)} for name in self.ego.take_over] or [{}]
@@ -195,12 +201,6 @@ class EgoRunConfig(RunConfig):
         """Whether the safety layer watches over the controller."""
         enabled = self.safety.enabled
         return not self.controller.endswith("-paper") if enabled is None else enabled
-
-    @property
-    def heeds_priority(self) -> bool:
-        """Whether the ego gives way by the law of the road."""
-        priority = self.regulation.priority
-        return not self.controller.endswith("-paper") if priority is None else priority == "road"
 
     @property
     def buffer_distance(self) -> float:

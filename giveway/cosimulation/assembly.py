@@ -13,6 +13,7 @@ from giveway.cosimulation.departures import Departures
 from giveway.cosimulation.preflight import CheckedRun, substeps_of
 from giveway.cosimulation.yielding import Yielding
 from giveway.crowd.exchange import Exchange
+from giveway.crowd.priority import PriorityOnFoot
 from giveway.crowd.roster import Roster
 from giveway.crowd.spawn import PREFIX, Spawned, spawn
 from giveway.crowd.zone import Zone
@@ -51,6 +52,7 @@ class Parts:
     exchange: Exchange | None  # None: the scenario's own pedestrians stay SUMO's
     surroundings: Surroundings
     yielding: Yielding | None  # None: background vehicles do not yield to pedestrians
+    priority: PriorityOnFoot | None  # None: nobody on foot relies on it
     net_file: Path  # the scenario's network
     remarks: tuple[str, ...]  # what the user should know
 
@@ -149,9 +151,22 @@ def assemble(
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
         yielding=yielding,
+        priority=_priority(config, egos, sumo) if len(roster) or walkers else None,
         net_file=files.net_file,
         remarks=tuple(remarks),
     )
+
+
+def _priority(
+    config: RunConfig, egos: Sequence[EgoRunConfig], sumo: SumoSession
+) -> PriorityOnFoot | None:
+    """Tells people of their priority, where any ego gives way; None: there is none to tell."""
+    heeding = [driver for driver in egos or (config,) if driver.heeds_priority]
+    if not heeding:
+        return None
+    kerb_distance = max(driver.regulation.kerb_distance for driver in heeding)
+    priority = PriorityOnFoot(sumo.lanes.crossings, sumo.light_state, kerb_distance)
+    return priority if len(priority) else None
 
 
 def _start_options(config: RunConfig, moved: bool, outputs: Path | None) -> StartOptions:

@@ -3,7 +3,7 @@
 The order of one step, from t_k to t_k+1 (Yang & Özgüner 2019, algorithm 1):
 
 1. where SUMO has just stepped, read it: egos that depart, persons who enter or leave the zone,
-   lights, background vehicles and the pedestrians they yield to;
+   lights, people's priority, background vehicles and the pedestrians they yield to;
 2. for each ego: predict the crowd, solve for the force u(k);
 3. record the state at t_k and u(k);
 4. step the vehicles and the crowd, both from the state at t_k, so that their order is irrelevant;
@@ -191,6 +191,8 @@ class Loop:
                 self._remark_on_spawn_area()
         if parts.exchange is not None:
             parts.exchange.update(self._places())
+        if parts.priority is not None:
+            parts.priority.update(self._roster.crowd)
         self._mirror.read(self._egos, self._roster.crowd.position)
         rooms = self._look_ahead()
         self._law.signals(self._start + self._k * self._time_step)

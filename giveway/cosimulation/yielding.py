@@ -3,7 +3,8 @@
 SUMO's vehicles look for persons on lanes and crossings. A person that is moved from outside is on
 none of them, so SUMO's vehicles would drive through it. Therefore each vehicle's speed is limited
 to one from which it stops before the next pedestrian in its corridor, with the deceleration of its
-own type: Krauss's safe speed (Krauss 1998, eq. 2.24, with a standing leader).
+own type: Krauss's safe speed (Krauss 1998, eq. 2.24, with a standing leader). Who has priority on a
+crossing is expected to walk on over it.
 
 An ego is on the lane that SUMO finds at its front's middle. Where it changes lanes or cuts a
 corner, part of its body is on another one, whose vehicles do not see it; they keep behind it
@@ -24,9 +25,10 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.vehicles import SumoVehicles
-from pedestrian_model import Crowd
+from pedestrian_model import Crowd, targets
 
 _LOOK_AHEAD = 1.0  # [s] for which pedestrians are expected to keep their velocity
+_WALKING_ON = (1.0, 2.0)  # [s] ahead, those with priority are on the way to where they want to be
 _REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
 _BESIDE_EGO = 0.1  # [m] that vehicles keep beside an ego at least
 _BEHIND_EGO = 0.5  # [m] at which they stand behind one
@@ -109,9 +111,7 @@ class Yielding:
         sight = (
             background.speed * self._reaction + background.speed**2 / 4.0 + self._distance + 10.0
         )
-        pedestrians = np.concatenate(
-            [crowd.position, crowd.position + _LOOK_AHEAD * crowd.velocity]
-        )
+        pedestrians = _expected(crowd)
         numbers, positions = self._lane_paths.of(background.ids, sight.tolist())
         self._lane_paths.forget(background.ids)
         gaps = np.full(len(background.ids), np.inf)
@@ -204,6 +204,18 @@ class Yielding:
                     continue
                 limits[name] = min(safe, limits.get(name, math.inf))
         return limits
+
+
+def _expected(crowd: Crowd) -> Array:
+    """(k, 2) [m] where people are and where they are expected to be."""
+    places = [crowd.position, crowd.position + _LOOK_AHEAD * crowd.velocity]
+    relying = np.flatnonzero(crowd.priority)
+    if len(relying):
+        place = crowd.position[relying]
+        way = targets(crowd, relying) - place
+        pace = crowd.desired_speed[relying] / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)
+        places += [place + (time * pace)[:, None] * way for time in _WALKING_ON]
+    return np.concatenate(places)
 
 
 def _safe_speed(room: float, leader: float, deceleration: float, reaction: float) -> float:

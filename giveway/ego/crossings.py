@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.crowd.crossings import ASIDE, have_priority, is_near, is_open, place_on, use_of
 from giveway.ego.leader import NO_LEADER, Leader
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
@@ -24,8 +25,6 @@ from pedestrian_model import Crowd
 HARDEST = 3.0  # [m/s^2] braking that anybody who wants to cross may ask of the ego
 STOP_BEFORE = 1.0  # [m] before the crossing the front bumper is to stand
 _SAMPLE = 0.1  # [m] between the points of the path that are looked at
-_ONWARD = 0.5  # cosine: who wants to cross looks less than 60 degrees away from it
-_ASIDE = 0.5  # [m] beside its marking people are on a crossing as well
 _BESIDE = 0.8  # [m] from the ego's side to the middle of somebody who is not in its way
 _BEFORE, _AFTER = 1.0, 0.5  # [s] between the ego and whoever passes its way after or before it
 _PATIENCE = 4.5  # [s] away from the ego's way, and a little more than an encounter's 4 s
@@ -33,8 +32,6 @@ _PULL_AWAY = 1.5  # [m/s^2] of the ego that has waited
 _GAP = 1.0  # [m] behind the ego once it has left a crossing
 _CRAWLING = 2.0  # [m/s] a vehicle ahead that is slower may come to a stand
 _SIGHT = 60.0  # [m] before a crossing from which on people are looked at
-_GREEN = "Gg"
-_OUT = "Oo"
 
 
 class PathCrossing(NamedTuple):
@@ -66,8 +63,9 @@ def crossings_on(
     if not crossings:
         return ()
     stations = np.arange(0.0, path.length, _SAMPLE)
-    x = np.interp(stations, path.stations, path.vertices[:, 0])
-    y = np.interp(stations, path.stations, path.vertices[:, 1])
+    points = np.column_stack(
+        [np.interp(stations, path.stations, path.vertices[:, axis]) for axis in range(2)]
+    )
     found: list[PathCrossing] = []
     for crossing in crossings:
         kerb, other = crossing.ends
@@ -75,8 +73,7 @@ def crossings_on(
         if length <= 0.0:
             continue
         along = (other - kerb) / length
-        u = (x - kerb[0]) * along[0] + (y - kerb[1]) * along[1]
-        w = (y - kerb[1]) * along[0] - (x - kerb[0]) * along[1]
+        u, w = place_on(points, kerb, along)
         inside = (u >= 0.0) & (u <= length) & (np.abs(w) <= crossing.width / 2)
         for visit in _runs(inside):
             # how much wider the body's way over the crossing is than the body
@@ -90,7 +87,7 @@ def crossings_on(
                     kerb,
                     along,
                     length,
-                    crossing.width / 2 + _ASIDE,
+                    crossing.width / 2 + ASIDE,
                     float(u[visit].min()) - half,
                     float(u[visit].max()) + half,
                     crossing.zebra,
@@ -135,14 +132,12 @@ class Crossings:
         self._kerb_distance = kerb_distance
         self._next = 0
         self._waiting = False  # at the next crossing, since it could stop there
-        self._letters: dict[int, str] = {}
+        self._states: Mapping[str, str] = {}
         self.systems = frozenset(place.system for place in self._crossings if place.system)
 
     def update(self, states: Mapping[str, str]) -> None:
         """Take note of the lights' states: of each system, one letter per movement (SUMO's)."""
-        for number, place in enumerate(self._crossings):
-            state = states.get(place.system, "")
-            self._letters[number] = state[place.link] if 0 <= place.link < len(state) else "O"
+        self._states = states
 
     def stop_at(
         self, front: float, speed: float, crowd: Crowd, leader: Leader = NO_LEADER
@@ -188,23 +183,16 @@ class Crossings:
         place = self._crossings[number]
         if not len(crowd):
             return False
-        offset = crowd.position - place.kerb
-        u = offset @ place.along
-        w = offset[:, 1] * place.along[0] - offset[:, 0] * place.along[1]
-        kerb = self._kerb_distance
-        near = (np.abs(w) <= place.half_width) & (u >= -kerb) & (u <= place.length + kerb)
+        u, w = place_on(crowd.position, place.kerb, place.along)
+        near = is_near(u, w, place.length, place.half_width, self._kerb_distance)
         if not near.any():
             return False
         rows = np.flatnonzero(near)
         u = u[rows]
-        aim = crowd.waypoints[crowd.waypoint_start[rows] + crowd.waypoint_index[rows]]
-        aim = aim - crowd.position[rows]
-        onward = (aim @ place.along) / np.maximum(np.hypot(aim[:, 0], aim[:, 1]), 1e-9)
-        on = (u >= 0.0) & (u <= place.length)
-        # on the crossing people finish their way; before it they have to want to
-        direction = np.where(onward >= 0.0, 1.0, -1.0)
-        inward = np.where(u < 0.0, onward, -onward)
-        coming = on | (self._is_open(number) & (inward >= _ONWARD))
+        use = use_of(crowd, rows, u, place.along, place.length)
+        state = self._states.get(place.system, "")
+        coming = have_priority(use, is_open(state, place.link, zebra=place.zebra))
+        direction = np.where(use.onward >= 0.0, 1.0, -1.0)
         to_go = np.where(direction > 0.0, place.low - u, u - place.high)
         to_leave = np.where(direction > 0.0, place.high - u, u - place.low)
         pace = np.maximum(crowd.desired_speed[rows], 0.1)
@@ -213,12 +201,6 @@ class Crossings:
         first = leaves + (_BEFORE if speed > _CRAWLING else _AFTER) < enters
         later = arrives > max(clears + _BEFORE, _PATIENCE)
         return bool((coming & (to_leave > 0.0) & ~first & ~later).any())
-
-    def _is_open(self, number: int) -> bool:
-        """Whether people who are about to enter have priority now."""
-        place = self._crossings[number]
-        letter = self._letters.get(number, "O") if place.system else "O"
-        return letter in _GREEN or (letter in _OUT and place.zebra)
 
     def _own_times(self, place: PathCrossing, front: float, speed: float) -> tuple[float, float]:
         """When [s] the ego would enter the crossing and have left it, if it went on."""

@@ -118,7 +118,13 @@ def _gather(
     work.reserve(len(crowd))
     constants = pack(parameters)
     bad = _fill_forces(
-        *crowd.state[:2], vehicles.array, work.arrays, constants, model.cell_list_from, out
+        *crowd.state[:2],
+        crowd.priority,
+        vehicles.array,
+        work.arrays,
+        constants,
+        model.cell_list_from,
+        out,
     )
     if bad != FINE:
         raise divergence(bad, crowd, vehicles)
@@ -149,6 +155,7 @@ def _targets(
 def _fill_forces(
     position: Array,
     velocity: Array,
+    priority: Array,
     vehicles: Array,
     scratch: tuple[NDArray[Any], ...],
     constants: NDArray[Any],
@@ -160,7 +167,7 @@ def _fill_forces(
     if n == 0 or insane != FINE:
         return insane
     memory = Scratch(*scratch)
-    gather_forces(position, velocity, vehicles, 0.0, memory, constants, cell_list_from)
+    gather_forces(position, velocity, priority, vehicles, 0.0, memory, constants, cell_list_from)
     rows, order = memory.rows, memory.sorting[0]
     for k in range(n):
         i = order[k]

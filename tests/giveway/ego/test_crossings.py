@@ -102,6 +102,21 @@ def test_a_light_decides_who_may_enter_and_whoever_is_on_it_may_finish(letter, a
     assert (crossings(light=letter).stop_at(NEAR, 4.0, walker(-2.0)) < math.inf) == on_it
 
 
+def test_who_waits_for_green_a_step_from_the_kerb_costs_no_stop():
+    waiting = Crowd.create(
+        [[22.0, -3.3]], [[0, 0]], 1.4, [[(22, -3.9), (22, 3.9)]], signals=[[0, -1]]
+    )
+    assert crossings(light="r").stop_at(NEAR, 4.0, waiting) == math.inf
+
+
+def test_who_heads_for_the_side_of_a_crossing_wants_to_cross():
+    """The way-point at the kerb is a line; its middle is 1.8 m aside."""
+    aside = Crowd.create(
+        [[23.8, -3.9]], [[0, 1.4]], 1.4, [[(22.0, -3.2)]], passages=[[(0.0, 1.0, 2.0)]]
+    )
+    assert crossings().stop_at(NEAR, 4.0, aside) < math.inf
+
+
 def test_without_priority_people_wait_for_a_gap():
     assert crossings(zebra=False).stop_at(NEAR, 4.0, walker(-4.0)) == math.inf
     assert crossings(zebra=False).stop_at(NEAR, 4.0, walker(-2.0)) < math.inf

@@ -1,0 +1,82 @@
+"""Where people walk next, and who is there."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._jit import kernel
+from pedestrian_model._routes import Line, aim
+from pedestrian_model.crowd import Crowd
+
+
+def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
+    """Mask (n,): on the way to the last way-point and within ``radius`` [m] of it, or its line."""
+    mask = np.empty(len(crowd), dtype=np.bool_)
+    _fill_arrived(
+        crowd.position,
+        crowd.waypoints,
+        crowd.waypoint_passage,
+        crowd.waypoint_start,
+        crowd.waypoint_index,
+        radius,
+        mask,
+    )
+    return mask
+
+
+def targets(crowd: Crowd, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(k, 2) [m] the current way-points of the pedestrians ``rows`` (k,), or where on their lines.
+
+    Signals and standing cars do not count.
+    """
+    out = np.empty((len(rows), 2))
+    _fill_targets(
+        crowd.position,
+        crowd.waypoints,
+        crowd.waypoint_passage,
+        crowd.waypoint_start,
+        crowd.waypoint_index,
+        rows,
+        out,
+    )
+    return out
+
+
+@kernel
+def _fill_arrived(
+    position: NDArray[np.float64],
+    waypoints: NDArray[np.float64],
+    passage: NDArray[np.float64],
+    start: NDArray[np.int64],
+    waypoint_index: NDArray[np.int64],
+    radius: float,
+    mask: NDArray[np.bool_],
+) -> None:
+    """Who is on the way to the last way-point and within ``radius`` of it, or of its line."""
+    w, q = waypoints, passage
+    for i in range(len(mask)):
+        last = start[i + 1] - 1
+        x, y = position[i, 0], position[i, 1]
+        p = Line(w[last, 0], w[last, 1], q[last, 0], q[last, 1], q[last, 2])
+        to_x, to_y = aim(x, y, p, 0.0)
+        dx, dy = to_x - x, to_y - y
+        on_the_way = start[i] + waypoint_index[i] == last
+        mask[i] = on_the_way and dx * dx + dy * dy <= radius * radius
+
+
+@kernel
+def _fill_targets(
+    position: NDArray[np.float64],
+    waypoints: NDArray[np.float64],
+    passage: NDArray[np.float64],
+    start: NDArray[np.int64],
+    waypoint_index: NDArray[np.int64],
+    rows: NDArray[np.int64],
+    out: NDArray[np.float64],
+) -> None:
+    """The nearest points of the current way-points' lines."""
+    w, q = waypoints, passage
+    for k in range(len(rows)):
+        i = rows[k]
+        at = start[i] + waypoint_index[i]
+        p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+        out[k, 0], out[k, 1] = aim(position[i, 0], position[i, 1], p, 0.0)
