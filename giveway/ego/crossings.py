@@ -24,7 +24,8 @@ from pedestrian_model import Crowd
 
 HARDEST = 3.0  # [m/s^2] braking that anybody who wants to cross may ask of the ego
 STOP_BEFORE = 1.0  # [m] before the crossing the front bumper is to stand
-_SAMPLE = 0.1  # [m] between the points of the path that are looked at
+_SAMPLE, _COARSE = 0.1, 2.0  # [m] between the places of the body that are looked at
+_GRAIN = 0.5  # [m] between the points of its outline, at most
 _BESIDE = 0.8  # [m] from the ego's side to the middle of somebody who is not in its way
 _BEFORE, _AFTER = 1.0, 0.5  # [s] between the ego and whoever passes its way after or before it
 _PATIENCE = 4.5  # [s] away from the ego's way, and a little more than an encounter's 4 s
@@ -37,8 +38,8 @@ _SIGHT = 60.0  # [m] before a crossing from which on people are looked at
 class PathCrossing(NamedTuple):
     """A crossing that a path leads over, in the crossing's own coordinates."""
 
-    entry: float  # [m] the path's first station on it
-    exit: float  # [m] and its last
+    entry: float  # [m] station of the front bumper from which on the body is on it
+    exit: float  # [m] station that the rear passes last
     kerb: Array  # (2,) [m] one end of the crossing's middle line
     along: Array  # (2,) unit vector to its other end
     length: float  # [m] between the kerbs
@@ -60,42 +61,63 @@ def crossings_on(
         shape: of its body.
         crossings: of the network.
     """
-    if not crossings:
-        return ()
-    stations = np.arange(0.0, path.length, _SAMPLE)
-    points = np.column_stack(
-        [np.interp(stations, path.stations, path.vertices[:, axis]) for axis in range(2)]
-    )
     found: list[PathCrossing] = []
+    coarse = np.arange(0.0, path.length, _COARSE)
+    middles = _points(path, coarse)
     for crossing in crossings:
         kerb, other = crossing.ends
         length = float(np.hypot(*(other - kerb)))
         if length <= 0.0:
             continue
+        away = np.hypot(*(middles - crossing.ends.mean(axis=0)).T)
+        reach = (length + crossing.width) / 2 + shape.length + shape.width + _COARSE
+        near = coarse[away <= reach]
+        if not len(near):
+            continue
         along = (other - kerb) / length
-        u, w = place_on(points, kerb, along)
+        stations = np.arange(near[0], min(near[-1] + _COARSE, path.length), _SAMPLE)
+        outline = _outlines(path, shape, stations)
+        u, w = place_on(outline.reshape(-1, 2), kerb, along)
+        u, w = u.reshape(outline.shape[:2]), w.reshape(outline.shape[:2])
         inside = (u >= 0.0) & (u <= length) & (np.abs(w) <= crossing.width / 2)
-        for visit in _runs(inside):
-            # how much wider the body's way over the crossing is than the body
-            over = w[visit[-1]] - w[visit[0]]
-            skew = max(1.0, math.hypot(over, u[visit[-1]] - u[visit[0]]) / max(abs(over), 1.0))
-            half = shape.width / 2 * skew + _BESIDE
+        for visit in _runs(np.asarray(inside.any(axis=1))):
+            swept = u[visit][inside[visit]]
             found.append(
                 PathCrossing(
                     float(stations[visit[0]]),
-                    float(stations[visit[-1]]),
+                    float(stations[visit[-1]]) - shape.length,
                     kerb,
                     along,
                     length,
                     crossing.width / 2 + ASIDE,
-                    float(u[visit].min()) - half,
-                    float(u[visit].max()) + half,
+                    float(swept.min()) - _BESIDE,
+                    float(swept.max()) + _BESIDE,
                     crossing.zebra,
                     crossing.system,
                     crossing.link,
                 )
             )
     return tuple(sorted(found, key=lambda place: place.entry))
+
+
+def _points(path: EgoPath, stations: Array) -> Array:
+    """(n, 2) [m] the path at ``stations`` (n,) [m], which goes on straight before its beginning."""
+    x, y = (np.interp(stations, path.stations, column) for column in path.vertices.T)
+    before = np.minimum(stations, 0.0)
+    heading = path.headings[0]
+    return np.column_stack([x + before * np.cos(heading), y + before * np.sin(heading)])
+
+
+def _outlines(path: EgoPath, shape: VehicleShape, stations: Array) -> Array:
+    """(n, p, 2) [m] points of the sides and the front of the body at each of ``stations`` (n,)."""
+    front, rear = _points(path, stations), _points(path, stations - shape.length)
+    forward = front - rear
+    forward /= np.maximum(np.hypot(forward[:, 0], forward[:, 1]), 1e-9)[:, None]
+    left = np.column_stack([-forward[:, 1], forward[:, 0]])
+    back = np.linspace(0.0, shape.length, max(2, math.ceil(shape.length / _GRAIN)))
+    sides = [(distance, side) for distance in back for side in (-0.5, 0.0, 0.5)]
+    points = [front - a * forward + side * shape.width * left for a, side in sides]
+    return np.stack(points, axis=1)
 
 
 def _runs(inside: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
@@ -157,17 +179,28 @@ class Crossings:
             place = self._crossings[number]
             if place.entry - front > _SIGHT:
                 break
-            needed = speed * speed / (2.0 * max(place.entry - front, 1e-3))
-            waiting = self._waiting and number == self._next
-            if not waiting and needed > HARDEST:
-                continue
-            yields = self._is_wanted(number, front, speed, crowd)
-            if yields or self._is_blocked(place, leader):
-                self._waiting = self._waiting or number == self._next
-                return max(place.entry - STOP_BEFORE, min(front, place.entry))
-            if number == self._next:
+            wanted = self._is_wanted(number, front, speed, crowd)
+            if wanted or self._is_blocked(place, leader):
+                for before in self._stops_before(number, front):
+                    entry = self._crossings[before].entry
+                    needed = speed * speed / (2.0 * max(entry - front, 1e-3))
+                    if needed <= HARDEST or (self._waiting and before == self._next):
+                        self._waiting = self._waiting or before == self._next
+                        return max(entry - STOP_BEFORE, min(front, entry))
+            elif number == self._next:
                 self._waiting = False
         return math.inf
+
+    def _stops_before(self, number: int, front: float) -> list[int]:
+        """Before which crossings to stop for one: if it would stand on others, before these."""
+        stops = [number]
+        while stops[-1] > self._next:
+            stop = self._crossings[stops[-1]].entry - STOP_BEFORE
+            before = self._crossings[stops[-1] - 1]
+            if stop - self._length > before.exit or before.entry < front:
+                break
+            stops.append(stops[-1] - 1)
+        return stops[::-1]
 
     def _is_blocked(self, place: PathCrossing, leader: Leader) -> bool:
         """Whether the vehicle ahead leaves no room behind the crossing."""
