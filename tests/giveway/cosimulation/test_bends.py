@@ -49,5 +49,5 @@ def test_between_sumo_s_steps_a_car_follows_its_lane() -> None:
     finally:
         libsumo.close()
     assert len(off) > 30
-    assert np.mean(straight) > 0.8
+    assert np.mean(straight) > 0.5
     assert np.mean(off) < 0.3  # the speeds differ, and a chord is no arc
