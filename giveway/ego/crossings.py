@@ -153,7 +153,7 @@ class Crossings:
         self._length = length
         self._kerb_distance = kerb_distance
         self._next = 0
-        self._waiting = False  # at the next crossing, since it could stop there
+        self._waits_at = math.inf  # [m] where it waits before the next crossing; inf: it does not
         self._states: Mapping[str, str] = {}
         self.systems = frozenset(place.system for place in self._crossings if place.system)
 
@@ -174,7 +174,7 @@ class Crossings:
         """
         while self._next < len(self._crossings) and self._crossings[self._next].entry < front:
             self._next += 1
-            self._waiting = False
+            self._waits_at = math.inf
         for number in range(self._next, len(self._crossings)):
             place = self._crossings[number]
             if place.entry - front > _SIGHT:
@@ -183,12 +183,15 @@ class Crossings:
             if wanted or self._is_blocked(place, leader):
                 for before in self._stops_before(number, front):
                     entry = self._crossings[before].entry
-                    needed = speed * speed / (2.0 * max(entry - front, 1e-3))
-                    if needed <= HARDEST or (self._waiting and before == self._next):
-                        self._waiting = self._waiting or before == self._next
-                        return max(entry - STOP_BEFORE, min(front, entry))
+                    if before == self._next and self._waits_at < math.inf:
+                        return self._waits_at
+                    if speed * speed <= 2.0 * HARDEST * max(entry - front, 1e-3):
+                        stop = max(entry - STOP_BEFORE, min(front, entry))
+                        if before == self._next:
+                            self._waits_at = stop
+                        return stop
             elif number == self._next:
-                self._waiting = False
+                self._waits_at = math.inf
         return math.inf
 
     def _stops_before(self, number: int, front: float) -> list[int]:

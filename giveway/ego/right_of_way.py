@@ -89,7 +89,7 @@ class RightOfWay:
         self._stop = math.inf
         self._going = False  # it has decided to go through the next junction
         self._halted = False  # it has stood at the next line, where it has to
-        self._stood = 0.0  # [s] at the next line
+        self._stood = 0.0  # [s] at the next line, or behind it
         self._time = -math.inf
         self._green: dict[tuple[str, int], float] = {}  # since when others' lights have been green
         self.systems = frozenset(place.movement.system for place in junctions) - {""}
@@ -157,10 +157,10 @@ class RightOfWay:
     def _note(
         self, place: PathJunction, front: float, speed: float, passed: float, traffic: Traffic
     ) -> None:
-        """Has the ego stood at the line, and for how long; has the vehicle before it gone over?"""
-        at_line = 0.0 <= place.entry - front <= _AT_LINE and speed < _STANDING
-        self._stood = self._stood + passed if at_line and passed < math.inf else 0.0
-        self._halted = self._halted or at_line
+        """Has the ego stood at the line or behind it; has the vehicle before it gone over?"""
+        stands = place.entry - front <= _AT_LINE and speed < _STANDING
+        self._stood = self._stood + passed if stands and passed < math.inf else 0.0
+        self._halted = self._halted or (stands and front <= place.entry)
         own = place.movement
         for other in traffic.get(own.junction, ()):
             if other.name == self._name:
@@ -199,16 +199,16 @@ class RightOfWay:
             source = place.movements[other.number].source
             if where is None or front > where.enter or source in stay:
                 continue
-            if other.distance > 0.0 and self._stays(place, other, states):
+            if self._stays(place, other, states):
                 stay.add(source)  # and who is behind it
                 continue
             if not self._goes_first(place, letter, other, where, states):
                 continue
             if not self._meets(place, other, where, front, speed, critical, margin):
                 continue
-            inside = [w for w in place.waiting if front <= w + STOP_BEFORE and w <= where.enter]
+            inside = [w for w in place.waiting if front <= w and w <= where.enter]
             if inside:
-                stop = min(stop, inside[-1])
+                stop = min(stop, inside[-1] - STOP_BEFORE)
             elif before:
                 stop = min(stop, line)
         return stop

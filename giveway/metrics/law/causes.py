@@ -13,6 +13,7 @@ from giveway.geometry.kernel import Array
 from giveway.metrics.law.areas import Area
 from giveway.metrics.law.drive import Drive, runs
 from giveway.metrics.law.encounters import AHEAD, Encounter
+from giveway.metrics.law.standing import Owed
 
 BEFORE, AFTER = 1.0, 2.0
 """[s] A cause counts from so long before it is there until so long after."""
@@ -21,7 +22,7 @@ SIGHT = 10.0
 """[m] A cause counts this far in front of the ego."""
 
 _ASIDE = 0.5  # [m] beside the ego's way people are on it as well
-_FOE = 6.0  # [s] before another vehicle comes by
+_FOE = 9.0  # [s] before another vehicle comes by: the largest critical gap, and time to start
 _ROOM = 5.0  # [m] that the ego wants behind a crossing or a junction, besides its own length
 _STARTING = 3.0  # [s] in which an ego drives off that departs standing
 _HALT = 1.0  # [m] about a scheduled stop
@@ -49,18 +50,17 @@ class _Stand(NamedTuple):
 
 
 def stops_without_cause(
-    drive: Drive, areas: Sequence[Area], encounters: Sequence[Encounter]
+    drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]
 ) -> list[Uncaused]:
     """The stops in which the ego stood while there was no cause, nor had been just before.
 
     Args:
         drive: the ego's.
         areas: on its way.
-        encounters: of the drive.
+        owed: when it owed somebody the way at which of them.
     """
     time, found = drive.ego.time, []
     lasting = np.append(np.diff(time), 0.0)
-    owed = _owed(drive, encounters)
     for begin, end in runs(drive.ego.speed < drive.stop_speed):
         front = float(drive.front[begin:end].mean())
         stand = _Stand(front, _sight(drive, areas, front), begin, end)
@@ -76,8 +76,13 @@ def stops_without_cause(
     return found
 
 
-def _owed(drive: Drive, encounters: Sequence[Encounter]) -> list[tuple[float, Mask]]:
-    """Of each crossing's area its entry [m] and when (T,) the ego owed somebody the way there."""
+def owed_to(drive: Drive, encounters: Sequence[Encounter]) -> list[Owed]:
+    """Where and when the ego owed somebody the way.
+
+    Args:
+        drive: the ego's.
+        encounters: of the drive.
+    """
     found: dict[float, Mask] = {}
     for met in encounters:
         there = found.setdefault(met.area.entry, np.zeros(len(drive.ego.time), dtype=np.bool_))
@@ -94,9 +99,7 @@ def _sight(drive: Drive, areas: Sequence[Area], front: float) -> float:
     return max([SIGHT, *rooms])
 
 
-def _causes(
-    drive: Drive, stand: _Stand, owed: Sequence[tuple[float, Mask]]
-) -> Iterator[tuple[Mask, float]]:
+def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple[Mask, float]]:
     """When (T,) there was a cause of a stand, and how long [s] before that it counts."""
     time, front = drive.ego.time, stand.front
     for entry, there in owed:

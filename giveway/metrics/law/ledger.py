@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from giveway.metrics.law.areas import areas_of
-from giveway.metrics.law.causes import stops_without_cause
+from giveway.metrics.law.causes import owed_to, stops_without_cause
 from giveway.metrics.law.drive import Drive
 from giveway.metrics.law.encounters import (
     Encounter,
@@ -107,8 +107,9 @@ def ledger(drive: Drive, vehicles: Sequence[VehicleContact] = ()) -> Ledger:
     met = [found for pair in walks for found in encounters(drive, *pair)]
     back = [found for pair in walks for found in pushed_back(drive, *pair)]
     reds = red_lights(drive)
-    crossings, junctions = blocked_crossings(drive, areas), blocked_junctions(drive)
-    uncaused = stops_without_cause(drive, areas, met)
+    owed = owed_to(drive, met)
+    crossings, junctions = blocked_crossings(drive, areas, owed), blocked_junctions(drive, owed)
+    uncaused = stops_without_cause(drive, areas, owed)
     failures = [found for found in met if found.failed]
     waits = [waiting_time(drive, found) for found in met if not found.area.crossing.system]
     events = [

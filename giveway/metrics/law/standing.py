@@ -1,5 +1,6 @@
 """Where the ego came to a stand: on crossings and in junctions that it has to keep free."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -7,6 +8,7 @@ from numpy.typing import NDArray
 
 from giveway.metrics.law.areas import Area
 from giveway.metrics.law.drive import Drive, runs
+from giveway.metrics.law.walks import is_open
 
 LONG = 2.0
 """[s] A shorter stand blocks nobody."""
@@ -18,6 +20,10 @@ _SAME = 1e-6  # [s]
 _WAITING = (-2.0, 0.5)  # [m] behind and beyond a waiting place at which the ego waits there
 
 
+Owed = tuple[float, NDArray[np.bool_]]
+"""Station [m] at which a crossing begins, and when (T,) the ego owes somebody the way there."""
+
+
 class Blocked(NamedTuple):
     """A crossing or a junction that the ego blocked."""
 
@@ -26,29 +32,38 @@ class Blocked(NamedTuple):
     duration: float  # [s]
 
 
-def blocked_crossings(drive: Drive, areas: tuple[Area, ...]) -> list[Blocked]:
+def blocked_crossings(
+    drive: Drive, areas: tuple[Area, ...], owed: Sequence[Owed] = ()
+) -> list[Blocked]:
     """The crossings on which the ego stood without having to, stand by stand.
+
+    A crossing that is closed to people, and on which nobody is, is not blocked.
 
     Args:
         drive: the ego's.
         areas: on its way.
+        owed: when it owed somebody the way at which of them.
     """
-    free = _stands(drive) & ~somebody_in_front(drive)
-    front = drive.front
-    return [
-        Blocked(area.crossing.lane, *longest)
-        for area in areas
-        for longest in _longest(drive, free & (front > area.entry) & (front < area.leave))
-    ]
+    free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, owed)
+    front, found = drive.front, list[Blocked]()
+    for area in areas:
+        on = free & (front > area.entry) & (front < area.leave)
+        if on.any():
+            closed = bool(area.crossing.system) & ~is_open(drive, area)
+            on &= ~closed | _used(drive, area)
+        found += [Blocked(area.crossing.lane, *longest) for longest in _longest(drive, on)]
+    return found
 
 
-def blocked_junctions(drive: Drive) -> list[Blocked]:
+def blocked_junctions(drive: Drive, owed: Sequence[Owed] = ()) -> list[Blocked]:
     """The junctions in which the ego stood without having to, elsewhere than it may wait.
 
     Args:
         drive: the ego's.
+        owed: when it owed somebody the way at a crossing.
     """
-    free, found = _stands(drive) & ~somebody_in_front(drive), list[Blocked]()
+    free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, owed)
+    found = list[Blocked]()
     for number, junction in enumerate(drive.way.junctions):
         inside = (drive.front > junction.entry) & (drive.front < junction.exit + drive.shape.length)
         for place in junction.waiting:
@@ -56,6 +71,25 @@ def blocked_junctions(drive: Drive) -> list[Blocked]:
             inside &= (off < _WAITING[0]) | (off > _WAITING[1])
         found += [Blocked(str(number), *longest) for longest in _longest(drive, free & inside)]
     return found
+
+
+def _lets_pass(drive: Drive, owed: Sequence[Owed]) -> NDArray[np.bool_]:
+    """(T,) whether the ego stands for somebody whom it owes the way right in front of it."""
+    passing = np.zeros(len(drive.ego.time), dtype=np.bool_)
+    for entry, there in owed:
+        room = entry - drive.front
+        passing |= there & (room >= 0.0) & (room <= NEAR)
+    return passing
+
+
+def _used(drive: Drive, area: Area) -> NDArray[np.bool_]:
+    """(T,) whether anybody is on a crossing."""
+    crowd = drive.crowd
+    u, w = area.place(crowd.x, crowd.y)
+    on = (u >= 0.0) & (u <= area.length) & (np.abs(w) <= area.crossing.width / 2)
+    used = np.zeros(len(drive.ego.time), dtype=np.bool_)
+    used[crowd.step[on]] = True
+    return used
 
 
 def _stands(drive: Drive) -> NDArray[np.bool_]:

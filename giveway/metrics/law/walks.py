@@ -47,7 +47,7 @@ def walks_over(drive: Drive, area: Area) -> list[Walk]:
     u, w = area.place(crowd.x, crowd.y)
     margin = area.crossing.width / 2 + KERB
     near = (u >= -KERB) & (u <= area.length + KERB) & (np.abs(w) <= margin)
-    open_at = _open(drive, area)
+    open_at = is_open(drive, area)
     walks = []
     for route in _routes(drive, area):
         mine = (crowd.pedestrian == route.pedestrian) & near
@@ -77,8 +77,13 @@ def walks_over(drive: Drive, area: Area) -> list[Walk]:
     return walks
 
 
-def _open(drive: Drive, area: Area) -> NDArray[np.bool_]:
-    """(T,) whether people who are about to enter the crossing have priority."""
+def is_open(drive: Drive, area: Area) -> NDArray[np.bool_]:
+    """(T,) whether people who are about to enter the crossing have priority.
+
+    Args:
+        drive: the ego's.
+        area: on its way.
+    """
     crossing = area.crossing
     if not crossing.system:
         return np.full(len(drive.ego.time), crossing.zebra)
@@ -87,7 +92,7 @@ def _open(drive: Drive, area: Area) -> NDArray[np.bool_]:
 
 
 def _priority(
-    drive: Drive, area: Area, progress: Array, aside: Array, is_open: NDArray[np.bool_]
+    drive: Drive, area: Area, progress: Array, aside: Array, open_at: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
     """(m,) whether a person has priority, record by record.
 
@@ -103,7 +108,7 @@ def _priority(
     if before and not area.crossing.system and not area.crossing.zebra:
         before = False  # nobody enters such a crossing by right
     for k, (now, there, enters) in enumerate(
-        zip(is_open.tolist(), on.tolist(), kerb.tolist(), strict=True)
+        zip(open_at.tolist(), on.tolist(), kerb.tolist(), strict=True)
     ):
         before = (there and (before or now)) or (enters and now)
         priority[k] = before

@@ -120,11 +120,11 @@ def test_who_cannot_stop_at_yellow_any_more_is_waited_for() -> None:
 
 def test_inside_a_turn_it_waits_where_others_wait() -> None:
     turn = junction(waiting=(54.0,), lights=True)
-    assert stop(turn, 45.0, 4.0, other(30.0), lights="gG") == 54.0
+    assert stop(turn, 45.0, 4.0, other(30.0), lights="gG") == 53.0
     drive = Drive(turn)
-    assert drive.stop(54.0, 0.0, other(30.0), lights="gG") == 54.0
+    assert drive.stop(53.0, 0.0, other(30.0), lights="gG") == 53.0
     # its own light does not matter any more there, and theirs has changed
-    assert drive.stop(54.0, 0.0, other(30.0), lights="rr") == math.inf
+    assert drive.stop(53.0, 0.0, other(30.0), lights="rr") == math.inf
 
 
 @pytest.mark.parametrize("state", ["s", "w"])

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.crossing_world import Person, drive, to_a_stand
+from support.crossing_world import NORTH, SIGNALLED, SOUTH, ZEBRA, Person, drive, to_a_stand
 
 from giveway.metrics.law import ledger
 from giveway.records.way import JunctionOnWay
@@ -83,3 +83,20 @@ def test_a_junction_is_kept_free_but_for_its_waiting_places(front, seconds, bloc
     found, summary = judged(front, seconds, crossings=(), junctions=(JUNCTION,))
     assert [event.place for event in found] == ["0"] * blocked
     assert (summary.blocked_crossings, summary.blocked_junctions) == (0, blocked)
+
+
+def test_a_crossing_that_is_closed_to_people_is_blocked_for_who_is_on_it_only():
+    signals = {"crossings": (SIGNALLED,), "lights": ((0.0, "r"),)}
+    assert judged(22.0, 4.0, **signals)[0] == []
+    late = Person([(22.0, 1.0)] * 600, way=((22.0, 20.0),))
+    assert len(judged(22.0, 4.0, late, **signals)[0]) == 1
+    assert len(judged(22.0, 4.0, crossings=(SIGNALLED,), lights=((0.0, "G"),))[0]) == 1
+
+
+def test_who_lets_people_pass_at_the_next_crossing_blocks_none():
+    following = ZEBRA._replace(lane=":j_c1_0", ends=((26.0, NORTH), (26.0, SOUTH)), width=2.0)
+    both = {"crossings": (ZEBRA, following)}
+    assert len(judged(24.0, 4.0, **both)[0]) == 1
+    # somebody walks up and down the next one's kerb and never gets out of the ego's way
+    waits = Person([(26.0, -2.9)] * 600, way=((26.0, 20.0),))
+    assert judged(24.0, 4.0, waits, **both)[0] == []
