@@ -69,6 +69,16 @@ class RegulationConfig(Section):
         least=MILLIMETRE,
         because="farther away nobody can tell",
     )
+    kerb_time: float = option(
+        2.5,
+        "s",
+        "who heads for a crossing and is this soon at its kerb is about to enter it as well",
+        flag="--kerb-time",
+        ge=0,
+        le=10,
+        least=0.001,
+        because="longer before nobody can tell",
+    )
     critical_gap: float | None = option(
         None,
         "s",

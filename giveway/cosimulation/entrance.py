@@ -189,8 +189,15 @@ class Entrance:
         if not config.heeds_priority:
             return None
         found = crossings_on(path, shape, self._session.lanes.crossings)
-        kerb_distance = config.regulation.kerb_distance
-        return Crossings(found, length=shape.length, kerb_distance=kerb_distance) if found else None
+        if not found:
+            return None
+        regulation = config.regulation
+        return Crossings(
+            found,
+            length=shape.length,
+            kerb_distance=regulation.kerb_distance,
+            kerb_time=regulation.kerb_time,
+        )
 
     def _right_of_way(
         self,

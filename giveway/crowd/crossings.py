@@ -43,7 +43,11 @@ def place_on(position: Array, kerb: Array, along: Array) -> tuple[Array, Array]:
 
 
 def is_near(
-    u: Array, w: Array, length: Array | float, half_width: Array | float, reach: float
+    u: Array,
+    w: Array,
+    length: Array | float,
+    half_width: Array | float,
+    reach: Array | float,
 ) -> NDArray[np.bool_]:
     """(k,) who is on a crossing, or within ``reach`` [m] of a kerb right before or behind it."""
     near: NDArray[np.bool_] = (np.abs(w) <= half_width) & (u >= -reach) & (u <= length + reach)

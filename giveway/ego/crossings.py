@@ -137,6 +137,7 @@ class Crossings:
         length: of the ego's body [m].
         kerb_distance: [m] from the kerb, from which on somebody who heads for a crossing is about
             to enter it.
+        kerb_time: [s] before they are there, from which on they are as well.
 
     Attributes:
         systems: SUMO's ids of the traffic lights that govern them.
@@ -148,10 +149,11 @@ class Crossings:
         *,
         length: float,
         kerb_distance: float,
+        kerb_time: float,
     ) -> None:
         self._crossings = tuple(crossings)
         self._length = length
-        self._kerb_distance = kerb_distance
+        self._kerb_distance, self._kerb_time = kerb_distance, kerb_time
         self._next = 0
         self._waits_at = math.inf  # [m] where it waits before the next crossing; inf: it does not
         self._states: Mapping[str, str] = {}
@@ -220,7 +222,8 @@ class Crossings:
         if not len(crowd):
             return False
         u, w = place_on(crowd.position, place.kerb, place.along)
-        near = is_near(u, w, place.length, place.half_width, self._kerb_distance)
+        reach = np.maximum(self._kerb_distance, self._kerb_time * crowd.desired_speed)
+        near = is_near(u, w, place.length, place.half_width, reach)
         if not near.any():
             return False
         rows = np.flatnonzero(near)

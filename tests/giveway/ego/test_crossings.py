@@ -28,12 +28,13 @@ NOBODY = Crowd.empty()
 SOUTHERN_KERB, NORTHERN_KERB = -3.5, 3.5
 
 
-def crossings(zebra=True, light="", kerb_distance=1.5):
+def crossings(zebra=True, light="", kerb_distance=1.5, kerb_time=0.0):
     ends = np.array([[22.0, NORTHERN_KERB], [22.0, SOUTHERN_KERB]])
     crossing = Crossing(":j_c0_0", ends, 4.0, zebra, "tls" if light else "", 0 if light else -1)
     path = EgoPath.through([(0.0, LANE), (60.0, LANE)])
     found = crossings_on(path, SHAPE, [crossing])
-    watched = Crossings(found, length=SHAPE.length, kerb_distance=kerb_distance)
+    near = {"kerb_distance": kerb_distance, "kerb_time": kerb_time}
+    watched = Crossings(found, length=SHAPE.length, **near)
     if light:
         watched.update({"tls": light})
     return watched
@@ -143,6 +144,9 @@ def test_it_waits_until_the_last_one_has_passed_and_until_nobody_comes_too_soon(
 def test_a_wide_reach_at_the_kerb_makes_it_wait_earlier():
     assert crossings(kerb_distance=0.2).stop_at(NEAR, 4.0, walker(-4.0)) == math.inf
     assert crossings(kerb_distance=3.0).stop_at(NEAR, 4.0, walker(-6.0)) < math.inf
+    # they have 1.4 m/s and 2.5 m to go
+    assert crossings(kerb_time=1.7).stop_at(NEAR, 4.0, walker(-6.0)) == math.inf
+    assert crossings(kerb_time=1.9).stop_at(NEAR, 4.0, walker(-6.0)) < math.inf
 
 
 @pytest.mark.parametrize(
