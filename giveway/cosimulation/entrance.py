@@ -12,6 +12,7 @@ from giveway.ego.controllers import make_controller
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
+from giveway.ego.merges import Merges, places_of
 from giveway.ego.speed_profile import profile_of
 from giveway.ego.stops import Stop, Stops
 from giveway.ego.waiting import WaitingEgo
@@ -150,7 +151,23 @@ class Entrance:
             halts if stops else None,
             self._crossings(config, path, shape),
             profile,
+            self._merges(config, path, lane_path, shape, departure),
         )
+
+    def _merges(
+        self,
+        config: EgoRunConfig,
+        path: EgoPath,
+        lane_path: LanePath,
+        shape: VehicleShape,
+        departure: float,
+    ) -> Merges | None:
+        """Where the ego comes onto a lane together with others; None: nowhere."""
+        if not (config.heeds_priority and config.regulation.vehicles):
+            return None
+        found = self._session.lanes.mergings(lane_path)
+        places = places_of(path, shape.width / 2, found, departure)
+        return Merges(places, shape.length) if places else None
 
     def _crossings(
         self, config: EgoRunConfig, path: EgoPath, shape: VehicleShape

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from controller import ControllerError
 from fmus import FmuError
 from giveway.cosimulation.assembly import Parts
+from giveway.cosimulation.merging import Merging
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.standstill import Standstill
 from giveway.crowd.disturbance import disturbance_of
@@ -77,6 +78,7 @@ class Loop:
         self.endings = {}
         self.remarks = []
         self._standstill = Standstill()
+        self._merging = Merging(parts.sumo.vehicles, parts.sumo.lanes)
         self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
         self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
         self._far_background = -self._far_steps
@@ -184,8 +186,9 @@ class Loop:
             if ego.light_systems:
                 ego.see_lights(parts.sumo.light_states(ego.light_systems))
         background, yielding = self._mirror.background, parts.yielding
+        merging = self._merging.update(background, self._egos)
         if yielding is not None and (background.ids or yielding.limited):
-            yielding.update(background, self._roster.crowd, self._egos)
+            yielding.update(background, self._roster.crowd, self._egos, merging)
         self._record_background()
         self._recorder.ledger(self._roster.ledger)
 

@@ -13,6 +13,7 @@ from giveway.ego.crossings import Crossings
 from giveway.ego.foresight import CrowdForesight
 from giveway.ego.leader import NO_LEADER, Leader, given_up
 from giveway.ego.lights import Lights
+from giveway.ego.merges import Merges
 from giveway.ego.path_view import PathView
 from giveway.ego.relevance import PREDICT_ALL, Relevance
 from giveway.ego.safety import Guard
@@ -52,6 +53,7 @@ class Ego:
         stops: that it serves; None: none.
         crossings: on its path, at which it gives way; None: at none.
         profile: its speed where nothing is in its way; None: the controller's own.
+        merges: where it comes onto a lane together with others; None: nowhere.
     """
 
     def __init__(
@@ -66,6 +68,7 @@ class Ego:
         stops: Stops | None = None,
         crossings: Crossings | None = None,
         profile: SpeedProfile | None = None,
+        merges: Merges | None = None,
     ) -> None:
         config = waiting.config
         self._controller, self._predictor = waiting.controller, waiting.predictor
@@ -80,7 +83,9 @@ class Ego:
         self.light_systems = lights.systems
         if crossings is not None:
             self.light_systems |= crossings.systems
+        self.merges = merges
         self._profile = profile
+        self._time_step = time_step
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal = goal
         self.vehicle = waiting.vehicle
@@ -188,15 +193,19 @@ class Ego:
             else:
                 predicted = predictor.predict(pedestrians, horizon, surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
-        leader = NO_LEADER
+        leader, waits = NO_LEADER, math.inf
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
+            if self.merges is not None:
+                before, waits = self.merges.look(front, speed)
+                leader = min(leader, before)
+                vehicles = np.minimum(vehicles, before.station + before.speed * self._times)
             tolerated = 0.0
             if self._plans:
                 kept = self.config.regulation.safe_distance
                 tolerated = given_up(leader, vehicles, front, speed, kept, self._origin)
             ahead = np.minimum(ahead, vehicles + tolerated)
-        stop, stops_for = self._place_to_stop(crowd, leader)
+        stop, stops_for = min(self._place_to_stop(crowd, leader), (waits, "yield"))
         if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
             allowed = stop + _BEYOND + self._origin
             ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
@@ -321,6 +330,8 @@ class Ego:
         self.vehicle.step(self._force)
         if self.stops is not None:
             self.stops.pass_time(self.front, self.vehicle.speed)
+        if self.merges is not None:
+            self.merges.pass_time(self._time_step)
 
     def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
         """The row of this instant for the tables."""

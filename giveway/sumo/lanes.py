@@ -13,6 +13,7 @@ import numpy as np
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.sumo.crossings import Crossing, crossings
+from giveway.sumo.merging import Merging, mergings
 
 CHANGE_LENGTH = 30.0  # [m] over which a vehicle changes to the next lane
 _WALKINGAREA = re.compile(r"^:.*_w\d+_0$")  # SUMO's names; their shape is the outline itself
@@ -50,6 +51,7 @@ class LanePath:
     first: str  # the lane that it begins on
     edges: tuple[float, ...]  # station [m] at which each edge of the route begins
     limits: tuple[SpeedLimit, ...]  # of each lane, in order; the first holds from the beginning
+    lanes: tuple[tuple[str, str], ...] = ()  # on which it enters and leaves each edge
 
 
 class Lanes:
@@ -123,8 +125,17 @@ class Lanes:
                 driven += _length(onwards)
         first_lane = f"{edges[0]}_{pairs[0][0]}"
         return LanePath(
-            np.concatenate(points), tuple(lights), first_lane, tuple(begins), tuple(limits)
+            np.concatenate(points),
+            tuple(lights),
+            first_lane,
+            tuple(begins),
+            tuple(limits),
+            tuple((f"{e}_{i}", f"{e}_{j}") for e, (i, j) in zip(edges, pairs, strict=True)),
         )
+
+    def mergings(self, lane_path: LanePath) -> tuple[Merging, ...]:
+        """Where others come onto the lanes of a path, in its order."""
+        return mergings(self._sumo, lane_path.lanes, lane_path.edges, self.shape)
 
     @cached_property
     def crossings(self) -> tuple[Crossing, ...]:

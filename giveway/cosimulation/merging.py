@@ -1,0 +1,86 @@
+"""Who merges with an ego: the vehicles whose lanes lead onto one that the ego comes to as well."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from giveway.cosimulation.lane_paths import LanePaths
+from giveway.ego.ego import Ego
+from giveway.ego.merges import Behind, Place, Rival
+from giveway.sumo.background import BackgroundVehicles
+from giveway.sumo.lanes import Lanes
+from giveway.sumo.vehicles import SumoVehicles
+
+_NEAR = 150.0  # [m] from an ego, where others are looked at
+
+
+class Merging:
+    """Finds those who merge with egos, once after each SUMO step.
+
+    Args:
+        vehicles: of the running simulation.
+        lanes: of its network.
+    """
+
+    def __init__(self, vehicles: SumoVehicles, lanes: Lanes) -> None:
+        self._vehicles = vehicles
+        self._lanes = lanes
+        self._lane_paths = LanePaths(vehicles)
+
+    def update(
+        self, background: BackgroundVehicles, egos: Sequence[Ego]
+    ) -> list[tuple[Ego, dict[str, Behind]]]:
+        """Let each ego take note of those it merges with; who keeps behind which ego.
+
+        Args:
+            background: the background vehicles now.
+            egos: on the road now.
+        """
+        found = []
+        for ego in egos:
+            places = () if ego.merges is None else ego.merges.in_sight(ego.front)
+            if ego.merges is None or not places:
+                continue
+            others = [other for other in egos if other is not ego]
+            names, speeds, lengths = self._near(background, ego, others)
+            rivals = self._rivals(places, names, speeds, lengths)
+            behind = ego.merges.see(rivals, ego.front, ego.vehicle.speed)
+            found.append((ego, behind))
+        return found
+
+    @staticmethod
+    def _near(
+        background: BackgroundVehicles, ego: Ego, others: Sequence[Ego]
+    ) -> tuple[list[str], list[float], list[float]]:
+        """Ids, speeds [m/s] and lengths [m] of those near an ego."""
+        x, y, _ = ego.pose
+        near = np.flatnonzero(np.hypot(background.x - x, background.y - y) <= _NEAR)
+        names = [background.ids[i] for i in near] + [other.id for other in others]
+        speeds = [*background.speed[near].tolist(), *(other.vehicle.speed for other in others)]
+        lengths = [*background.length[near].tolist(), *(other.shape.length for other in others)]
+        return names, speeds, lengths
+
+    def _rivals(
+        self,
+        places: Sequence[Place],
+        names: Sequence[str],
+        speeds: Sequence[float],
+        lengths: Sequence[float],
+    ) -> dict[Place, dict[str, Rival]]:
+        """Those whose lanes lead onto the lane that begins at each place."""
+        rivals: dict[Place, dict[str, Rival]] = {place: {} for place in places}
+        numbers, positions = self._lane_paths.of(names, [_NEAR] * len(names))
+        self._lane_paths.forget(names)
+        for number, at, *rival in zip(numbers, positions, names, speeds, lengths, strict=True):
+            if number < 0:
+                continue
+            lanes = self._lane_paths.lanes[number]
+            name, speed, length = rival
+            for place in places:
+                k = lanes.index(place.lane) if place.lane in lanes else -1
+                if k < 0 or (place.over and (k == 0 or lanes[k - 1] not in place.over)):
+                    continue
+                position = self._lanes.length(lanes[0]) * at / self._vehicles.lane_length(lanes[0])
+                before = sum(map(self._lanes.length, lanes[:k]))
+                rivals[place][name] = Rival(position - before, speed, length)
+        return rivals
