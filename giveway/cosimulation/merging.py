@@ -29,8 +29,8 @@ class Merging:
 
     def update(
         self, background: BackgroundVehicles, egos: Sequence[Ego]
-    ) -> list[tuple[Ego, dict[str, Behind]]]:
-        """Let each ego take note of those it merges with; who keeps behind which ego.
+    ) -> list[dict[str, Behind]]:
+        """Let each ego take note of those it merges with; who keeps behind each.
 
         Args:
             background: the background vehicles now.
@@ -44,8 +44,7 @@ class Merging:
             others = [other for other in egos if other is not ego]
             names, speeds, lengths = self._near(background, ego, others)
             rivals = self._rivals(places, names, speeds, lengths)
-            behind = ego.merges.see(rivals, ego.front, ego.vehicle.speed)
-            found.append((ego, behind))
+            found.append(ego.merges.see(rivals, ego.front, ego.vehicle.speed))
         return found
 
     @staticmethod

@@ -19,7 +19,7 @@ import numpy as np
 from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.cosimulation.lane_paths import LanePaths, gaps_ahead, sort_pedestrians
 from giveway.ego.ego import Ego
-from giveway.ego.merges import Behind
+from giveway.ego.merges import ASKED, Behind
 from giveway.geometry.kernel import Array
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.sumo.background import BackgroundVehicles
@@ -30,7 +30,6 @@ _LOOK_AHEAD = 1.0  # [s] for which pedestrians are expected to keep their veloci
 _REACTION = 1.0  # [s] reaction time of SUMO's default car-following model
 _BESIDE_EGO = 0.1  # [m] that vehicles keep beside an ego at least
 _BEHIND_EGO = 0.5  # [m] at which they stand behind one
-_FIRM = 2.5  # [m/s^2] at most to let an ego merge that is not in the way yet
 _STANDING = 0.2  # [m/s]
 _PULLING_AWAY = 2.0  # [m/s]
 _APART = 0.5  # [m] at most between the points of an ego's outline that are looked at
@@ -71,7 +70,7 @@ class Yielding:
         background: BackgroundVehicles,
         crowd: Crowd,
         egos: Sequence[Ego] = (),
-        merging: Sequence[tuple[Ego, Mapping[str, Behind]]] = (),
+        merging: Sequence[Mapping[str, Behind]] = (),
     ) -> None:
         """Once after each SUMO step: limit vehicles with somebody ahead, release the others.
 
@@ -79,7 +78,7 @@ class Yielding:
             background: the background vehicles now.
             crowd: the pedestrians now.
             egos: on the road now.
-            merging: who keeps behind which ego where they come onto one lane.
+            merging: who keeps behind each ego that they come onto one lane with.
         """
         limits = self._limits(background, crowd) if background.ids and len(crowd) else {}
         if background.ids and egos:
@@ -205,20 +204,20 @@ class Yielding:
     def _merging(
         self,
         background: BackgroundVehicles,
-        merging: Sequence[tuple[Ego, Mapping[str, Behind]]],
+        merging: Sequence[Mapping[str, Behind]],
     ) -> dict[str, float]:
         """The speed limit [m/s] of each vehicle that lets an ego merge before it."""
         limits: dict[str, float] = {}
         rows = {name: i for i, name in enumerate(background.ids)}
-        for ego, others in merging:
+        for others in merging:
             for name, behind in others.items():
                 if name not in rows:
                     continue  # another ego
                 speed = float(background.speed[rows[name]])
                 b = self._vehicles.deceleration(name)
-                firm = b if behind.urgent else min(b, _FIRM)
+                firm = b if behind.urgent else min(b, ASKED)
                 safe = max(
-                    _safe_speed(behind.room, ego.vehicle.speed, firm, self._reaction),
+                    _safe_speed(behind.room, behind.speed, firm, self._reaction),
                     _safe_speed(behind.to_place - _BEHIND_EGO, 0.0, firm, self._reaction),
                     speed - firm * self._step_length,
                 )

@@ -11,7 +11,7 @@ from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.crossings import Crossings
 from giveway.ego.foresight import CrowdForesight
-from giveway.ego.leader import NO_LEADER, Leader, given_up
+from giveway.ego.leader import FIRM, NO_LEADER, Leader, given_up
 from giveway.ego.lights import Lights
 from giveway.ego.merges import Merges
 from giveway.ego.path_view import PathView
@@ -112,10 +112,13 @@ class Ego:
         self._eases_off = False  # a brake, or drives off
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
-        # A planning controller follows with a headway, and plans no hard stop for a little less of
-        # the distance to a vehicle that it keeps on the average.
-        self._plans = plans = waiting.controller.foresees
-        self._lag = config.regulation.comfortable_deceleration * _REACTION if plans else 0.0
+        # Ours follow with a headway. A planning controller plans no hard stop for a little less of
+        # the distance to a vehicle that it keeps on the average; the tuned PID, which brakes for
+        # a distance alone, is shown how far it is to where the vehicle in front could stop.
+        self._plans = waiting.controller.foresees
+        follows = self._plans or config.controller == "pid-tuned"
+        self._lag = config.regulation.comfortable_deceleration * _REACTION if follows else 0.0
+        self._firmly = 2.0 * FIRM if follows and not self._plans else math.inf
         self._heed_lights = config.regulation.traffic_lights and bool(lights.systems)
 
     def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
@@ -273,7 +276,7 @@ class Ego:
 
     def _observation(self, time: float, seen: Seen) -> Observation:
         """What the controller is shown."""
-        front, vehicle = self.front, self.vehicle
+        front, vehicle, leader = self.front, self.vehicle, seen.leader
         safe_distance = self.config.regulation.safe_distance
         origin = front + self._origin
         stop = seen.stop + self._origin + safe_distance
@@ -286,7 +289,7 @@ class Ego:
         return Observation(  # by position: a third of the time that keywords take
             origin,
             vehicle.speed,
-            min(seen.pedestrian, seen.leader.station, stop) - origin,
+            min(seen.pedestrian, leader.station + leader.speed**2 / self._firmly, stop) - origin,
             seen.ahead,
             limit,
             safe_distance,

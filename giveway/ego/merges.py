@@ -22,11 +22,12 @@ _SAMPLE = 0.5  # [m] between the points of the path that are looked at
 _OTHERS = 1.0  # [m] half the width of those who come along the other lane
 _BESIDE = 0.2  # [m] between two vehicles on different lanes at least
 _SIGHT = 80.0  # [m] before the place, from which on the ego looks for others
-_BEFORE = 0.5  # [m] before the place that the ego waits
+_BEFORE = 1.0  # [m] before the place that the ego waits
 _GAP = 1.0  # [m] between two vehicles where the ways are one
 _OPENING = 0.25  # [m] of that which may still be missing, per metre before the place
 _HARDEST = 3.0  # [m/s^2] that the ego brakes for others
-_ASKED = 2.0  # [m/s^2] that it may ask of them
+ASKED = 2.0  # [m/s^2] that it may ask of them
+_KEPT = 3.0  # [m/s^2] that somebody who is braking for it already may have to
 _REACTION = 0.5  # [s] in which they do not brake yet
 _SLOWEST = 1.0  # [m/s] of an ego that is on its way
 _STANDING = 0.2  # [m/s]
@@ -54,6 +55,7 @@ class Place(NamedTuple):
 class Behind(NamedTuple):
     """What a vehicle that keeps behind the ego has to heed."""
 
+    speed: float  # [m/s] at which the room moves on
     room: float  # [m] that it may still come closer to the ego; negative: it is too close
     to_place: float  # [m] to where it would be in the ego's way
     urgent: bool  # whether the ego is in its way already
@@ -117,6 +119,7 @@ class Merges:
         self._places = list(places)
         self._length = length
         self._first: list[tuple[Place, Rival]] = []  # who goes before the ego
+        self._behind: set[str] = set()  # who does not
 
     def in_sight(self, front: float) -> tuple[Place, ...]:
         """The places that the ego comes to; those behind it are forgotten.
@@ -142,18 +145,40 @@ class Merges:
         behind: dict[str, Behind] = {}
         for place, others in rivals.items():
             for name, rival in others.items():
-                if not _goes_first(place, self._length, front, speed, rival):
+                asked = _KEPT if name in self._behind else ASKED
+                if not self._goes_first(place, front, speed, rival, asked):
                     self._first.append((place, rival))
                     continue
                 ahead = place.entry - front
-                room = self._room(place, front, rival) + _OPENING * max(0.0, ahead)
-                here = Behind(room, _to_place(place, rival), ahead <= 0.0)
+                opening = _OPENING if ahead > 0.0 else 0.0
+                room = self._room(place, front, rival) + opening * ahead
+                moves = (1.0 - opening) * speed
+                here = Behind(moves, room, _to_place(place, rival), ahead <= 0.0)
                 if name not in behind or here.room < behind[name].room:
                     behind[name] = here
+        self._behind = set(behind)
         return behind
 
     def _room(self, place: Place, front: float, rival: Rival) -> float:
         return front - place.origin - self._length - rival.position - _GAP
+
+    def _goes_first(
+        self, place: Place, front: float, speed: float, rival: Rival, asked: float
+    ) -> bool:
+        """Whether the ego goes before another vehicle, which may have to brake as ``asked``."""
+        to_go, its_way = place.entry - front, _to_place(place, rival)
+        ahead = rival.position - (front - place.origin)
+        if to_go <= 0.0 or its_way <= 0.0:
+            return ahead < 0.0
+        time = to_go / max(speed, _SLOWEST)
+        if ahead >= 0.0:
+            return its_way > (time + _LATER) * max(rival.speed, _STANDING)
+        room = self._room(place, front, rival) + _OPENING * to_go
+        closing = max(0.0, rival.speed - (1.0 - _OPENING) * speed)
+        if room > closing * _REACTION:
+            return closing * closing <= 2.0 * asked * (room - closing * _REACTION)
+        shortage = closing * time - room
+        return 2.0 * shortage <= asked * time * time
 
     def look(self, front: float, speed: float) -> tuple[Leader, float]:
         """Whom the ego follows already, and the station [m] at which it waits for the others.
@@ -169,9 +194,10 @@ class Merges:
                 continue  # whoever is ahead is in the ego's corridor
             rear = place.origin + rival.position - rival.length + _OPENING * to_go
             if rear >= front + _GAP:
-                leader = min(leader, Leader(rear, rival.speed))
-            elif speed * speed <= 2.0 * _HARDEST * max(to_go - _BEFORE, 0.0):
-                stop = min(stop, place.entry - _BEFORE)
+                # as the place comes closer, less of the gap may be missing
+                leader = min(leader, Leader(rear, max(0.0, rival.speed - _OPENING * speed)))
+            elif speed * speed <= 2.0 * _HARDEST * to_go:
+                stop = min(stop, max(place.entry - _BEFORE, min(front, place.entry)))
         return leader, stop
 
     def pass_time(self, time_step: float) -> None:
@@ -185,19 +211,3 @@ class Merges:
 def _to_place(place: Place, rival: Rival) -> float:
     """How far [m] a vehicle is from where it would be in the ego's way."""
     return place.entry - place.origin - rival.position
-
-
-def _goes_first(place: Place, length: float, front: float, speed: float, rival: Rival) -> bool:
-    """Whether the ego goes before another vehicle."""
-    to_go, its_way = place.entry - front, _to_place(place, rival)
-    ahead = rival.position - (front - place.origin)
-    if to_go <= 0.0 or its_way <= 0.0:
-        return ahead < 0.0
-    time = to_go / max(speed, _SLOWEST)
-    if ahead >= 0.0:
-        return its_way > (time + _LATER) * max(rival.speed, _STANDING)
-    room = -ahead - length - _GAP + _OPENING * to_go
-    closing = max(0.0, rival.speed - speed)
-    if room > closing * _REACTION:
-        return closing * closing <= 2.0 * _ASKED * (room - closing * _REACTION)
-    return 2.0 * (closing * time - room) <= _ASKED * time * time
