@@ -7,14 +7,13 @@ the way of an ego on the next one, until SUMO's next step puts it back.
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.cosimulation.lane_paths import LanePaths
+from giveway.cosimulation.lane_paths import Indices, LanePathPool, LanePaths
 from giveway.ego.corridor import fill_poses
-from giveway.geometry.kernel import Array
+from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.path import EgoPath
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.vehicles import SumoVehicles
 
-SHORT = 0.15  # [s] of SUMO's step in which no car turns: at 9 m/s^2 sideways it is 0.1 m
 _STRAIGHT = 0.1  # [m] beside the straight line
 _SOON = 1.0  # [s] after SUMO's next step: until then others are taken to go straight on
 
@@ -46,6 +45,8 @@ class Bends:
             near: which of them have a row, in its order.
         """
         self._rows.clear()
+        if not len(near):
+            return
         reach = background.speed * self._soon
         moving = [row for row, i in enumerate(near) if reach[i] > _STRAIGHT]
         chosen = near[moving]
@@ -53,22 +54,22 @@ class Bends:
         known = background.speed[chosen] * self._times[-1]
         numbers, positions = self._lane_paths.of(names, known.tolist())
         self._lane_paths.forget(background.ids)
-        poses = np.empty((len(self._times), len(moving), 4))
-        for row, i, number, position in zip(moving, chosen, numbers, positions, strict=True):
-            if number < 0:
-                continue
-            path = self._path(background, int(i), self._lane_paths.onwards(number, position))
+        aside = sideways(
+            background.heading[chosen], positions, numbers, self._lane_paths.pool, reach[chosen]
+        )
+        turning = np.flatnonzero(np.abs(aside) > _STRAIGHT)
+        poses = np.empty((len(self._times), len(turning), 4))
+        for k in turning:
+            i = int(chosen[k])
+            onwards = self._lane_paths.onwards(numbers[k], positions[k])
+            path = self._path(background, i, onwards)
             length, speed = float(background.length[i]), float(background.speed[i])
-            aside, soon = path.headings[0], path.pose(length + reach[i])
-            off = np.sin(aside) * (soon.x - background.x[i])
-            off -= np.cos(aside) * (soon.y - background.y[i])
-            if abs(off) > _STRAIGHT:
-                road = path.vertices, path.stations, path.headings
-                driven: Array = speed * self._times
-                speeds = np.full(len(driven), speed)
-                fill_poses(*road, length, driven, speeds, length, len(self._rows), poses)
-                self._rows.append(row)
-        self._poses = poses[:, : len(self._rows)]
+            road = path.vertices, path.stations, path.headings
+            driven: Array = speed * self._times
+            speeds = np.full(len(driven), speed)
+            fill_poses(*road, length, driven, speeds, length, len(self._rows), poses)
+            self._rows.append(moving[k])
+        self._poses = poses
 
     @staticmethod
     def _path(background: BackgroundVehicles, i: int, onwards: Array) -> EgoPath:
@@ -89,3 +90,46 @@ class Bends:
         if self._rows:
             rows = first + np.array(self._rows)
             poses[:, rows, :4] = self._poses[step : step + len(poses)]
+
+
+@kernel
+def sideways(
+    heading: Array, position: Array, number: Indices, pool: LanePathPool, reach: Array
+) -> Array:
+    """(m,) [m] how far off the straight line lanes lead vehicles; 0 off any lane.
+
+    Args:
+        heading: (m,) of each [rad].
+        position: (m,) [m] on its first lane, in SUMO's metres.
+        number: (m,) of its lane path; -1: none.
+        pool: of the lane paths.
+        reach: (m,) [m] that it drives.
+    """
+    points, along, start, first, nominal = pool
+    off = np.zeros(len(number))
+    for i in range(len(number)):
+        w = number[i]
+        if w < 0:
+            continue
+        begin, end = start[w], start[w + 1]
+        driven = position[i] / nominal[w] * along[begin + first[w] - 1]
+        k = begin
+        while k < begin + first[w] - 1 and along[k + 1] <= driven:
+            k += 1
+        x_0, y_0 = points[k, 0], points[k, 1]
+        if k + 1 < begin + first[w]:
+            share = (driven - along[k]) / max(along[k + 1] - along[k], 1e-9)
+            x_0 += share * (points[k + 1, 0] - x_0)
+            y_0 += share * (points[k + 1, 1] - y_0)
+        x, y, left = x_0, y_0, reach[i]
+        d_x, d_y = np.cos(heading[i]), np.sin(heading[i])
+        while left > 0.0 and k + 1 < end:
+            k += 1
+            step = np.hypot(points[k, 0] - x, points[k, 1] - y)
+            if step > 0.0:
+                d_x, d_y = (points[k, 0] - x) / step, (points[k, 1] - y) / step
+            go = min(step, left)
+            x, y, left = x + go * d_x, y + go * d_y, left - go
+        x, y = x + left * d_x, y + left * d_y  # beyond its end, straight on
+        off[i] = np.sin(heading[i]) * (x - x_0) - np.cos(heading[i]) * (y - y_0)
+    return off

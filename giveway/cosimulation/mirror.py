@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.cosimulation.bends import SHORT, Bends
+from giveway.cosimulation.bends import Bends
 from giveway.crowd.roster import Roster
 from giveway.ego.ego import Ego
 from giveway.errors import CrowdError, VehicleError
@@ -18,6 +18,7 @@ from pedestrian_model import Vehicles
 
 _INFLUENCE_RANGE = 10.0  # [m] from a vehicle's contour: the influence is exp(-26) of the strongest
 _NOSE = 1.5  # [s] the contour's nose is no longer than this times the speed
+_SHORT = 0.15  # [s] of SUMO's step in which no car turns: at 9 m/s^2 sideways it is 0.1 m
 _NONE = np.empty(0, dtype=np.int64)
 _STANDING = 1e-6  # [m/s] below this speed a pedestrian keeps its last angle
 
@@ -51,9 +52,8 @@ class Mirror:
         self._substeps = substeps
         self._horizon = horizon
         self._span = (substeps + horizon) * time_step  # [s]
-        self._bends = None
-        if substeps * time_step > SHORT:
-            self._bends = Bends(session.vehicles, time_step, substeps, horizon)
+        self._bends = Bends(session.vehicles, time_step, substeps, horizon)
+        self._long = substeps * time_step > _SHORT
         self._since = 0  # control steps since SUMO's
         self._egos = 0
         self._driven: list[Ego] = []
@@ -102,9 +102,8 @@ class Mirror:
             now[:, 6] = background.width[near]
             extrapolate(self.poses, self._egos, self._time_step)
         self._since = 0
-        if self._bends is not None:
-            self._bends.read(background, near)
-            self._bends.fill(self.poses, self._egos, 0)
+        self._bends.read(background, near if self._long or egos else _NONE)
+        self._bends.fill(self.poses, self._egos, 0)
 
     def _require_finite(self, vehicles: BackgroundVehicles) -> None:
         bad = ~np.isfinite(vehicles.x + vehicles.y + vehicles.speed)
@@ -131,8 +130,7 @@ class Mirror:
         if self.poses.shape[1] > self._egos:
             carry_on(self.poses, self._egos, self._time_step)
         self._since += 1
-        if self._bends is not None:
-            self._bends.fill(self.poses, self._egos, self._since)
+        self._bends.fill(self.poses, self._egos, self._since)
 
     # --- to SUMO ------------------------------------------------------------------------------
 
