@@ -218,7 +218,7 @@ class Yielding:
                 firm = b if behind.urgent else min(b, ASKED)
                 safe = max(
                     _safe_speed(behind.room, behind.speed, firm, self._reaction),
-                    _safe_speed(behind.to_place - _BEHIND_EGO, 0.0, firm, self._reaction),
+                    _safe_speed(behind.to_wait, 0.0, firm, self._reaction),
                     speed - firm * self._step_length,
                 )
                 if safe < speed + b * self._step_length:

@@ -19,10 +19,11 @@ from giveway.geometry.path import EgoPath
 from giveway.sumo.merging import Merging
 
 _SAMPLE = 0.5  # [m] between the points of the path that are looked at
-_OTHERS = 1.0  # [m] half the width of those who come along the other lane
+_OTHERS = 1.25  # [m] half the width of those who come along the other lane, trucks included
 _BESIDE = 0.2  # [m] between two vehicles on different lanes at least
 _SIGHT = 80.0  # [m] before the place, from which on the ego looks for others
-_BEFORE = 1.0  # [m] before the place that the ego waits
+_BEFORE = 1.0  # [m] before the place that a short vehicle waits for another one
+_SHORT, _SWEPT = 4.0, 0.5  # [m] of length, beyond which this share of it cuts the corner
 _GAP = 1.0  # [m] between two vehicles where the ways are one
 _OPENING = 0.25  # [m] of that which may still be missing, per metre before the place
 _HARDEST = 3.0  # [m/s^2] that the ego brakes for others
@@ -31,7 +32,7 @@ _KEPT = 3.0  # [m/s^2] that somebody who is braking for it already may have to
 _REACTION = 0.5  # [s] in which they do not brake yet
 _SLOWEST = 1.0  # [m/s] of an ego that is on its way
 _STANDING = 0.2  # [m/s]
-_LATER = 2.0  # [s] after the ego, somebody ahead of it who is slower comes to the place
+_LATER = 2.0  # [s] after the ego, somebody who waits comes to the place
 
 
 class Rival(NamedTuple):
@@ -57,7 +58,7 @@ class Behind(NamedTuple):
 
     speed: float  # [m/s] at which the room moves on
     room: float  # [m] that it may still come closer to the ego; negative: it is too close
-    to_place: float  # [m] to where it would be in the ego's way
+    to_wait: float  # [m] to where it is not in the ego's way yet
     urgent: bool  # whether the ego is in its way already
 
 
@@ -153,7 +154,8 @@ class Merges:
                 opening = _OPENING if ahead > 0.0 else 0.0
                 room = self._room(place, front, rival) + opening * ahead
                 moves = (1.0 - opening) * speed
-                here = Behind(moves, room, _to_place(place, rival), ahead <= 0.0)
+                to_wait = _to_place(place, rival) - _before(self._length)
+                here = Behind(moves, room, to_wait, ahead <= 0.0)
                 if name not in behind or here.room < behind[name].room:
                     behind[name] = here
         self._behind = set(behind)
@@ -171,8 +173,9 @@ class Merges:
         if to_go <= 0.0 or its_way <= 0.0:
             return ahead < 0.0
         time = to_go / max(speed, _SLOWEST)
-        if ahead >= 0.0:
-            return its_way > (time + _LATER) * max(rival.speed, _STANDING)
+        later = its_way > (time + _LATER) * max(rival.speed, _STANDING)
+        if later or ahead >= 0.0:
+            return later
         room = self._room(place, front, rival) + _OPENING * to_go
         closing = max(0.0, rival.speed - (1.0 - _OPENING) * speed)
         if room > closing * _REACTION:
@@ -197,7 +200,8 @@ class Merges:
                 # as the place comes closer, less of the gap may be missing
                 leader = min(leader, Leader(rear, max(0.0, rival.speed - _OPENING * speed)))
             elif speed * speed <= 2.0 * _HARDEST * to_go:
-                stop = min(stop, max(place.entry - _BEFORE, min(front, place.entry)))
+                place_to_wait = place.entry - _before(rival.length)
+                stop = min(stop, max(place_to_wait, min(front, place.entry)))
         return leader, stop
 
     def pass_time(self, time_step: float) -> None:
@@ -206,6 +210,11 @@ class Merges:
             (place, rival._replace(position=rival.position + rival.speed * time_step))
             for place, rival in self._first
         ]
+
+
+def _before(length: float) -> float:
+    """How far [m] before the place one waits for a vehicle of this length to go first."""
+    return _BEFORE + _SWEPT * max(0.0, length - _SHORT)
 
 
 def _to_place(place: Place, rival: Rival) -> float:
