@@ -176,6 +176,9 @@ class Merges:
         later = its_way > (time + _LATER) * max(rival.speed, _STANDING)
         if later or ahead >= 0.0:
             return later
+        to_stop = its_way - _before(self._length) - rival.speed * _REACTION
+        if rival.speed * rival.speed <= 2.0 * asked * max(to_stop, 0.0):
+            return True
         room = self._room(place, front, rival) + _OPENING * to_go
         closing = max(0.0, rival.speed - (1.0 - _OPENING) * speed)
         if room > closing * _REACTION:
