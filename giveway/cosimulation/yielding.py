@@ -19,7 +19,7 @@ import numpy as np
 from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.cosimulation.lane_paths import LanePaths, gaps_ahead, sort_pedestrians
 from giveway.ego.ego import Ego
-from giveway.ego.merges import ASKED, Behind
+from giveway.ego.merges import Behind
 from giveway.geometry.kernel import Array
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.sumo.background import BackgroundVehicles
@@ -215,7 +215,7 @@ class Yielding:
                     continue  # another ego
                 speed = float(background.speed[rows[name]])
                 b = self._vehicles.deceleration(name)
-                firm = b if behind.urgent else min(b, ASKED)
+                firm = min(b, behind.braking)
                 safe = max(
                     _safe_speed(behind.room, behind.speed, firm, self._reaction),
                     _safe_speed(behind.to_wait, 0.0, firm, self._reaction),

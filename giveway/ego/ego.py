@@ -334,7 +334,7 @@ class Ego:
         if self.stops is not None:
             self.stops.pass_time(self.front, self.vehicle.speed)
         if self.merges is not None:
-            self.merges.pass_time(self._time_step)
+            self.merges.pass_time(self._time_step, self.vehicle.speed)
 
     def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
         """The row of this instant for the tables."""

@@ -27,8 +27,9 @@ _SHORT, _SWEPT = 4.0, 0.5  # [m] of length, beyond which this share of it cuts t
 _GAP = 1.0  # [m] between two vehicles where the ways are one
 _OPENING = 0.25  # [m] of that which may still be missing, per metre before the place
 _HARDEST = 3.0  # [m/s^2] that the ego brakes for others
-ASKED = 2.0  # [m/s^2] that it may ask of them
-_KEPT = 3.0  # [m/s^2] that somebody who is braking for it already may have to
+_ASKED = 2.0  # [m/s^2] that it may ask of them
+_FIRM = 3.0  # [m/s^2] for an ego that has waited, or of somebody who brakes for it already
+_PATIENCE = 5.0  # [s] that it waits before
 _REACTION = 0.5  # [s] in which they do not brake yet
 _SLOWEST = 1.0  # [m/s] of an ego that is on its way
 _STANDING = 0.2  # [m/s]
@@ -59,7 +60,7 @@ class Behind(NamedTuple):
     speed: float  # [m/s] at which the room moves on
     room: float  # [m] that it may still come closer to the ego; negative: it is too close
     to_wait: float  # [m] to where it is not in the ego's way yet
-    urgent: bool  # whether the ego is in its way already
+    braking: float  # [m/s^2] at most; inf: the ego is in its way already
 
 
 def places_of(
@@ -121,6 +122,7 @@ class Merges:
         self._length = length
         self._first: list[tuple[Place, Rival]] = []  # who goes before the ego
         self._behind: set[str] = set()  # who does not
+        self._waited = 0.0  # [s]
 
     def in_sight(self, front: float) -> tuple[Place, ...]:
         """The places that the ego comes to; those behind it are forgotten.
@@ -143,10 +145,11 @@ class Merges:
             speed: of the ego [m/s].
         """
         self._first.clear()
+        asks = _FIRM if self._waited > _PATIENCE else _ASKED
         behind: dict[str, Behind] = {}
         for place, others in rivals.items():
             for name, rival in others.items():
-                asked = _KEPT if name in self._behind else ASKED
+                asked = _FIRM if name in self._behind else asks
                 if not self._goes_first(place, front, speed, rival, asked):
                     self._first.append((place, rival))
                     continue
@@ -155,7 +158,7 @@ class Merges:
                 room = self._room(place, front, rival) + opening * ahead
                 moves = (1.0 - opening) * speed
                 to_wait = _to_place(place, rival) - _before(self._length)
-                here = Behind(moves, room, to_wait, ahead <= 0.0)
+                here = Behind(moves, room, to_wait, asks if ahead > 0.0 else math.inf)
                 if name not in behind or here.room < behind[name].room:
                     behind[name] = here
         self._behind = set(behind)
@@ -207,8 +210,17 @@ class Merges:
                 stop = min(stop, max(place_to_wait, min(front, place.entry)))
         return leader, stop
 
-    def pass_time(self, time_step: float) -> None:
-        """Let the others drive on while SUMO does not step."""
+    def pass_time(self, time_step: float, speed: float) -> None:
+        """Let the others drive on while SUMO does not step.
+
+        Args:
+            time_step: [s].
+            speed: of the ego [m/s].
+        """
+        if speed > _SLOWEST or not self._first:
+            self._waited = 0.0
+        elif speed < _STANDING:
+            self._waited += time_step
         self._first = [
             (place, rival._replace(position=rival.position + rival.speed * time_step))
             for place, rival in self._first
