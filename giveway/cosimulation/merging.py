@@ -41,45 +41,42 @@ class Merging:
             places = () if ego.merges is None else ego.merges.in_sight(ego.front)
             if ego.merges is None or not places:
                 continue
-            others = [other for other in egos if other is not ego]
-            names, speeds, lengths = self._near(background, ego, others)
-            rivals = self._rivals(places, names, speeds, lengths)
+            near = self._near(background, ego, [other for other in egos if other is not ego])
+            rivals = self._rivals(places, near)
             found.append(ego.merges.see(rivals, ego.front, ego.vehicle.speed))
         return found
 
     @staticmethod
     def _near(
         background: BackgroundVehicles, ego: Ego, others: Sequence[Ego]
-    ) -> tuple[list[str], list[float], list[float]]:
-        """Ids, speeds [m/s] and lengths [m] of those near an ego."""
+    ) -> list[tuple[str, float, float]]:
+        """Id, speed [m/s] and length [m] of each vehicle near an ego."""
         x, y, _ = ego.pose
-        near = np.flatnonzero(np.hypot(background.x - x, background.y - y) <= _NEAR)
-        names = [background.ids[i] for i in near] + [other.id for other in others]
-        speeds = [*background.speed[near].tolist(), *(other.vehicle.speed for other in others)]
-        lengths = [*background.length[near].tolist(), *(other.shape.length for other in others)]
-        return names, speeds, lengths
+        rows = np.flatnonzero(np.hypot(background.x - x, background.y - y) <= _NEAR)
+        near = [
+            (background.ids[i], float(background.speed[i]), float(background.length[i]))
+            for i in rows
+        ]
+        return near + [(other.id, other.vehicle.speed, other.shape.length) for other in others]
 
     def _rivals(
-        self,
-        places: Sequence[Place],
-        names: Sequence[str],
-        speeds: Sequence[float],
-        lengths: Sequence[float],
+        self, places: Sequence[Place], near: Sequence[tuple[str, float, float]]
     ) -> dict[Place, dict[str, Rival]]:
         """Those whose lanes lead onto the lane that begins at each place."""
         rivals: dict[Place, dict[str, Rival]] = {place: {} for place in places}
+        names = [name for name, _, _ in near]
         numbers, positions = self._lane_paths.of(names, [_NEAR] * len(names))
         self._lane_paths.forget(names)
-        for number, at, *rival in zip(numbers, positions, names, speeds, lengths, strict=True):
+        for (name, speed, length), number, at in zip(near, numbers, positions, strict=True):
             if number < 0:
                 continue
             lanes = self._lane_paths.lanes[number]
-            name, speed, length = rival
+            share = float(at) / self._vehicles.lane_length(lanes[0])
             for place in places:
                 k = lanes.index(place.lane) if place.lane in lanes else -1
                 if k < 0 or (place.over and (k == 0 or lanes[k - 1] not in place.over)):
                     continue
-                position = self._lanes.length(lanes[0]) * at / self._vehicles.lane_length(lanes[0])
                 before = sum(map(self._lanes.length, lanes[:k]))
-                rivals[place][name] = Rival(position - before, speed, length)
+                position = share * self._lanes.length(lanes[0]) - before
+                rivals[place][name] = Rival(position, speed, length)
         return rivals

@@ -7,6 +7,7 @@ road traffic regulations, StVO 2013, section 7(4)). Who is behind but so fast th
 firmly for the ego goes first as well (section 7(5): nobody is endangered by a change of lanes).
 """
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -88,7 +89,8 @@ def places_of(
             continue
         clear = np.flatnonzero(near >= apart)
         if merging.over:  # the ways meet at its end
-            entry = float(stations[min(clear[-1] + 1, len(stations) - 1)]) if len(clear) else 0.0
+            first = clear[-1] + 1 if len(clear) else 0
+            entry = float(stations[min(first, len(stations) - 1)])
             end = last
         else:
             entry = float(stations[np.argmax(near < apart)])
@@ -101,7 +103,7 @@ def _distances(x: Array, y: Array, lines: Sequence[Array]) -> Array:
     """(n,) [m] of points to the closest of polylines."""
     nearest = np.full(len(x), np.inf)
     for line in lines:
-        for (x_0, y_0), (x_1, y_1) in zip(line[:-1], line[1:], strict=True):
+        for (x_0, y_0), (x_1, y_1) in itertools.pairwise(line):
             d_x, d_y = x_1 - x_0, y_1 - y_0
             squared = max(d_x * d_x + d_y * d_y, 1e-12)
             share = np.clip(((x - x_0) * d_x + (y - y_0) * d_y) / squared, 0.0, 1.0)
