@@ -37,18 +37,25 @@ class Bends:
         self._rows: list[int] = []  # of those that turn
         self._poses = np.empty((len(self._times), 0, 4))  # theirs: x, y [m], heading, speed
 
-    def read(self, background: BackgroundVehicles, near: NDArray[np.int64]) -> None:
+    def read(
+        self,
+        background: BackgroundVehicles,
+        near: NDArray[np.int64],
+        looked_at: NDArray[np.bool_] | None = None,
+    ) -> None:
         """Once after each SUMO step: find those that turn.
 
         Args:
             background: the background vehicles now.
             near: which of them have a row, in its order.
+            looked_at: (rows,) which of these; None: all.
         """
         self._rows.clear()
-        if not len(near):
-            return
         reach = background.speed * self._soon
-        moving = [row for row, i in enumerate(near) if reach[i] > _STRAIGHT]
+        fast = reach[near] > _STRAIGHT
+        moving = np.flatnonzero(fast if looked_at is None else fast & looked_at)
+        if not len(moving):
+            return
         chosen = near[moving]
         names = [background.ids[i] for i in chosen]
         known = background.speed[chosen] * self._times[-1]
@@ -68,7 +75,7 @@ class Bends:
             driven: Array = speed * self._times
             speeds = np.full(len(driven), speed)
             fill_poses(*road, length, driven, speeds, length, len(self._rows), poses)
-            self._rows.append(moving[k])
+            self._rows.append(int(moving[k]))
         self._poses = poses
 
     @staticmethod

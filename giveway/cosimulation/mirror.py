@@ -19,6 +19,8 @@ from pedestrian_model import Vehicles
 _INFLUENCE_RANGE = 10.0  # [m] from a vehicle's contour: the influence is exp(-26) of the strongest
 _NOSE = 1.5  # [s] the contour's nose is no longer than this times the speed
 _SHORT = 0.15  # [s] of SUMO's step in which no car turns: at 9 m/s^2 sideways it is 0.1 m
+_MEET = 1.5  # [s] in which a vehicle beside an ego's way is expected to come into it at most
+_BODIES = 15.0  # [m] of two vehicles
 _NONE = np.empty(0, dtype=np.int64)
 _STANDING = 1e-6  # [m/s] below this speed a pedestrian keeps its last angle
 
@@ -102,7 +104,7 @@ class Mirror:
             now[:, 6] = background.width[near]
             extrapolate(self.poses, self._egos, self._time_step)
         self._since = 0
-        self._bends.read(background, near if self._long or egos else _NONE)
+        self._bends.read(background, near, None if self._long else _close(background, near, egos))
         self._bends.fill(self.poses, self._egos, 0)
 
     def _require_finite(self, vehicles: BackgroundVehicles) -> None:
@@ -159,6 +161,17 @@ class Mirror:
             more = max(pedestrians, 2 * len(self._angles))
             self._angles = np.concatenate([self._angles, np.zeros(more - len(self._angles))])
             self._row = np.empty(more)
+
+
+def _close(
+    vehicles: BackgroundVehicles, near: NDArray[np.int64], egos: Sequence[Ego]
+) -> NDArray[np.bool_]:
+    """(rows,) whether each of the vehicles ``near`` may soon meet an ego."""
+    close = np.zeros(len(near), dtype=np.bool_)
+    for ego in egos:
+        apart = np.hypot(vehicles.x[near] - ego.pose.x, vehicles.y[near] - ego.pose.y)
+        close |= apart <= _MEET * (vehicles.speed[near] + ego.vehicle.speed) + _BODIES
+    return close
 
 
 def _relevant(
