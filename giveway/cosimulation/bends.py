@@ -7,14 +7,13 @@ the way of an ego on the next one, until SUMO's next step puts it back.
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.cosimulation.lane_paths import LanePathPool, LanePaths, path_from
+from giveway.cosimulation.lane_paths import Indices, LanePathPool, LanePaths
 from giveway.ego.corridor import fill_poses
 from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.path import EgoPath
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.vehicles import SumoVehicles
 
-SHORT = 0.15  # [s] of SUMO's step in which no car turns: at 9 m/s^2 sideways it is 0.1 m
 _STRAIGHT = 0.1  # [m] beside the straight line
 _SOON = 1.0  # [s] after SUMO's next step: until then others are taken to go straight on
 
@@ -38,37 +37,45 @@ class Bends:
         self._rows: list[int] = []  # of those that turn
         self._poses = np.empty((len(self._times), 0, 4))  # theirs: x, y [m], heading, speed
 
-    def read(self, background: BackgroundVehicles, near: NDArray[np.int64]) -> None:
+    def read(
+        self,
+        background: BackgroundVehicles,
+        near: NDArray[np.int64],
+        looked_at: NDArray[np.bool_] | None = None,
+    ) -> None:
         """Once after each SUMO step: find those that turn.
 
         Args:
             background: the background vehicles now.
             near: which of them have a row, in its order.
+            looked_at: (rows,) which of these; None: all.
         """
         self._rows.clear()
         reach = background.speed * self._soon
-        moving = np.flatnonzero(reach[near] > _STRAIGHT)
+        fast = reach[near] > _STRAIGHT
+        moving = np.flatnonzero(fast if looked_at is None else fast & looked_at)
+        if not len(moving):
+            return
         chosen = near[moving]
         names = [background.ids[i] for i in chosen]
         known = background.speed[chosen] * self._times[-1]
         numbers, positions = self._lane_paths.of(names, known.tolist())
         self._lane_paths.forget(background.ids)
-        turning = np.zeros(len(moving), dtype=np.bool_)
-        if len(moving):
-            fronts = np.column_stack([background.x[chosen], background.y[chosen]])
-            pool, headings = self._lane_paths.pool, background.heading[chosen]
-            fill_turning(fronts, headings, positions, numbers, pool, reach[chosen], turning)
-        poses = np.empty((len(self._times), np.count_nonzero(turning), 4))
-        for k in np.flatnonzero(turning):
-            row, i = int(moving[k]), int(chosen[k])
-            onwards = self._lane_paths.onwards(int(numbers[k]), float(positions[k]))
+        aside = sideways(
+            background.heading[chosen], positions, numbers, self._lane_paths.pool, reach[chosen]
+        )
+        turning = np.flatnonzero(np.abs(aside) > _STRAIGHT)
+        poses = np.empty((len(self._times), len(turning), 4))
+        for k in turning:
+            i = int(chosen[k])
+            onwards = self._lane_paths.onwards(numbers[k], positions[k])
             path = self._path(background, i, onwards)
             length, speed = float(background.length[i]), float(background.speed[i])
             road = path.vertices, path.stations, path.headings
             driven: Array = speed * self._times
             speeds = np.full(len(driven), speed)
             fill_poses(*road, length, driven, speeds, length, len(self._rows), poses)
-            self._rows.append(row)
+            self._rows.append(int(moving[k]))
         self._poses = poses
 
     @staticmethod
@@ -93,32 +100,43 @@ class Bends:
 
 
 @kernel
-def fill_turning(
-    fronts: Array,
-    headings: Array,
-    positions: Array,
-    numbers: NDArray[np.int64],
-    pool: LanePathPool,
-    reach: Array,
-    turning: NDArray[np.bool_],
-) -> None:
-    """Fill in whose lanes lead them aside within their ``reach`` (n,) [m]."""
-    longest = 2
-    for i in range(len(numbers)):
-        if numbers[i] >= 0:
-            longest = max(longest, pool.start[numbers[i] + 1] - pool.start[numbers[i]] + 1)
-    path, stations = np.empty((longest, 2)), np.empty(longest)
-    for i in range(len(numbers)):
-        turning[i] = False
-        if numbers[i] < 0:
+def sideways(
+    heading: Array, position: Array, number: Indices, pool: LanePathPool, reach: Array
+) -> Array:
+    """(m,) [m] how far off the straight line lanes lead vehicles; 0 off any lane.
+
+    Args:
+        heading: (m,) of each [rad].
+        position: (m,) [m] on its first lane, in SUMO's metres.
+        number: (m,) of its lane path; -1: none.
+        pool: of the lane paths.
+        reach: (m,) [m] that it drives.
+    """
+    points, along, start, first, nominal = pool
+    off = np.zeros(len(number))
+    for i in range(len(number)):
+        w = number[i]
+        if w < 0:
             continue
-        count = path_from(fronts[i], positions[i], numbers[i], pool, reach[i], path, stations)
-        for k in range(1, count):
-            share = min(1.0, (reach[i] - stations[k - 1]) / (stations[k] - stations[k - 1]))
-            if share <= 0.0:
-                break
-            x = path[k - 1, 0] + share * (path[k, 0] - path[k - 1, 0]) - fronts[i, 0]
-            y = path[k - 1, 1] + share * (path[k, 1] - path[k - 1, 1]) - fronts[i, 1]
-            if abs(np.sin(headings[i]) * x - np.cos(headings[i]) * y) > _STRAIGHT:
-                turning[i] = True
-                break
+        begin, end = start[w], start[w + 1]
+        driven = position[i] / nominal[w] * along[begin + first[w] - 1]
+        k = begin
+        while k < begin + first[w] - 1 and along[k + 1] <= driven:
+            k += 1
+        x_0, y_0 = points[k, 0], points[k, 1]
+        if k + 1 < begin + first[w]:
+            share = (driven - along[k]) / max(along[k + 1] - along[k], 1e-9)
+            x_0 += share * (points[k + 1, 0] - x_0)
+            y_0 += share * (points[k + 1, 1] - y_0)
+        x, y, left = x_0, y_0, reach[i]
+        d_x, d_y = np.cos(heading[i]), np.sin(heading[i])
+        while left > 0.0 and k + 1 < end:
+            k += 1
+            step = np.hypot(points[k, 0] - x, points[k, 1] - y)
+            if step > 0.0:
+                d_x, d_y = (points[k, 0] - x) / step, (points[k, 1] - y) / step
+            go = min(step, left)
+            x, y, left = x + go * d_x, y + go * d_y, left - go
+        x, y = x + left * d_x, y + left * d_y  # beyond its end, straight on
+        off[i] = np.sin(heading[i]) * (x - x_0) - np.cos(heading[i]) * (y - y_0)
+    return off

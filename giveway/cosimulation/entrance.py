@@ -14,6 +14,7 @@ from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
 from giveway.ego.junctions import PathJunction, junctions_on
 from giveway.ego.lights import Lights
+from giveway.ego.merges import Merges, places_of
 from giveway.ego.right_of_way import RightOfWay
 from giveway.ego.speed_profile import SpeedProfile, profile_of
 from giveway.ego.stops import Stop, Stops
@@ -159,6 +160,7 @@ class Entrance:
             halts if stops else None,
             self._crossings(config, path, shape),
             self._right_of_way(config, junctions, shape, profile),
+            self._merges(config, path, lane_path, shape, departure),
         )
         return Ego(
             ego,
@@ -181,6 +183,21 @@ class Entrance:
             hardest=hardest,
             arrows=config.heeds_priority,
         )
+
+    def _merges(
+        self,
+        config: EgoRunConfig,
+        path: EgoPath,
+        lane_path: LanePath,
+        shape: VehicleShape,
+        departure: float,
+    ) -> Merges | None:
+        """Where the ego comes onto a lane together with others; None: nowhere."""
+        if not (config.heeds_priority and config.regulation.vehicles):
+            return None
+        found = self._session.lanes.mergings(lane_path)
+        places = places_of(path, shape.width / 2, found, departure)
+        return Merges(places, shape.length) if places else None
 
     def _crossings(
         self, config: EgoRunConfig, path: EgoPath, shape: VehicleShape

@@ -61,14 +61,17 @@ class LanePaths:
 
     Attributes:
         pool: all lane paths so far, with room for more.
+        lanes: those of each lane path, in its order.
     """
 
     pool: LanePathPool
+    lanes: list[tuple[str, ...]]
 
     def __init__(self, vehicles: SumoVehicles) -> None:
         self._vehicles = vehicles
         self._known: dict[str, _Known] = {}
         self._numbers: dict[tuple[str, ...], int] = {}
+        self.lanes = []
         self.pool = LanePathPool(*(np.zeros(shape, kind) for shape, kind in _EMPTY))
         self._points = 0
 
@@ -113,6 +116,7 @@ class LanePaths:
         if lanes not in self._numbers:
             self._append([self._vehicles.shape(each) for each in lanes], lane)
             self._numbers[lanes] = len(self._numbers)
+            self.lanes.append(lanes)
         return _Known(lane, route, reach, self._numbers[lanes])
 
     def _append(self, shapes: list[Array], lane: str) -> None:

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from controller import ControllerError
 from fmus import FmuError
 from giveway.cosimulation.assembly import Parts
+from giveway.cosimulation.merging import Merging
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.priority import rooms_before
 from giveway.cosimulation.standstill import Standstill
@@ -81,13 +82,8 @@ class Loop:
         self.endings = {}
         self.remarks = []
         self._standstill = Standstill()
-        self._mirror = Mirror(
-            parts.sumo,
-            parts.time_step,
-            parts.substeps,
-            parts.horizon,
-            turns=any(ego.config.heeds_priority for ego in parts.egos),
-        )
+        self._merging = Merging(parts.sumo.vehicles, parts.sumo.lanes)
+        self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
         self._traffic = TrafficWatch(parts.sumo)
         self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
         self._far_background = -self._far_steps
@@ -197,8 +193,9 @@ class Loop:
         rooms = self._look_ahead()
         self._law.signals(self._start + self._k * self._time_step)
         background, yielding = self._mirror.background, parts.yielding
+        merging = self._merging.update(background, self._egos)
         if yielding is not None and (background.ids or yielding.limited):
-            yielding.update(background, self._roster.crowd, self._egos, rooms)
+            yielding.update(background, self._roster.crowd, self._egos, rooms, merging)
         self._record_background()
         self._recorder.ledger(self._roster.ledger)
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.cosimulation.bends import SHORT, Bends
+from giveway.cosimulation.bends import Bends
 from giveway.crowd.roster import Roster
 from giveway.ego.ego import Ego
 from giveway.errors import CrowdError, VehicleError
@@ -18,6 +18,9 @@ from pedestrian_model import Vehicles
 
 _INFLUENCE_RANGE = 10.0  # [m] from a vehicle's contour: the influence is exp(-26) of the strongest
 _NOSE = 1.5  # [s] the contour's nose is no longer than this times the speed
+_SHORT = 0.15  # [s] of SUMO's step in which no car turns: at 9 m/s^2 sideways it is 0.1 m
+_MEET = 1.5  # [s] in which a vehicle beside an ego's way is expected to come into it at most
+_BODIES = 15.0  # [m] of two vehicles
 _NONE = np.empty(0, dtype=np.int64)
 _STANDING = 1e-6  # [m/s] below this speed a pedestrian keeps its last angle
 
@@ -33,7 +36,6 @@ class Mirror:
         time_step: of the control [s].
         substeps: control steps per SUMO step.
         horizon: N, the most steps that any ego looks ahead.
-        turns: background vehicles are foreseen to follow their lanes however short SUMO's step is.
 
     Attributes:
         background: SUMO's own vehicles at its latest instant.
@@ -46,23 +48,14 @@ class Mirror:
     poses: Array
     vehicles: Vehicles
 
-    def __init__(
-        self,
-        session: SumoSession,
-        time_step: float,
-        substeps: int,
-        horizon: int,
-        *,
-        turns: bool = False,
-    ) -> None:
+    def __init__(self, session: SumoSession, time_step: float, substeps: int, horizon: int) -> None:
         self._session = session
         self._time_step = time_step
         self._substeps = substeps
         self._horizon = horizon
         self._span = (substeps + horizon) * time_step  # [s]
-        self._bends = None
-        if turns or substeps * time_step > SHORT:
-            self._bends = Bends(session.vehicles, time_step, substeps, horizon)
+        self._bends = Bends(session.vehicles, time_step, substeps, horizon)
+        self._long = substeps * time_step > _SHORT
         self._since = 0  # control steps since SUMO's
         self._egos = 0
         self._driven: list[Ego] = []
@@ -111,9 +104,8 @@ class Mirror:
             now[:, 6] = background.width[near]
             extrapolate(self.poses, self._egos, self._time_step)
         self._since = 0
-        if self._bends is not None:
-            self._bends.read(background, near)
-            self._bends.fill(self.poses, self._egos, 0)
+        self._bends.read(background, near, None if self._long else _close(background, near, egos))
+        self._bends.fill(self.poses, self._egos, 0)
 
     def _require_finite(self, vehicles: BackgroundVehicles) -> None:
         bad = ~np.isfinite(vehicles.x + vehicles.y + vehicles.speed)
@@ -140,8 +132,7 @@ class Mirror:
         if self.poses.shape[1] > self._egos:
             carry_on(self.poses, self._egos, self._time_step)
         self._since += 1
-        if self._bends is not None:
-            self._bends.fill(self.poses, self._egos, self._since)
+        self._bends.fill(self.poses, self._egos, self._since)
 
     # --- to SUMO ------------------------------------------------------------------------------
 
@@ -170,6 +161,19 @@ class Mirror:
             more = max(pedestrians, 2 * len(self._angles))
             self._angles = np.concatenate([self._angles, np.zeros(more - len(self._angles))])
             self._row = np.empty(more)
+
+
+def _close(
+    vehicles: BackgroundVehicles, near: NDArray[np.int64], egos: Sequence[Ego]
+) -> NDArray[np.bool_]:
+    """(rows,) whether each of the vehicles ``near`` may soon meet an ego that keeps to the law."""
+    close = np.zeros(len(near), dtype=np.bool_)
+    for ego in egos:
+        if not ego.config.heeds_priority:
+            continue
+        apart = np.hypot(vehicles.x[near] - ego.pose.x, vehicles.y[near] - ego.pose.y)
+        close |= apart <= _MEET * (vehicles.speed[near] + ego.vehicle.speed) + _BODIES
+    return close
 
 
 def _relevant(

@@ -21,6 +21,7 @@ import numpy as np
 from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.cosimulation.lane_paths import LanePaths, gaps_ahead, sort_pedestrians
 from giveway.ego.ego import Ego
+from giveway.ego.merges import Behind
 from giveway.geometry.kernel import Array
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.sumo.background import BackgroundVehicles
@@ -75,6 +76,7 @@ class Yielding:
         crowd: Crowd,
         egos: Sequence[Ego] = (),
         rooms: Mapping[str, float] = NOBODY,
+        merging: Sequence[Mapping[str, Behind]] = (),
     ) -> None:
         """Once after each SUMO step: limit vehicles with somebody ahead, release the others.
 
@@ -83,10 +85,13 @@ class Yielding:
             crowd: the pedestrians now.
             egos: on the road now.
             rooms: [m] up to the lines of those that wait there for an ego, by their names.
+            merging: who keeps behind each ego that they come onto one lane with.
         """
         limits = self._limits(background, crowd) if background.ids and len(crowd) else {}
         if background.ids and egos:
             for name, limit in self._behind_egos(background, egos).items():
+                limits[name] = min(limit, limits.get(name, math.inf))
+            for name, limit in self._merging(background, merging).items():
                 limits[name] = min(limit, limits.get(name, math.inf))
         for name, room in rooms.items():
             b = self._vehicles.deceleration(name)
@@ -203,6 +208,30 @@ class Yielding:
                 if _are_stuck(ego, background, int(i)):
                     continue
                 limits[name] = min(safe, limits.get(name, math.inf))
+        return limits
+
+    def _merging(
+        self,
+        background: BackgroundVehicles,
+        merging: Sequence[Mapping[str, Behind]],
+    ) -> dict[str, float]:
+        """The speed limit [m/s] of each vehicle that lets an ego merge before it."""
+        limits: dict[str, float] = {}
+        rows = {name: i for i, name in enumerate(background.ids)}
+        for others in merging:
+            for name, behind in others.items():
+                if name not in rows:
+                    continue  # another ego
+                speed = float(background.speed[rows[name]])
+                b = self._vehicles.deceleration(name)
+                firm = min(b, behind.braking)
+                safe = max(
+                    _safe_speed(behind.room, behind.speed, firm, self._reaction),
+                    _safe_speed(behind.to_wait, 0.0, firm, self._reaction),
+                    speed - firm * self._step_length,
+                )
+                if safe < speed + b * self._step_length:
+                    limits[name] = min(safe, limits.get(name, math.inf))
         return limits
 
 

@@ -9,7 +9,7 @@ from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight
-from giveway.ego.leader import NO_LEADER, given_up
+from giveway.ego.leader import FIRM, NO_LEADER, given_up
 from giveway.ego.path_view import PathView
 from giveway.ego.relevance import PREDICT_ALL, Relevance
 from giveway.ego.safety import Guard
@@ -69,6 +69,7 @@ class Ego:
         self.shape = shape
         self.way = way
         self._profile = profile
+        self._time_step = time_step
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal = goal
         self.vehicle = waiting.vehicle
@@ -95,10 +96,13 @@ class Ego:
         self._eases_off = False  # a brake, or drives off
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
-        # A planning controller follows with a headway, and plans no hard stop for a little less of
-        # the distance to a vehicle that it keeps on the average.
-        self._plans = plans = waiting.controller.foresees
-        self._lag = config.regulation.comfortable_deceleration * _REACTION if plans else 0.0
+        # Ours follow with a headway. A planning controller plans no hard stop for a little less of
+        # the distance to a vehicle that it keeps on the average; the tuned PID, which brakes for
+        # a distance alone, is shown how far it is to where the vehicle in front could stop.
+        self._plans = waiting.controller.foresees
+        follows = self._plans or config.controller == "pid-tuned"
+        self._lag = config.regulation.comfortable_deceleration * _REACTION if follows else 0.0
+        self._firmly = 2.0 * FIRM if follows and not self._plans else math.inf
 
     def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
         """Answers the planning controller how pedestrians would react to a manoeuvre."""
@@ -175,15 +179,19 @@ class Ego:
             else:
                 predicted = predictor.predict(pedestrians, horizon, surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
-        leader = NO_LEADER
+        leader, waits = NO_LEADER, math.inf
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
+            if self.way.merges is not None:
+                before, waits = self.way.merges.look(front, speed)
+                leader = min(leader, before)
+                vehicles = np.minimum(vehicles, before.station + before.speed * self._times)
             tolerated = 0.0
             if self._plans:
                 kept = self.config.regulation.safe_distance
                 tolerated = given_up(leader, vehicles, front, speed, kept, self._origin)
             ahead = np.minimum(ahead, vehicles + tolerated)
-        stop, stops_for = self.way.stop_at(front, speed, crowd, leader)
+        stop, stops_for = min(self.way.stop_at(front, speed, crowd, leader), (waits, "yield"))
         if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
             allowed = stop + _BEYOND + self._origin
             ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
@@ -232,7 +240,7 @@ class Ego:
 
     def _observation(self, time: float, seen: Seen) -> Observation:
         """What the controller is shown."""
-        front, vehicle = self.front, self.vehicle
+        front, vehicle, leader = self.front, self.vehicle, seen.leader
         safe_distance = self.config.regulation.safe_distance
         origin = front + self._origin
         stop = seen.stop + self._origin + safe_distance
@@ -245,7 +253,7 @@ class Ego:
         return Observation(  # by position: a third of the time that keywords take
             origin,
             vehicle.speed,
-            min(seen.pedestrian, seen.leader.station, stop) - origin,
+            min(seen.pedestrian, leader.station + leader.speed**2 / self._firmly, stop) - origin,
             seen.ahead,
             limit,
             safe_distance,
@@ -287,8 +295,7 @@ class Ego:
         """Step the FMU with the force decided on."""
         self._pose = None
         self.vehicle.step(self._force)
-        if self.way.stops is not None:
-            self.way.stops.pass_time(self.front, self.vehicle.speed)
+        self.way.pass_time(self.front, self.vehicle.speed, self._time_step)
 
     def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
         """The row of this instant for the tables."""

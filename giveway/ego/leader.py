@@ -14,7 +14,7 @@ _PARALLEL = 0.95  # likewise: 18 degrees, as a body in a bend lies askew
 _OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
 _FINEST_OUTLINE = 0.1  # [m] and at least
 _KEPT, _LEAST = 0.5, 0.25  # of d_safe that a plan keeps to vehicles, and that it keeps at least
-_FIRM = 3.0  # [m/s^2] of braking that the share in between may cost
+FIRM = 3.0  # [m/s^2] of braking that the share in between may cost
 _BUILD_UP = 0.2  # [s] until the brake has it
 
 
@@ -55,7 +55,7 @@ def given_up(
     if gap < inf:
         its_speed = leader.speed if leader.station <= coming else 0.0
         closing = max(0.0, speed - its_speed)
-        room = gap - closing * (_BUILD_UP + closing / (2.0 * _FIRM))
+        room = gap - closing * (_BUILD_UP + closing / (2.0 * FIRM))
         kept = min(kept, max(room, min(_LEAST * safe_distance, gap)))
     return safe_distance + origin - kept
 

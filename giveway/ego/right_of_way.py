@@ -36,6 +36,7 @@ _AT_LINE = 4.0  # [m] before the line a vehicle stands at it
 _DECIDED = 10.0  # [m] before the line the ego keeps to its decision to go
 _STOPS_AT_YELLOW = 2.5  # [m/s^2] of braking with which others stop at yellow
 RED, _YELLOW = frozenset("rRu"), frozenset("yY")
+_NOBODY = frozenset("GZ")  # with priority, or a zip, whose order :mod:`giveway.ego.merges` knows
 
 
 class Approach(NamedTuple):
@@ -242,7 +243,7 @@ class RightOfWay:
             there = other.distance + where.other_enter <= 0.0
             waits = other.standing > 0.0  # inside the junction, for others
             return there or other.speed > _CRAWLING or (named and letter != "G" and not waits)
-        if letter == "G" or not named:
+        if letter in _NOBODY or not named:
             return False
         if movement.system:
             its = letter_of(movement, states)
@@ -279,8 +280,6 @@ class RightOfWay:
             inside = min(other.speed, place.movements[other.number].speed)
             outside = min(max(other.distance, 0.0), to_leave)
             goes = outside / other.speed + (to_leave - outside) / inside
-        if place.movement.state == "Z" and other.distance > 0.0:  # who comes first goes first
-            return comes < enter < goes + _BEFORE
         in_time = comes >= max(clear + margin, line + critical if front <= place.entry else 0.0)
         return not in_time and goes + _BEFORE > enter
 

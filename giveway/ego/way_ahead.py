@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from giveway.ego.crossings import Crossings
 from giveway.ego.leader import Leader
 from giveway.ego.lights import Lights
+from giveway.ego.merges import Merges
 from giveway.ego.right_of_way import RightOfWay, Traffic
 from giveway.ego.stops import Stops
 from pedestrian_model import Crowd
@@ -19,6 +20,7 @@ class WayAhead:
         stops: that it serves; None: none.
         crossings: at which it gives way; None: at none.
         right_of_way: at junctions; None: it keeps to none.
+        merges: where it comes onto a lane together with others; None: nowhere.
 
     Attributes:
         systems: SUMO's ids of the traffic lights that matter.
@@ -32,8 +34,10 @@ class WayAhead:
         stops: Stops | None = None,
         crossings: Crossings | None = None,
         right_of_way: RightOfWay | None = None,
+        merges: Merges | None = None,
     ) -> None:
         self.stops = stops
+        self.merges = merges
         self.stop = math.inf
         self._lights = lights
         self._crossings = crossings
@@ -89,3 +93,16 @@ class WayAhead:
             place, cause = min((place, cause), (stop, "yield"))
         self.stop = place
         return place, cause if place < math.inf else ""
+
+    def pass_time(self, front: float, speed: float, time_step: float) -> None:
+        """Once after each control step of ``time_step`` [s]: has it halted, has it waited?
+
+        Args:
+            front: station of the front bumper [m].
+            speed: [m/s].
+            time_step: [s].
+        """
+        if self.stops is not None:
+            self.stops.pass_time(front, speed)
+        if self.merges is not None:
+            self.merges.pass_time(time_step, speed)

@@ -13,6 +13,7 @@ import numpy as np
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.sumo.crossings import Crossing, crossings
+from giveway.sumo.merging import Merging, mergings
 
 CHANGE_LENGTH = 30.0  # [m] over which a vehicle changes to the next lane
 _WALKINGAREA = re.compile(r"^:.*_w\d+_0$")  # SUMO's names; their shape is the outline itself
@@ -65,6 +66,7 @@ class LanePath:
     edges: tuple[float, ...]  # station [m] at which each edge of the route begins
     limits: tuple[SpeedLimit, ...]  # of each lane, in order; the first holds from the beginning
     passages: tuple[Passage, ...]  # through junctions whose lanes inside the network has
+    lanes: tuple[tuple[str, str], ...]  # on which it enters and leaves each edge
 
 
 class Lanes:
@@ -149,7 +151,12 @@ class Lanes:
             tuple(begins),
             tuple(limits),
             tuple(passages),
+            tuple((f"{e}_{i}", f"{e}_{j}") for e, (i, j) in zip(edges, pairs, strict=True)),
         )
+
+    def mergings(self, lane_path: LanePath) -> tuple[Merging, ...]:
+        """Where others come onto the lanes of a path, in its order."""
+        return mergings(self._sumo, lane_path.lanes, lane_path.edges, self.shape)
 
     @cached_property
     def crossings(self) -> tuple[Crossing, ...]:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import libsumo
 import numpy as np
+import pytest
 
-from giveway.cosimulation.bends import Bends
+from giveway.cosimulation.bends import Bends, sideways
+from giveway.cosimulation.lane_paths import LanePathPool
 from giveway.sumo.lanes import Lanes
 from giveway.sumo.vehicles import SumoVehicles
 from sumo_scenarios import find
@@ -51,3 +54,22 @@ def test_between_sumo_s_steps_a_car_follows_its_lane() -> None:
     assert len(off) > 30
     assert np.mean(straight) > 0.5
     assert np.mean(off) < 0.3  # the speeds differ, and a chord is no arc
+
+
+def test_how_far_off_the_straight_line_a_lane_leads() -> None:
+    """Lane path 0: 10 m east, then north; SUMO's metres are half of ours on its first lane."""
+    points = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 30.0]])
+    along = np.array([0.0, 10.0, np.inf])
+    pool = LanePathPool(points, along, np.array([0, 3]), np.array([2]), np.array([5.0]))
+    east, none = np.zeros(1), np.full(1, -1)
+    on = np.zeros(1, dtype=np.int64)
+
+    def off(position: float, reach: float, heading: float = 0.0, number: Any = on) -> float:
+        where = np.array([position]), number, pool, np.array([reach])
+        return float(sideways(east + heading, *where)[0])
+
+    assert off(2.0, 5.0) == 0.0  # at x = 4 m, it stays on the first lane
+    assert off(2.0, 10.0) == -4.0  # 6 m to the corner, 4 m north
+    assert off(2.0, 10.0, math.pi) == pytest.approx(4.0)
+    assert off(5.0, 50.0) == -50.0  # beyond its end it goes on north
+    assert off(2.0, 10.0, number=none) == 0.0

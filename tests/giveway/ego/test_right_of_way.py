@@ -149,12 +149,6 @@ def test_at_an_all_way_stop_who_stood_first_goes_first() -> None:
     assert drive.stop(LINE, 0.0, other(20.0)) == math.inf
 
 
-def test_in_a_zip_who_is_there_first_goes_first() -> None:
-    # the ego is at the zip after 3.1 s, and past it after another 2 s
-    assert stop(junction("Z"), 30.0, 8.0, other(24.0)) == LINE
-    assert stop(junction("Z"), 30.0, 8.0, other(60.0)) == math.inf
-
-
 def test_it_is_not_polite_for_ever_to_who_stands() -> None:
     drive = Drive(junction())
     assert drive.stop(LINE, 0.0, other(1.0, 0.0, standing=20.0)) == LINE

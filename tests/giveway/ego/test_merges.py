@@ -1,0 +1,131 @@
+"""In which order an ego and others come onto one lane, and what each of them has to heed.
+
+y = 3.2   ------------------------------------------ main_1, from x = 0
+                              .--- the ego's way ---
+y = 0     ego ----------------'
+                             100   130             x [m]
+"""
+
+import math
+
+import numpy as np
+import pytest
+
+from giveway.ego.leader import NO_LEADER, Leader
+from giveway.ego.merges import Merges, Place, Rival, places_of
+from giveway.geometry.path import EgoPath
+from giveway.sumo.merging import Merging
+
+LENGTH = 5.0  # [m] of the ego
+PLACE = Place("main_1", frozenset(), 0.0, 100.0, 130.0)
+
+
+def merging(**others):
+    """An ego 20 m before the place at 10 m/s, which has seen others: (position, speed)."""
+    merges = Merges([PLACE], LENGTH)
+    rivals = {name: Rival(*rival, 5.0) for name, rival in others.items()}
+    return merges, merges.see({PLACE: rivals}, 80.0, 10.0)
+
+
+def test_a_lane_change_begins_where_bodies_would_touch_and_ends_on_the_other_lane():
+    x = np.linspace(0.0, 200.0, 401)
+    share = np.clip((x - 100.0) / 30.0, 0.0, 1.0)
+    path = EgoPath.through(np.column_stack([x, 3.2 * share * share * (3.0 - 2.0 * share)]))
+    line = np.array([[0.0, 3.2], [200.0, 3.2]])
+    lane = Merging("main_1", 0.0, 0.0, 200.0, (line,), frozenset())
+    (place,) = places_of(path, 0.9, [lane], 20.0)
+    beside = 3.2 - np.interp([place.entry - 1.0, place.entry], path.stations, path.vertices[:, 1])
+    assert beside[0] > 0.9 + 1.25 + 0.2 > beside[1]
+    assert 120.0 < place.end < 131.0
+    far = np.array([[0.0, 9.0], [200.0, 9.0]])
+    assert places_of(path, 0.9, [lane._replace(lines=(far,))], 20.0) == ()
+    assert places_of(path, 0.9, [lane], 20.0 + path.length) == ()
+
+
+def test_at_a_zipper_the_place_is_where_the_ways_come_together_for_good():
+    path = EgoPath.through([(0.0, 0.0), (200.0, 0.0)])
+    rival = np.array([[0.0, 1.0], [20.0, 3.2], [90.0, 3.2], [100.0, 0.0]])
+    zipper = Merging("out_0", 100.0, 0.0, 100.0, (rival,), frozenset({":b_0_0"}))
+    (place,) = places_of(path, 0.9, [zipper], 0.0)
+    assert place.entry == pytest.approx(90.0 + (3.2 - 2.35) / 0.32, abs=0.6)
+    assert (place.end, place.origin) == (100.0, 100.0)
+
+
+@pytest.mark.parametrize(
+    ("position", "speed", "first"),
+    [
+        (90.0, 10.0, False),  # it is ahead
+        (81.0, 10.0, False),  # by a little
+        (81.0, 1.0, True),  # it is ahead, but waits
+        (70.0, 10.0, True),  # it is behind, and as fast
+        (50.0, 20.0, False),  # it is behind, but had to brake firmly
+        (20.0, 14.0, True),  # it is far behind and has time to brake in comfort
+        (77.0, 11.0, False),  # beside the ego it cannot fall back so soon
+    ],
+)
+def test_who_is_ahead_goes_first_and_who_could_not_brake_in_comfort(position, speed, first):
+    _, behind = merging(other=(position, speed))
+    assert (set(behind) == {"other"}) == first
+
+
+def test_the_ego_follows_whoever_goes_first_before_it_is_in_front():
+    merges, behind = merging(other=(92.0, 9.0))
+    assert behind == {}
+    leader, stop = merges.look(80.0, 10.0)
+    # 87 m is its rear; 20 m before the place a quarter of them may be missing still
+    assert leader == Leader(87.0 + 0.25 * 20.0, 9.0 - 0.25 * 10.0)
+    assert stop == math.inf
+    assert merges.look(99.9, 10.0)[0] == NO_LEADER  # it is too near, and can stop no more
+
+
+def test_the_ego_waits_before_the_place_for_whoever_is_beside_it():
+    merges, _ = merging(car=(80.5, 10.0))
+    assert merges.look(80.0, 10.0) == (NO_LEADER, 100.0 - 1.0 - 0.5)
+    assert merges.look(99.5, 1.0)[1] == 99.5  # it stands a little too far
+    assert merges.look(80.0, 20.0)[1] == math.inf  # nobody makes it brake harder than 3 m/s^2
+    truck = Rival(82.0, 10.0, 12.0)
+    merges.see({PLACE: {"truck": truck}}, 80.0, 10.0)
+    assert merges.look(80.0, 10.0)[1] == 100.0 - 1.0 - 4.0
+    merges.see({PLACE: {}}, 80.0, 10.0)
+    assert merges.look(80.0, 10.0) == (NO_LEADER, math.inf)
+
+
+def test_between_sumo_s_steps_the_others_drive_on():
+    merges, _ = merging(other=(92.0, 9.0))
+    merges.pass_time(0.5, 10.0)
+    assert merges.look(80.0, 10.0)[0].station == pytest.approx(87.0 + 4.5 + 5.0)
+
+
+def test_what_somebody_behind_has_to_heed():
+    _, behind = merging(other=(60.0, 10.0))
+    (heeds,) = behind.values()
+    assert heeds.room == pytest.approx(80.0 - 5.0 - 60.0 - 1.0 + 0.25 * 20.0)
+    assert heeds.speed == pytest.approx(0.75 * 10.0)
+    assert heeds.to_wait == pytest.approx(100.0 - 60.0 - 1.0 - 0.5)
+    assert heeds.braking == 2.0
+    merges = Merges([PLACE], LENGTH)
+    (heeds,) = merges.see({PLACE: {"other": Rival(80.0, 10.0, 5.0)}}, 104.0, 10.0).values()
+    assert heeds.room == pytest.approx(104.0 - 5.0 - 80.0 - 1.0)
+    assert (heeds.speed, heeds.braking) == (10.0, math.inf)  # the ego is in its way
+
+
+def test_an_ego_that_has_waited_asks_for_more():
+    merges = Merges([PLACE], LENGTH)
+    rivals = {PLACE: {"passes": Rival(99.5, 13.0, 5.0), "next": Rival(62.0, 13.0, 5.0)}}
+    assert merges.see(rivals, 98.0, 0.0) == {}
+    for _ in range(60):
+        merges.pass_time(0.1, 0.0)
+    (heeds,) = merges.see(rivals, 98.0, 0.0).values()
+    assert heeds.braking == 3.0
+    merges.pass_time(0.1, 2.0)  # it drives
+    merges = Merges([PLACE], LENGTH)
+    assert merges.see(rivals, 98.0, 0.0) == {}
+
+
+def test_a_place_is_in_sight_from_80_m_before_it_until_it_is_behind():
+    merges = Merges([PLACE], LENGTH)
+    assert merges.in_sight(19.0) == ()
+    assert merges.in_sight(21.0) == (PLACE,)
+    assert merges.in_sight(129.0) == (PLACE,)
+    assert merges.in_sight(130.0) == ()
+    assert merges.in_sight(21.0) == ()  # it is forgotten
