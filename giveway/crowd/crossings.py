@@ -15,6 +15,7 @@ from pedestrian_model import Crowd, targets
 ASIDE = 0.5  # [m] beside its marking people are on a crossing as well
 _ONWARD = 0.5  # cosine: who wants to cross looks less than 60 degrees away from it
 _WAITING = 1.5  # [m] from where they are to wait: who is farther from it crosses
+_LOOK_AHEAD = 3  # way-points, one of which may be at a kerb
 _GREEN = "Gg"
 _OUT = "Oo"
 
@@ -74,6 +75,35 @@ def use_of(
     waiting = (crowd.waypoint_signal[at] >= 0) & (far <= _WAITING)
     inward = np.where(u < 0.0, onward, -onward)
     return Use(on, waiting, ~on & (inward >= _ONWARD), ~on & (inward <= -_ONWARD), onward)
+
+
+def turning_in(
+    crowd: Crowd, rows: NDArray[np.intp], kerb: Array, along: Array, length: float, reach: Array
+) -> Array:
+    """(k,) who walks up to a kerb and then over the crossing: 1 from u = 0 on, -1 back, 0 nobody.
+
+    Args:
+        crowd: all.
+        rows: those beside the crossing.
+        kerb: (2,) [m] where u is 0.
+        along: (2,) unit vector along the crossing.
+        length: of it [m].
+        reach: (k,) [m] that each walks at most up to the kerb.
+    """
+    last = crowd.waypoint_start[rows + 1] - 1
+    position = crowd.position[rows]
+    turns = np.zeros(len(rows))
+    for step in range(_LOOK_AHEAD):
+        at = crowd.waypoint_start[rows] + crowd.waypoint_index[rows] + step
+        there, onwards = (crowd.waypoints[np.minimum(k, last)] for k in (at, at + 1))
+        way = onwards - there
+        onward = (way @ along) / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)
+        u, _ = place_on(there, kerb, along)
+        near = np.hypot(*(there - position).T) <= reach
+        forth = near & (np.abs(u) <= _WAITING) & (onward >= _ONWARD)
+        back = near & (np.abs(u - length) <= _WAITING) & (onward <= -_ONWARD)
+        turns = np.where(turns == 0.0, forth.astype(np.float64) - back, turns)
+    return turns
 
 
 def have_priority(use: Use, can_enter: NDArray[np.bool_] | bool) -> NDArray[np.bool_]:

@@ -14,7 +14,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.crowd.crossings import ASIDE, have_priority, is_near, is_open, place_on, use_of
+from giveway.crowd.crossings import (
+    ASIDE,
+    have_priority,
+    is_near,
+    is_open,
+    place_on,
+    turning_in,
+    use_of,
+)
 from giveway.ego.leader import NO_LEADER, Leader
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
@@ -223,17 +231,19 @@ class Crossings:
             return False
         u, w = place_on(crowd.position, place.kerb, place.along)
         reach = np.maximum(self._kerb_distance, self._kerb_time * crowd.desired_speed)
-        near = is_near(u, w, place.length, place.half_width, reach)
+        near = is_near(u, w, place.length, place.half_width + reach, reach)
         if not near.any():
             return False
         rows = np.flatnonzero(near)
-        u = u[rows]
+        u, aside = u[rows], np.maximum(np.abs(w[rows]) - place.half_width, 0.0)
         use = use_of(crowd, rows, u, place.along, place.length)
-        state = self._states.get(place.system, "")
-        coming = have_priority(use, is_open(state, place.link, zebra=place.zebra))
-        direction = np.where(use.onward >= 0.0, 1.0, -1.0)
-        to_go = np.where(direction > 0.0, place.low - u, u - place.high)
-        to_leave = np.where(direction > 0.0, place.high - u, u - place.low)
+        opened = is_open(self._states.get(place.system, ""), place.link, zebra=place.zebra)
+        turning = turning_in(crowd, rows, place.kerb, place.along, place.length, reach[rows])
+        coming = (aside <= 0.0) & have_priority(use, opened)
+        coming |= ~use.on & (turning != 0.0) & opened
+        direction = np.where(turning != 0.0, turning, np.where(use.onward >= 0.0, 1.0, -1.0))
+        to_go = np.where(direction > 0.0, place.low - u, u - place.high) + aside
+        to_leave = np.where(direction > 0.0, place.high - u, u - place.low) + aside
         pace = np.maximum(crowd.desired_speed[rows], 0.1)
         arrives, leaves = to_go / pace, to_leave / pace
         enters, clears = self._own_times(place, front, speed)

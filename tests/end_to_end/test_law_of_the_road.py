@@ -21,10 +21,11 @@ LAW = ("ledger.csv", "people.csv", "signals.csv")
 def run(folder: Path, priority: str) -> RunResult:
     settings = {
         "scenario": "junction",
+        "seed": 2,
         "regulation": {"priority": priority},
         "ego": {
             "route": ["east_out", "far_east_out"],  # from behind the junction on
-            "depart_time": 51.0,
+            "depart_time": 60.0,
             "depart_position": 10.0,
             "travel_distance": 55.0,
         },

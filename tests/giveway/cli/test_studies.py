@@ -70,7 +70,7 @@ def test_a_dry_run_tells_which_cells_fail(type_here, tmp_path):
 def test_the_bundled_studies_are_listed(type_here):
     done = type_here("studies")
     names = [line.split()[0] for line in done.stdout.splitlines() if line and line[0].isalpha()]
-    assert {"ablation", "controllers", "paper", "readings"} <= set(names)
+    assert {"ablation", "controllers", "law", "paper", "readings"} <= set(names)
 
 
 def test_the_papers_table_stands_beside_ours(type_here, tmp_path):

@@ -157,3 +157,17 @@ def test_it_does_not_drive_onto_a_crossing_that_it_cannot_leave(station, speed, 
     """A vehicle behind the crossing leaves room for 5 m and a gap, or not."""
     found = crossings().stop_at(NEAR, 4.0, NOBODY, Leader(station, speed))
     assert found == (pytest.approx(LINE, abs=0.11) if stops else math.inf)
+
+
+@pytest.mark.parametrize(
+    ("x", "then", "stops"),
+    [
+        (17.5, (22.0, 10.0), True),  # 4.5 m along the sidewalk to the kerb, and over the road
+        (17.5, (40.0, -4.5), False),  # on along the sidewalk
+        (14.0, (22.0, 10.0), False),  # too far away to tell
+    ],
+)
+def test_who_walks_along_the_road_and_is_going_to_turn_in(x, then, stops):
+    corner = (22.0, -4.0)
+    walks = Crowd.create([[x, -4.5]], [[1.4, 0.0]], 1.4, [[corner, then]])
+    assert (crossings(kerb_time=3.5).stop_at(NEAR, 4.0, walks) < math.inf) == stops
