@@ -37,6 +37,8 @@ _GRAIN = 0.5  # [m] between the points of its outline, at most
 _BESIDE = 0.8  # [m] from the ego's side to the middle of somebody who is not in its way
 _BEFORE, _AFTER = 1.0, 0.5  # [s] between the ego and whoever passes its way after or before it
 _PATIENCE = 4.5  # [s] away from the ego's way, and a little more than an encounter's 4 s
+_CLEAR = 0.3  # [m] before the crossing it stops at the latest
+_SURE = 1.0  # [s] in addition, before it starts again; else it would creep on bit by bit
 _PULL_AWAY = 1.5  # [m/s^2] of the ego that has waited
 _GAP = 1.0  # [m] behind the ego once it has left a crossing
 _CRAWLING = 2.0  # [m/s] a vehicle ahead that is slower may come to a stand
@@ -163,7 +165,8 @@ class Crossings:
         self._length = length
         self._kerb_distance, self._kerb_time = kerb_distance, kerb_time
         self._next = 0
-        self._waits_at = math.inf  # [m] where it waits before the next crossing; inf: it does not
+        self._waits = False  # at the next crossing
+        self._place = math.inf  # [m] where it does, or did before; inf: it has not
         self._states: Mapping[str, str] = {}
         self.systems = frozenset(place.system for place in self._crossings if place.system)
 
@@ -184,7 +187,7 @@ class Crossings:
         """
         while self._next < len(self._crossings) and self._crossings[self._next].entry < front:
             self._next += 1
-            self._waits_at = math.inf
+            self._waits, self._place = False, math.inf
         for number in range(self._next, len(self._crossings)):
             place = self._crossings[number]
             if place.entry - front > _SIGHT:
@@ -193,15 +196,17 @@ class Crossings:
             if wanted or self._is_blocked(place, leader):
                 for before in self._stops_before(number, front):
                     entry = self._crossings[before].entry
-                    if before == self._next and self._waits_at < math.inf:
-                        return self._waits_at
-                    if speed * speed <= 2.0 * HARDEST * max(entry - front, 1e-3):
-                        stop = max(entry - STOP_BEFORE, min(front, entry))
-                        if before == self._next:
-                            self._waits_at = stop
-                        return stop
+                    first = before == self._next
+                    too_late = speed * speed > 2.0 * HARDEST * max(entry - front, 1e-3)
+                    if too_late and not (first and self._waits):
+                        continue
+                    stop = max(entry - STOP_BEFORE, min(front, entry - _CLEAR))
+                    if first:
+                        self._waits, self._place = True, min(self._place, stop)
+                        stop = self._place
+                    return stop
             elif number == self._next:
-                self._waits_at = math.inf
+                self._waits = False
         return math.inf
 
     def _stops_before(self, number: int, front: float) -> list[int]:
@@ -230,7 +235,9 @@ class Crossings:
         if not len(crowd):
             return False
         u, w = place_on(crowd.position, place.kerb, place.along)
-        reach = np.maximum(self._kerb_distance, self._kerb_time * crowd.desired_speed)
+        waits = number == self._next and self._waits
+        sure = _SURE if waits else 0.0
+        reach = np.maximum(self._kerb_distance, (self._kerb_time + sure) * crowd.desired_speed)
         near = is_near(u, w, place.length, place.half_width + reach, reach)
         if not near.any():
             return False
@@ -248,7 +255,7 @@ class Crossings:
         arrives, leaves = to_go / pace, to_leave / pace
         enters, clears = self._own_times(place, front, speed)
         first = leaves + (_BEFORE if speed > _CRAWLING else _AFTER) < enters
-        later = arrives > max(clears + _BEFORE, _PATIENCE)
+        later = arrives > max(clears + _BEFORE, _PATIENCE) + sure
         return bool((coming & (to_leave > 0.0) & ~first & ~later).any())
 
     def _own_times(self, place: PathCrossing, front: float, speed: float) -> tuple[float, float]:

@@ -17,7 +17,7 @@ NEAR = 3.0
 """[m] Somebody who is this near in front keeps the ego from driving on."""
 
 _SAME = 1e-6  # [s]
-_WAITING = (-2.0, 0.5)  # [m] behind and beyond a waiting place at which the ego waits there
+_WAITING = (-3.0, 0.5)  # [m] behind and beyond a waiting place at which the ego waits there
 
 
 Owed = tuple[float, NDArray[np.bool_]]

@@ -73,7 +73,7 @@ JUNCTION = JunctionOnWay(20.0, 40.0, (33.0,))
         (21.0, 1.5, 0),
         (32.0, 4.0, 0),  # at the place where it may wait
         (33.4, 4.0, 0),
-        (30.5, 4.0, 1),
+        (29.5, 4.0, 1),
         (34.0, 4.0, 1),
         (44.5, 4.0, 1),  # the rear is still in it
         (45.5, 4.0, 0),
