@@ -1,12 +1,14 @@
 """Does giveway stay civil, whatever it is given? A campaign of mutated inputs tells.
 
     python benchmarks/campaign.py --seed 1 --count 5000 --out FOLDER [--jobs 2] [--again]
+    python benchmarks/campaign.py --seed 1 --kind replay --count 150 --out FOLDER
     python benchmarks/campaign.py --seed 1 --only 1234 --out FOLDER
 
-Scenarios, settings, studies, vehicle profiles, FMUs, trajectories, presets and the records of a
-study are mutated, and the command that reads them is run. It is civil if it does what was asked, or
-says in one line why not. It is not if it ends with a traceback or by a signal, hangs, fails without
-its one line, says more than that, or if a resumed study silently has other tables.
+Scenarios, settings, studies, vehicle profiles, FMUs, trajectories, presets, the records of a
+study, results of runs and journals are mutated, and the command that reads them is run. It is civil
+if it does what was asked, or says in one line why not. It is not if it ends with a traceback or by
+a signal, hangs, fails without its one line, says more than that, or if a resumed study silently has
+other tables.
 
 Each case is determined by seed and number (but for a study's records, which tell when they were
 made) and has a process of its own, forked from one in which everything is imported. There, runs are
@@ -46,22 +48,21 @@ PATIENCE: Final = 5  # times as long for one that is not done then: SUMO's step 
 
 
 def try_case(
-    seed: int, number: int, bases: Bases, nursery: Nursery, folder: Path, limit: int = LIMIT
+    options: argparse.Namespace, number: int, bases: Bases, nursery: Nursery, folder: Path
 ) -> Verdict:
     """Make a case, type its command, judge what it came to.
 
     Args:
-        seed: of the campaign.
+        options: of the campaign: its seed, the kind of its cases, the limit [s] for a command.
         number: of the case.
         bases: what is mutated.
         nursery: where it is typed.
         folder: for the input, which stays there.
-        limit: [s] for the command.
     """
     began = monotonic()
     for patience in (1, PATIENCE):
-        case = make_case(seed, number, bases, folder)
-        ended = nursery.type(case.words, folder, patience * limit)
+        case = make_case(options.seed, number, bases, folder, options.kind)
+        ended = nursery.type(case.words, folder, patience * options.limit)
         if not ended.hung:
             break
     original = bases.study if case.kind == "records" else None
@@ -72,7 +73,8 @@ def main() -> int:
     """Go on with a campaign, or repeat one case."""
     options = _parser().parse_args()
     out: Path = options.out.absolute()
-    results = out / f"seed_{options.seed}.jsonl"
+    kind = f"_{options.kind}" if options.kind else ""
+    results = out / f"seed_{options.seed}{kind}.jsonl"
     out.mkdir(parents=True, exist_ok=True)
     if options.only is not None:
         _go_on(options, out, [options.only], lambda verdict: print(json.dumps(asdict(verdict))))
@@ -103,7 +105,7 @@ def _go_on(
             bases = Bases(out / "bases" / str(place), nursery)
             for number in numbers[place :: options.jobs]:
                 folder = out / "cases" / str(number)
-                keep(try_case(options.seed, number, bases, nursery, folder, options.limit))
+                keep(try_case(options, number, bases, nursery, folder))
 
     with ThreadPoolExecutor(options.jobs) as pool:
         list(pool.map(some, range(options.jobs)))
@@ -138,6 +140,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=5000, help="cases, from number 0 on")
+    parser.add_argument("--kind", choices=tuple(KINDS), help="of all cases; default: drawn")
     parser.add_argument("--again", action="store_true", help="try what was not civil once more")
     parser.add_argument("--only", type=int, help="number of one case, which is tried again")
     parser.add_argument("--out", type=Path, required=True, help="folder of the campaign")

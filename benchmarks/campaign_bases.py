@@ -1,13 +1,15 @@
-"""What the campaign mutates: scenarios, settings, studies, profiles, FMUs, clips, presets, records.
+"""What the campaign mutates: scenarios, settings, vehicles, clips, presets, results.
 
 All of it is in the repository, or made here from it, once for each ``--out``.
 """
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
+import sys
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -154,6 +156,16 @@ _ADDITIONAL: Final = """<additional>
         <destProbReroute id="A0A1"/></interval></rerouter>
 </additional>
 """
+_JOURNAL: Final = """import sys
+from pathlib import Path
+from giveway.api import run_checked
+from giveway.config.loading import as_layer, load
+from giveway.cosimulation.preflight import preflight
+settings = {"crowd": {"pedestrians": 3}, "time_limit": 1.0}
+journal, results = map(Path, sys.argv[1:])
+checked = preflight(*load([as_layer(settings)]))
+run_checked(checked, results=results, journal=journal, pictures=False)
+"""
 _RATE: Final = 29.97  # [1/s] of the clips
 
 
@@ -269,6 +281,37 @@ class Bases:
         if not folder.exists():
             file.write_text(STUDY)
             self._said("study", file, "--out", folder, "--no-report")
+        return folder
+
+    @cached_property
+    def runs(self) -> list[Path]:
+        """Results of runs, made by this giveway: with predictions, and with cars around."""
+        from giveway.studies.identity import software_identity
+
+        folder = self._folder / f"runs-{software_identity()}"
+        predicted = ("shared_space", "--pedestrians", 3, "--record-predictions", 0.5)
+        words = {"predicted": predicted, "street": ("street", "--pedestrians", 3)}
+        for name, those in words.items():
+            if not (folder / name).exists():
+                short = ("--time-limit", 1, "--no-pictures", "--out", folder / name)
+                self._said("run", *those, *short)
+        return [folder / name for name in words]
+
+    @cached_property
+    def journal(self) -> Path:
+        """The journal that a killed run has left, whose results were to go to ``r``."""
+        from giveway.studies.identity import software_identity
+
+        folder = self._folder / f"journal-{software_identity()}"
+        if not folder.exists():
+            folder.mkdir()
+            results = self._folder / "journalled"
+            shutil.rmtree(results, ignore_errors=True)
+            made = [sys.executable, "-c", _JOURNAL, folder, results]
+            subprocess.run(made, check=True, capture_output=True)
+            meta = folder / "meta.json"
+            told = json.loads(meta.read_text(encoding="utf-8"))
+            meta.write_text(json.dumps(told | {"results": "r"}), encoding="utf-8")
         return folder
 
     def _said(self, *words: object) -> str:

@@ -42,7 +42,7 @@ class Case:
     mutations: str
 
 
-def make_case(seed: int, number: int, bases: Bases, folder: Path) -> Case:
+def make_case(seed: int, number: int, bases: Bases, folder: Path, only: str | None = None) -> Case:
     """The case that ``seed`` and ``number`` determine.
 
     Args:
@@ -50,11 +50,13 @@ def make_case(seed: int, number: int, bases: Bases, folder: Path) -> Case:
         number: of the case.
         bases: what is mutated.
         folder: for the input; one that is there is replaced.
+        only: the kind of all cases; None: they are drawn.
     """
     drawn = random.Random(f"{seed} {number}")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     kind = drawn.choices(list(KINDS), [weight for weight, _ in KINDS.values()])[0]
+    kind = only or kind
     words, mutations = KINDS[kind][1](drawn, bases, folder)
     return Case(number, kind, words, folder, mutations)
 
@@ -185,6 +187,52 @@ def _broken(drawn: random.Random, file: Path, other: Path) -> str:
     return f"{file.name}: {what}"
 
 
+def _study_folder(drawn: random.Random, bases: Bases, folder: Path) -> str:
+    """Copy a finished study to ``out`` and break files of it; what was done."""
+    study = Path(shutil.copytree(bases.study, folder / "out"))
+    records = sorted(study.glob("records/*/*.json"))
+    others = sorted(file for file in study.iterdir() if file.is_file())
+    done = []
+    for _ in range(drawn.choice((1, 1, 2))):
+        file = drawn.choice(records if drawn.random() < 0.5 else others)
+        done.append(_broken(drawn, file, drawn.choice(records)))
+    return "; ".join(done)
+
+
+def _report(drawn: random.Random, bases: Bases, folder: Path) -> tuple[Words, str]:
+    done = _study_folder(drawn, bases, folder)
+    shown: Words = [] if drawn.random() < 0.1 else ["--no-replays"]
+    return ["report", "out", *shown], done
+
+
+def _rerun(drawn: random.Random, bases: Bases, folder: Path) -> tuple[Words, str]:
+    done = _study_folder(drawn, bases, folder)
+    run = f"c{drawn.randint(1, 4)}-s{drawn.randint(1, 3)}"
+    if drawn.random() < 0.1:
+        content, how = mutate(drawn, run.encode(), "")
+        text = content.decode(errors="replace").replace("\0", "")
+        run, done = text if text[:1] != "-" else "x", f"run: {how}; {done}"
+    return ["rerun", "out", run, "--no-pictures", "--out", "again"], done
+
+
+def _replay(drawn: random.Random, bases: Bases, folder: Path) -> tuple[Words, str]:
+    run = Path(shutil.copytree(drawn.choice(bases.runs), folder / "run"))
+    files = sorted(file for file in run.rglob("*") if file.is_file())
+    chosen = drawn.sample(files, drawn.choice((1, 1, 2)))
+    done = "; ".join(_broken(drawn, file, drawn.choice(files)) for file in chosen)
+    again: Words = [] if drawn.random() < 0.15 else ["--no-rerun"]
+    return ["replay", "run", *again], done
+
+
+def _recover(drawn: random.Random, bases: Bases, folder: Path) -> tuple[Words, str]:
+    journal = Path(shutil.copytree(bases.journal, folder / "journal"))
+    files = sorted(file for file in journal.iterdir() if file.is_file())
+    chosen = drawn.sample(files, drawn.choice((1, 1, 2)))
+    done = "; ".join(_broken(drawn, file, drawn.choice(files)) for file in chosen)
+    where: Words = [] if drawn.random() < 0.3 else ["--out", "out"]
+    return ["recover", "journal", *where], done
+
+
 KINDS: Final[dict[str, tuple[int, Callable[[random.Random, Bases, Path], tuple[Words, str]]]]] = {
     "scenario": (28, _scenario),
     "settings": (15, _settings),
@@ -194,5 +242,9 @@ KINDS: Final[dict[str, tuple[int, Callable[[random.Random, Bases, Path], tuple[W
     "trajectories": (9, _trajectories),
     "preset": (7, _preset),
     "records": (12, _records),
+    "report": (4, _report),
+    "rerun": (4, _rerun),
+    "replay": (6, _replay),
+    "recover": (6, _recover),
 }
 """Each kind's share, and what makes a case of it."""

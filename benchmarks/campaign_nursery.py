@@ -14,6 +14,7 @@ import importlib
 import json
 import os
 import pkgutil
+import shutil
 import signal
 import subprocess
 import sys
@@ -150,6 +151,7 @@ def _become(request: dict[str, Any]) -> None:
     import resource  # Windows has none, nor any fork
 
     code = 1
+    journal = Path(f"{request['err']}.journal")
     try:
         os.setpgid(0, 0)
         for number, place in ((0, os.devnull), (1, request["out"]), (2, request["err"])):
@@ -163,9 +165,13 @@ def _become(request: dict[str, Any]) -> None:
         faulthandler.dump_traceback_later(max(1, request["limit"] - 1), exit=False)
         _spare_processes()
         from giveway.cli import main as giveway
+        from giveway.processes.child import JOURNAL_VARIABLE
 
         words = request["words"]
         sys.argv = ["giveway", *words]
+        if words[0] == "rerun":  # as by its supervisor, who would start Python once more
+            journal.mkdir()
+            os.environ[JOURNAL_VARIABLE] = str(journal)
         try:
             giveway([*words, "--no-isolate"] if words[0] == "run" else words)
         except SystemExit as end:
@@ -176,6 +182,7 @@ def _become(request: dict[str, Any]) -> None:
             with contextlib.suppress(OSError):
                 stream.flush()
     finally:
+        shutil.rmtree(journal, ignore_errors=True)
         os._exit(code)
 
 

@@ -20,6 +20,7 @@ TABLES: Final = ("runs", "cells", "levels", "comparison", "situations", "failure
 BAD: Final = ("traceback", "native", "hang", "different", "nonsense", "mute", "noise")
 _LONGEST: Final = 1500  # characters of a clear line
 _FINDINGS: Final = ("doctor", "fmu", "study")  # they may say on a whole screen what is wrong
+_FORCED: Final = ("run", "study", "validate", "calibrate", "rerun", "recover")  # have --force
 _INFINITY: Final = re.compile(rb"(?<=,)-?inf(?=[,\r\n])")
 _STEERING: Final = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 _TRACEBACK: Final = "Traceback (most recent call last)"
@@ -136,7 +137,7 @@ def _same_tables(one: Path, other: Path) -> bool:
 def _typed_again(case: Case) -> tuple[int, str]:
     """Exit code and words of a case as a user types it: in a process that giveway isolates."""
     command = [sys.executable, "-m", "giveway", *map(str, case.words), "--force"]
-    if case.words[0] not in ("run", "study", "validate", "calibrate"):
+    if case.words[0] not in _FORCED:
         command.pop()
     try:
         done = subprocess.run(

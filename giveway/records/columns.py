@@ -73,8 +73,8 @@ EGO_COLUMNS = (
         "string",
         None,
         "what it stands for: person, vehicle, light, stop, yield (at a crossing: to people, or "
-        "since it is blocked), plan (people expected in front), none; empty: it drives, or drives "
-        "off",
+        "since it is blocked; where lanes merge: to vehicles), plan (people expected in front), "
+        "none; empty: it drives, or drives off",
     ),
 )
 

@@ -27,7 +27,8 @@ _MANOEUVRES = {
     "drive on": "driving on costs least, for all that people may answer to it",
     "as planned": "nothing costs less than what was planned before",
 }
-_AIMED = re.compile(r"(?P<rate>[-+][\d.e+-]+ m/s\^2) to (?P<speed>[\d.e+-]+ m/s)")
+_NUMBER = r"\d+(?:\.\d+)?(?:e[-+]?\d+)?"
+_AIMED = re.compile(rf"(?P<rate>[-+]{_NUMBER} m/s\^2) to (?P<speed>-?{_NUMBER} m/s)")
 _SAFETY = {
     "safety layer": "the safety layer brakes: a stop must stay possible",
     "unavoidable": "the safety layer brakes: no braking is surely enough",

@@ -158,7 +158,8 @@ def _notes(run: RunFolder, predictions: pd.DataFrame | None, remark: str, thin: 
         )
     if not run.scene.road:
         notes.append("No road outlines: this results folder keeps none.")
-    return notes + [str(text) for text in run.manifest.get("remarks") or ()]
+    remarks = run.manifest.get("remarks")
+    return notes + [str(text) for text in (remarks if isinstance(remarks, list) else ())]
 
 
 def _walk_unrecorded(run: RunFolder) -> bool:

@@ -14,10 +14,13 @@ from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.layers import build_config, read_toml
 from giveway.errors import ConfigError, ResultsError
 from giveway.geometry.kernel import Array
+from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS
 from giveway.records.columns import EGO_COLUMNS, PREDICTION_COLUMNS, TRAJECTORY_COLUMNS, Column
 from giveway.records.scene import Scene
 
 PREDICTIONS = "predictions.csv"
+_ALWAYS = frozenset({"time", "look_ahead", "x", "y", "angle", "speed", "position"})  # in every row
+_SHOWN = 40  # characters of what is no number
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,7 @@ class RunFolder:
     def rows_of(self, ego: str) -> dict[str, Any]:
         """The summary's row of one ego."""
         rows = self.summary.get("egos", [self.summary])
+        rows = [row for row in rows if isinstance(row, dict)] if isinstance(rows, list) else []
         return next((row for row in rows if row.get("ego") == ego), {})
 
     @classmethod
@@ -90,7 +94,7 @@ class RunFolder:
             egos={name: configs.get(name, unnamed) for name in ego["id"].unique()},
             ego=ego,
             trajectories=trajectories,
-            pedestrians=_table(folder / "pedestrians.csv", ()),
+            pedestrians=_table(folder / "pedestrians.csv", PEDESTRIAN_FIELDS),
             summary=_json(folder / "summary.json"),
             manifest=_json(folder / "manifest.json"),
             scene=Scene.read(folder),
@@ -125,8 +129,7 @@ def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
     """A table whose ids are texts, even those of digits; missing texts are empty."""
     texts = {column.name: str for column in columns if column.type == "string"}
     try:
-        frame = pd.read_csv(file, dtype=texts or {"id": str, "ego": str}, na_values=[""],
-                            keep_default_na=False)  # fmt: skip
+        frame = pd.read_csv(file, dtype={"ego": str} | texts, na_values=[""], keep_default_na=False)
     except FileNotFoundError:
         return pd.DataFrame()
     except OSError as error:
@@ -143,7 +146,25 @@ def _table(file: Path, columns: tuple[Column, ...]) -> pd.DataFrame:
         )
     text = list(texts)
     frame[text] = frame[text].fillna("")
+    for column in columns:
+        if column.type != "string":
+            _require_numbers(file, frame[column.name], column.name in _ALWAYS)
     return frame
+
+
+def _require_numbers(file: Path, column: pd.Series, always: bool) -> None:
+    """Make sure that a column holds numbers, or nothing where there may be none."""
+    numbers = pd.to_numeric(column, errors="coerce").to_numpy(np.float64)
+    bad = np.isnan(numbers) & column.notna().to_numpy()
+    if always:
+        bad |= ~np.isfinite(numbers)
+    if bad.any():
+        row = int(np.argmax(bad))
+        found = "nothing" if pd.isna(column.iloc[row]) else repr(str(column.iloc[row])[:_SHOWN])
+        raise ResultsError(
+            f"{file}: line {row + 2}, column '{column.name}': {found}; expected a number, as "
+            "giveway wrote it; make the run again"
+        )
 
 
 def _json(file: Path) -> dict[str, Any]:
