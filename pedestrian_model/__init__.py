@@ -10,11 +10,11 @@ from pedestrian_model.errors import (
     VehicleError,
 )
 from pedestrian_model.influence import vehicle_influence
-from pedestrian_model.model import LONGEST_STEP, CrowdModel, require_steady
+from pedestrian_model.model import LONGEST_STEP, CrowdModel, arrived, require_steady
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
 from pedestrian_model.prediction import Predictor
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
-from pedestrian_model.targets import arrived, targets
+from pedestrian_model.targets import targets
 from pedestrian_model.vehicles import Vehicles
 
 __all__ = [

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from pedestrian_model._constants import pack
 from pedestrian_model._jit import kernel
+from pedestrian_model._routes import Line, aim
 from pedestrian_model._rows import Arrays, Workspace
 from pedestrian_model._step import FINE, march, parts
 from pedestrian_model.crowd import Crowd
@@ -191,3 +192,40 @@ def divergence(i: int, crowd: Crowd, vehicles: Vehicles) -> DivergenceError:
         f"pedestrian {i}: the state is not finite (position {x} m, velocity {v} m/s); "
         "check its state before the step"
     )
+
+
+def arrived(crowd: Crowd, radius: float) -> NDArray[np.bool_]:
+    """Mask (n,): on the way to the last way-point and within ``radius`` [m] of it, or its line."""
+    mask = np.empty(len(crowd), dtype=np.bool_)
+    _fill_arrived(
+        crowd.position,
+        crowd.waypoints,
+        crowd.waypoint_passage,
+        crowd.waypoint_start,
+        crowd.waypoint_index,
+        radius,
+        mask,
+    )
+    return mask
+
+
+@kernel
+def _fill_arrived(
+    position: NDArray[np.float64],
+    waypoints: NDArray[np.float64],
+    passage: NDArray[np.float64],
+    start: NDArray[np.int64],
+    waypoint_index: NDArray[np.int64],
+    radius: float,
+    mask: NDArray[np.bool_],
+) -> None:
+    """Who is on the way to the last way-point and within ``radius`` of it, or of its line."""
+    w, q = waypoints, passage
+    for i in range(len(mask)):
+        last = start[i + 1] - 1
+        x, y = position[i, 0], position[i, 1]
+        p = Line(w[last, 0], w[last, 1], q[last, 0], q[last, 1], q[last, 2])
+        to_x, to_y = aim(x, y, p, 0.0)
+        dx, dy = to_x - x, to_y - y
+        on_the_way = start[i] + waypoint_index[i] == last
+        mask[i] = on_the_way and dx * dx + dy * dy <= radius * radius

@@ -14,6 +14,7 @@ lag of one sample: position and speed do not depend on the force instantaneously
 algebraic loop.
 """
 
+from collections.abc import Mapping, Sequence
 from time import perf_counter
 
 import numpy as np
@@ -31,6 +32,8 @@ from giveway.cosimulation.ways import LawRecords
 from giveway.crowd.disturbance import disturbance_of
 from giveway.crowd.reachable import spawn_remark, way_of
 from giveway.ego.ego import Ego
+from giveway.ego.merges import Behind
+from giveway.ego.right_of_way import Traffic
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.geometry.kernel import Array
 from giveway.processes.heartbeat import INSTANT, MILLISECONDS, PHASE, Phase
@@ -191,9 +194,12 @@ class Loop:
             parts.priority.update(self._roster.crowd)
         self._mirror.read(self._egos, self._roster.crowd.position)
         rooms = self._look_ahead()
-        self._law.signals(self._start + self._k * self._time_step)
+        if self._law.ruled:
+            self._law.signals(self._start + self._k * self._time_step)
         background, yielding = self._mirror.background, parts.yielding
-        merging = self._merging.update(background, self._egos)
+        merging: Sequence[Mapping[str, Behind]] = ()
+        if any(ego.way.merges is not None for ego in self._egos):
+            merging = self._merging.update(background, self._egos)
         if yielding is not None and (background.ids or yielding.limited):
             yielding.update(background, self._roster.crowd, self._egos, rooms, merging)
         self._record_background()
@@ -202,7 +208,9 @@ class Loop:
     def _look_ahead(self) -> dict[str, float]:
         """Let egos take note of lights and traffic; who has to wait for one, and the room [m]."""
         sumo, rooms = self._parts.sumo, dict[str, float]()
-        traffic = self._traffic.of(self._mirror.background, self._egos)
+        traffic: Traffic = {}
+        if any(ego.way.visited for ego in self._egos):
+            traffic = self._traffic.of(self._mirror.background, self._egos)
         for ego in self._egos:
             if ego.way.systems or traffic:
                 states = sumo.light_states(ego.way.systems)
@@ -270,7 +278,8 @@ class Loop:
         if len(roster.ids) > self._named:
             self._recorder.name_pedestrians(roster.ids[self._named :])
             self._named = len(roster.ids)
-        self._law.walks(roster)
+        if self._law.ruled:
+            self._law.walks(roster)
         crowd = roster.crowd
         within = self._near if self._k % self._far_steps else np.inf
         self._recorder.crowd(roster.present, crowd.position, crowd.velocity, self._places(), within)

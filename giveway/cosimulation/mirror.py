@@ -104,8 +104,10 @@ class Mirror:
             now[:, 6] = background.width[near]
             extrapolate(self.poses, self._egos, self._time_step)
         self._since = 0
-        self._bends.read(background, near, None if self._long else _close(background, near, egos))
-        self._bends.fill(self.poses, self._egos, 0)
+        if len(near):
+            close = None if self._long else _close(background, near, egos)
+            self._bends.read(background, near, close)
+            self._bends.fill(self.poses, self._egos, 0)
 
     def _require_finite(self, vehicles: BackgroundVehicles) -> None:
         bad = ~np.isfinite(vehicles.x + vehicles.y + vehicles.speed)
@@ -131,8 +133,8 @@ class Mirror:
         """Move background vehicles on by one control step in which SUMO itself does not step."""
         if self.poses.shape[1] > self._egos:
             carry_on(self.poses, self._egos, self._time_step)
+            self._bends.fill(self.poses, self._egos, self._since + 1)
         self._since += 1
-        self._bends.fill(self.poses, self._egos, self._since)
 
     # --- to SUMO ------------------------------------------------------------------------------
 

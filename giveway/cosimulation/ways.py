@@ -106,19 +106,22 @@ class LawRecords:
     Args:
         session: the running simulation.
         recorder: gathers the rows.
+
+    Attributes:
+        ruled: there is anything on any ego's way that the law speaks of.
     """
 
     def __init__(self, session: SumoSession, recorder: Recorder) -> None:
         self._session = session
         self._recorder = recorder
-        self._ruled = False
+        self.ruled = False
         self._states: dict[str, str] = {}
 
     def depart(self, way: EgoWay) -> None:
         """Note an ego's way, if the law of the road has a say on it."""
         if not way.is_ruled:
             return
-        self._ruled = True
+        self.ruled = True
         self._recorder.way(way)
         self._states |= dict.fromkeys(sorted(way.systems - self._states.keys()), "")
 
@@ -132,7 +135,7 @@ class LawRecords:
 
     def walks(self, roster: Roster) -> None:
         """Once at each control instant: who has joined the crowd, and means to walk where."""
-        if not self._ruled or not roster.newcomers:
+        if not self.ruled or not roster.newcomers:
             return
         crowd, recorder = roster.crowd, self._recorder
         new = set(roster.newcomers)

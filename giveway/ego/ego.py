@@ -191,7 +191,10 @@ class Ego:
                 kept = self.config.regulation.safe_distance
                 tolerated = given_up(leader, vehicles, front, speed, kept, self._origin)
             ahead = np.minimum(ahead, vehicles + tolerated)
-        stop, stops_for = min(self.way.stop_at(front, speed, crowd, leader), (waits, "yield"))
+        stop, stops_for = math.inf, ""
+        if self.way.bounds:
+            stop, stops_for = self.way.stop_at(front, speed, crowd, leader)
+            stop, stops_for = min((stop, stops_for), (waits, "yield"))
         if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
             allowed = stop + _BEYOND + self._origin
             ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
@@ -295,7 +298,8 @@ class Ego:
         """Step the FMU with the force decided on."""
         self._pose = None
         self.vehicle.step(self._force)
-        self.way.pass_time(self.front, self.vehicle.speed, self._time_step)
+        if self.way.bounds:
+            self.way.pass_time(self.front, self.vehicle.speed, self._time_step)
 
     def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
         """The row of this instant for the tables."""

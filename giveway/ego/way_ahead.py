@@ -24,6 +24,7 @@ class WayAhead:
 
     Attributes:
         systems: SUMO's ids of the traffic lights that matter.
+        bounds: there is anything on its path that may bound it.
         visited: the junctions on the path, where it keeps to right of way.
         stop: station [m] at which it had to stop when it last asked; inf: nowhere.
     """
@@ -43,6 +44,8 @@ class WayAhead:
         self._crossings = crossings
         self._right_of_way = right_of_way
         self.visited = () if right_of_way is None else right_of_way.junctions
+        parts = lights, stops, crossings, right_of_way, merges
+        self.bounds = any(part is not None for part in parts)
         watched = [part for part in (lights, crossings, right_of_way) if part is not None]
         self.systems = frozenset[str]().union(*(part.systems for part in watched))
 
