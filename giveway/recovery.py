@@ -146,12 +146,13 @@ def recover_left(
 
 
 def _look_at(journal: Path, contents: JournalContents) -> LeftJournal:
-    if not {"config", "results"} <= contents.meta.keys():
+    config, results = (contents.meta.get(name) for name in ("config", "results"))
+    known = {"config", "results"} <= contents.meta.keys()
+    if not (known and isinstance(config, str) and isinstance(results, str | None)):
         raise ResultsError(
             f"{journal}: holds no journal of a run; 'giveway recover' lists those that there are"
         )
-    settings = tomllib.loads(contents.meta["config"])
-    results = contents.meta["results"]
+    settings = tomllib.loads(config)
     return LeftJournal(
         path=journal,
         scenario=str(settings.get("scenario", "")),

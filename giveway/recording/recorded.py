@@ -21,6 +21,8 @@ from giveway.records.tracks import (
 )
 from giveway.records.way import EgoWay
 
+_MOST = 2.0**53  # beyond it a number of 64 bits has no exact integers
+
 
 class RecordedEgo(NamedTuple):
     """One ego's rows."""
@@ -77,22 +79,22 @@ class RecordedRows:
         *texts, iterations = columns[-5:]
         words: Sequence[Any] = [word(text) for text in texts]
         numbers: Sequence[Any] = columns[2:-5]  # in EgoTrack's order
-        return EgoTrack(*numbers, *words, iterations.astype(np.int64))  # type: ignore[call-arg]
+        return EgoTrack(*numbers, *words, _indices(iterations))  # type: ignore[call-arg]
 
     def _predictions_of(self, number: float) -> PredictionTrack:
         rows = self._rows["predictions"]
         rows = rows[(rows[:, 0] < len(self.time)) & (rows[:, 1] == number)]
         step, _, pedestrian, look_ahead, x, y = rows.T
         return PredictionTrack(
-            time=self.time[step.astype(np.int64)],
-            pedestrian=pedestrian.astype(np.int64),
+            time=self.time[_indices(step)],
+            pedestrian=_indices(pedestrian),
             look_ahead=look_ahead,
             x=x,
             y=y,
         )
 
     def _words(self, indices: Array) -> NDArray[np.str_]:
-        return np.array(self._names["words"], dtype=np.str_)[indices.astype(np.int64)]
+        return np.array(self._names["words"], dtype=np.str_)[_indices(indices)]
 
     def crowd_track(self) -> CrowdTrack:
         """The crowd's rows as arrays."""
@@ -100,8 +102,8 @@ class RecordedRows:
         rows = rows[: np.searchsorted(rows[:, 0], len(self.time))]  # no copy: it may be most of RAM
         step, pedestrian, x, y, vx, vy = rows.T
         return CrowdTrack(
-            step=step.astype(np.int64),
-            pedestrian=pedestrian.astype(np.int64),
+            step=_indices(step),
+            pedestrian=_indices(pedestrian),
             x=np.ascontiguousarray(x),
             y=np.ascontiguousarray(y),
             vx=np.ascontiguousarray(vx),
@@ -115,7 +117,7 @@ class RecordedRows:
             columns = [np.ascontiguousarray(column) for column in self._rows["background"].T]
             names = np.array(self._names["vehicles"], dtype=np.str_)
             time, vehicle, kind, *numbers = columns
-            who, what = names[vehicle.astype(np.int64)], names[kind.astype(np.int64)]
+            who, what = names[_indices(vehicle)], names[_indices(kind)]
             self._background = BackgroundTrack(time, who, what, *numbers)
         return self._background
 
@@ -144,3 +146,14 @@ class RecordedRows:
     def timings(self) -> Timings:
         """The computing times as an array."""
         return Timings(self._rows["timing"].copy())
+
+
+def _indices(numbers: Array) -> NDArray[np.int64]:
+    """Numbers that stand for indices or counts.
+
+    Raises:
+        ValueError: one does not; a broken journal holds anything.
+    """
+    if not (np.abs(numbers) < _MOST).all():  # nor is nan
+        raise ValueError("no index")
+    return numbers.astype(np.int64)

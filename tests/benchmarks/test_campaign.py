@@ -23,14 +23,18 @@ SEED = 100
 LIMIT = campaign.PATIENCE * campaign.LIMIT  # [s] for what takes less than one
 ALARM = getattr(signal, "SIGALRM", 14)
 SAMPLE = {  # a hundred cases; those of studies take longest
-    "scenario": 22,
-    "settings": 22,
-    "profile": 14,
-    "fmu": 17,
-    "preset": 9,
-    "trajectories": 9,
+    "scenario": 19,
+    "settings": 20,
+    "profile": 13,
+    "fmu": 16,
+    "preset": 8,
+    "trajectories": 8,
     "records": 4,
     "study": 3,
+    "report": 1,
+    "rerun": 1,
+    "replay": 4,
+    "recover": 3,
 }
 LONG = ("validate", "doctor", "check")  # commands that draw, or load what nothing else needs
 

@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -21,6 +22,7 @@ from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.locks import locked
 from giveway.processes.supervisor import Verdict
 from giveway.recording.journal import MAGIC, RECORD, Kind
+from giveway.recording.recorded import RecordedRows
 from giveway.recovery import recover, recover_left
 
 MANY = 600
@@ -192,6 +194,36 @@ def test_what_is_no_journal_is_named(
     assert done.returncode == 2
     (line,) = done.stderr.splitlines()
     assert line.startswith(f"error: j/{name}: is ")
+
+
+@pytest.mark.parametrize(
+    "meta", ['{"config": false, "results": null}', '{"config": "", "results": 1}']
+)
+def test_a_journal_whose_description_is_broken_is_named(
+    tmp_path: Path,
+    type_here: Callable[..., subprocess.CompletedProcess[str]],
+    meta: str,
+) -> None:
+    (tmp_path / "j").mkdir()
+    Heartbeat(tmp_path / "j")
+    (tmp_path / "j" / "meta.json").write_text(meta)
+    done = type_here("recover", "j")
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("error: j: holds no journal of a run; 'giveway recover' lists")
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("index", [np.nan, np.inf, 1e300])
+def test_rows_whose_indices_are_none_are_not_cast(index: float) -> None:
+    rows = {
+        name: np.zeros((0, columns))
+        for name, columns in {"ego": 2, "background": 9, "timing": 7}.items()
+    }
+    rows |= {"clock": np.zeros((2, 1)), "crowd": np.array([[0.0, index, 0.0, 0.0, 0.0, 0.0]])}
+    recorded = RecordedRows(rows, {"pedestrians": ("p",)})
+    with pytest.raises(ValueError, match="no index"):
+        recorded.crowd_track()
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a full disk")

@@ -122,6 +122,46 @@ def test_a_folder_that_is_no_run_is_one_clear_line(
     assert not (tmp_path / "page.html").exists()
 
 
+@pytest.mark.parametrize(
+    ("file", "column", "cell", "shown"),
+    [
+        ("ego.csv", "x", "x" * 5000, "'" + "x" * 40 + "'"),
+        ("ego.csv", "speed", "", "nothing"),
+        ("ego.csv", "gap", "1.5x", "'1.5x'"),
+        ("trajectories.csv", "y", "inf", "'inf'"),
+        ("trajectories.csv", "vx", "<b>", "'<b>'"),
+        ("pedestrians.csv", "minimum_clearance", "ped2", "'ped2'"),
+    ],
+)
+def test_what_is_no_number_is_one_clear_line(
+    folder: Path, tmp_path: Path, refused: Any, file: str, column: str, cell: str, shown: str
+) -> None:
+    broken = tmp_path / "broken"
+    shutil.copytree(folder, broken)
+    head, first, *others = (broken / file).read_text().splitlines()
+    names, cells = head.split(","), first.split(",")
+    assert len(cells) == len(names)
+    cells[names.index(column)] = cell
+    (broken / file).write_text("\n".join([head, ",".join(cells), *others]) + "\n")
+    with refused(ResultsError, broken / file, f"line 2, column '{column}': {shown}; expected"):
+        write_replay(broken, tmp_path / "page.html")
+
+
+@pytest.mark.parametrize(
+    ("file", "content"),
+    [("summary.json", "[1]"), ("summary.json", '{"egos": 3}'), ("summary.json", '{"egos": [3]}')]
+    + [("manifest.json", '{"remarks": 3}'), ("manifest.json", "7")],
+)
+def test_what_a_replay_can_do_without_may_be_anything(
+    folder: Path, tmp_path: Path, file: str, content: str
+) -> None:
+    strange = tmp_path / "strange"
+    shutil.copytree(folder, strange)
+    (strange / file).write_text(content)
+    write_replay(strange, tmp_path / "page.html")
+    assert (tmp_path / "page.html").stat().st_size > 10_000
+
+
 def test_a_page_that_cannot_be_written_is_one_clear_line(folder: Path, refused: Any) -> None:
     with refused(ResultsError, folder / "ego.csv" / "page.html", "--out"):
         write_replay(folder, folder / "ego.csv" / "page.html")
