@@ -14,6 +14,7 @@ from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
 from giveway.ego.lights import Lights
 from giveway.ego.waiting import make_waiting_ego
+from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.sumo.lanes import Light
@@ -45,7 +46,7 @@ def drive(
         waiting = make_waiting_ego(config, make_controller(config, STEP), STEP, stack)
         waiting.start(config.ego.initial_speed or 0.0)
         lights = Lights([Light(line, "tls", 0)], comfortable=2.0, hardest=8.0)
-        ego = Ego(waiting, path, DEPARTURE, shape, lights, 1900.0, STEP)
+        ego = Ego(waiting, path, DEPARTURE, shape, WayAhead(lights), 1900.0, STEP)
         poses = np.zeros((waiting.horizon, 1, 7))
         poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
         for k in range(round((yellow_at + YELLOW + RED) / STEP)):
