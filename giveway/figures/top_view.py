@@ -32,6 +32,7 @@ VIEW = (50.0, 32.0)  # [m] width and height of a view that follows the ego
 TICK = 1.0  # [s] of walking is the length of a pedestrian's velocity tick
 NOSE = np.array([(0.9, 0.5), (0.6, 0.85), (0.6, 0.15)])  # of the ego: parts of length and width
 SEGMENTS = 150  # at most, per trajectory
+PAUSE = 2.5  # [s] without a record, after which a trajectory begins anew: SUMO moved the person
 
 
 @styled
@@ -228,11 +229,13 @@ def _draw_pedestrian_trajectories(
     groups = PedestrianGroups(crowd)
     places = np.column_stack((crowd.x, crowd.y))[groups.order]
     times = time[crowd.step[groups.order]]
+    pauses = np.concatenate([[0], np.cumsum(np.diff(times) > PAUSE)])
     segments, ages = [np.empty((0, 2, 2))], [np.empty(0)]
     for first, last in zip(groups.first, groups.last, strict=True):
         kept = _thinned(int(first), int(last))
-        segments.append(np.stack((places[kept[:-1]], places[kept[1:]]), axis=1))
-        ages.append(times[kept[:-1]])
+        known = np.diff(pauses[kept]) == 0
+        segments.append(np.stack((places[kept[:-1]], places[kept[1:]]), axis=1)[known])
+        ages.append(times[kept[:-1]][known])
     lines = LineCollection(
         list(np.concatenate(segments)), array=np.concatenate(ages), norm=colours, cmap=TIME_COLOURS,
         linewidths=1.0, capstyle="round", label="pedestrians",

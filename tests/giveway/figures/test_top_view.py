@@ -104,6 +104,23 @@ def test_the_overview_holds_every_trajectory_in_the_colour_of_its_time(run):
     assert lines.norm.vmax == ego.time[-1]
 
 
+def test_where_sumo_moved_a_person_meanwhile_no_line_is_drawn(run):
+    ego, crowd = run(30, 1, "mpc")
+    away = (crowd.pedestrian == 0) & (np.abs(ego.time[crowd.step] - ego.time[0] - 5.0) < 2.0)
+    rest = CrowdTrack(
+        *(getattr(crowd, name)[~away] for name in ("step", "pedestrian", "x", "y", "vx", "vy")),
+        ids=crowd.ids,
+    )
+
+    def longest(track):
+        overview, _ = panels(top_view_figure(ego, track, CAR, R))
+        ends = np.array(drawn(overview, LineCollection, "pedestrians").get_segments())
+        return np.hypot(*(ends[:, 1] - ends[:, 0]).T).max()
+
+    assert away.sum() > 50
+    assert longest(rest) == pytest.approx(longest(crowd), rel=0.2)
+
+
 def test_the_road_lies_underneath(run):
     ego, crowd = run(5, 1, "mpc")
     area = np.array([(0.0, -2.0), (45.0, -2.0), (45.0, 2.0), (0.0, 2.0), (0.0, -2.0)])
