@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fmus import FmuProfileError
-from fmus.profile.pace import Pace, between, make_pace
+from fmus.profile.pace import Pace, between, make_pace, step_to_run_with
 
 H = 0.05  # [s]
 
@@ -222,3 +222,10 @@ def test_the_default_step_of_an_fmu_that_can_do_any_is_none(zoo, open_car):
 def test_a_step_of_the_profile_comes_first(zoo, open_car):
     car = open_car(zoo.car(only_step=0.03), fmu={"step": 0.025})
     assert car.prepared.pace.step == 0.025
+
+
+@pytest.mark.parametrize(
+    ("fmu_step", "flag"), [(0.05, ""), (0.025, ""), (0.02, " and run with --time-step 0.02")]
+)
+def test_the_flag_that_a_run_needs_for_an_fmus_own_step(fmu_step, flag):
+    assert step_to_run_with(fmu_step) == flag
