@@ -15,11 +15,11 @@ from giveway.config.controller_sections import (
     PerceptionConfig,
     PidConfig,
     PlannerConfig,
-    RegulationConfig,
     SafetyConfig,
     TunedPidConfig,
 )
 from giveway.config.option import Section, expectation, option
+from giveway.config.regulation import RegulationConfig
 from giveway.config.sections import (
     CrowdConfig,
     EgoConfig,

@@ -11,7 +11,6 @@ from typing import Final, Literal
 
 from pydantic import model_validator
 
-from giveway.config.controller_sections import GAP, MILLIMETRE
 from giveway.config.option import (
     Displacement,
     NameList,
@@ -24,6 +23,7 @@ from giveway.config.option import (
     TimeOrWindow,
     option,
 )
+from giveway.config.reasons import GAP, MILLIMETRE
 
 _SUMO_ID = r"^[^\s|\\'\";,:!<>&*?]+$"  # what SUMO accepts as the name of anything
 _NEAREST = 0.01  # [m] a shorter side of an area, or a shorter walk, is none

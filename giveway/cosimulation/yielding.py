@@ -18,7 +18,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from giveway.config.controller_sections import CORRIDOR_MARGIN
+from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.cosimulation.lane_paths import LanePaths, gaps_ahead, sort_pedestrians
 from giveway.ego.ego import Ego
 from giveway.ego.merges import Behind

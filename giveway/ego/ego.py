@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from controller import Decision, Observation
-from giveway.config.controller_sections import CORRIDOR_MARGIN
+from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight

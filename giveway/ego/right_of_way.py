@@ -99,6 +99,7 @@ class RightOfWay:
         """The junctions whose traffic matters to an ego at ``front`` [m]."""
         while self._next < len(self.junctions) and self.junctions[self._next].exit < front:
             self._next += 1
+            self._stop = math.inf  # it was for the junction passed
             self._going = self._halted = False
             self._stood, self._followed = 0.0, -math.inf
         near = self.junctions[self._next :]

@@ -29,7 +29,7 @@ from giveway.figures.style import (
 from giveway.records.tracks import EgoTrack
 
 VEHICLE: dict[str, Any] = {"color": GREY, "linewidth": 1.2, "label": "distance to vehicle"}
-RED_LIGHT: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "label": "distance to red light"}
+STOP: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "label": "distance to its next stop"}
 # Colour and opacity of a phase.
 SHADES = {"mpc": (SKY_BLUE, 0.14), "pid": (ORANGE, 0.28), "safety": (PURPLE, 0.40)}
 NAMES = {"mpc": "MPC acts", "pid": "PID acts", "safety": "safety layer acts"}
@@ -134,7 +134,7 @@ def _draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: 
     around = np.concatenate(([False], pedestrian_in_front, [False]))
     alone = pedestrian_in_front & ~around[:-2] & ~around[2:]
     axes.plot(ego.time[alone], gap[alone], ".", color=GREEN, markersize=4, zorder=3)
-    for distance, look in ((ego.vehicle_gap, VEHICLE), (ego.stop_gap, RED_LIGHT)):
+    for distance, look in ((ego.vehicle_gap, VEHICLE), (ego.stop_gap, STOP)):
         if np.isfinite(distance).any():
             there = np.where(np.isfinite(distance), distance, np.nan)
             axes.plot(ego.time, there, zorder=2.5, **look)
@@ -212,7 +212,7 @@ def _legend(egos: Sequence[EgoTrack]) -> list[Artist]:
         Line2D([], [], color=GREEN, label="gap"),
         Line2D([], [], color=VERMILION, linewidth=1.2, label="force"),
     ]
-    for name, look in (("vehicle_gap", VEHICLE), ("stop_gap", RED_LIGHT)):
+    for name, look in (("vehicle_gap", VEHICLE), ("stop_gap", STOP)):
         if any(np.isfinite(getattr(ego, name)).any() for ego in egos):
             handles.append(Line2D([], [], **look))
     return [*handles, *phase_handles(egos)]

@@ -12,8 +12,8 @@ from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 from shapely import LineString
 
-from giveway.config.controller_sections import CORRIDOR_MARGIN
 from giveway.config.presets import parameters_of
+from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.errors import ResultsError
 from giveway.figures.study_rows import pretty_unit
 from giveway.geometry.path import angle_to_heading, angles_to_headings

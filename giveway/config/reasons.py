@@ -1,0 +1,9 @@
+"""Why options have the bounds that they have, where several options share a reason."""
+
+MILLIMETRE = 0.001
+"""[m] No gap between bodies is meant to be smaller."""
+
+GAP = "a gap between bodies is between a millimetre and what a street holds"
+TYRES = "tyres hold 10 m/s^2; below 0.1 m/s^2 nobody notices"
+FORCE = "a newton moves no vehicle, 1000 kN no road holds"
+BUFFER = "it is a stretch of road that a vehicle drives within its sight"
