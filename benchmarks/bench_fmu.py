@@ -119,11 +119,12 @@ def main() -> None:
             {variant: run(options.ticks) / options.ticks * 1e6 for variant, run in ticks.items()}
             for _ in range(options.rounds)
         ]
-    print(f"{'a tick':10}" + "".join(f"{kind:>15}" for kind in kinds) + f"{'isolation':>15}")
+    print(f"{'a tick':10}" + "".join(f"{k:>15}" for k in (*kinds, "isolation", "/ FMPy")))
     for version in versions:
         columns = "".join(f"{median(r[version, k] for r in rounds):12.2f} us" for k in kinds)
         added = median(r[version, "isolated"] - r[version, "in-process"] for r in rounds)
-        print(f"FMI {version:6}{columns}{added:+12.2f} us")
+        ratio = median(r[version, "isolated"] / r[version, "FMPy"] for r in rounds)
+        print(f"FMI {version:6}{columns}{added:+12.2f} us{ratio:15.2f}")
     print(f"\n{'set-up':22}{'first start':>15}{'another':>15}{'close':>15}")
     for version in versions:
         for kind in kinds[1:]:

@@ -18,6 +18,7 @@ from fmus.errors import (
     FmuStepError,
 )
 from fmus.interfaces.vehicle import Vehicle
+from fmus.isolation import processor
 from fmus.isolation.cleanup import remove
 from fmus.isolation.process_host import ProcessHost, make_process_host
 from fmus.isolation.wire import LOAD, QUIT, START, STEP, Client, GarbledError, Text
@@ -117,7 +118,7 @@ class IsolatedVehicle(Vehicle):
             FmuStateError: the vehicle is not running.
         """
         self._require_step(force)
-        self._exchange(STEP, force, 0.0, self._step_timeout)
+        self._exchange(STEP, force, processor.current(), self._step_timeout)
         self._steps += 1
         self.time = self._steps * self.step_size
 

@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 from fmus.description.model import Kind
 from fmus.driving.vehicle import VehicleFmu
 from fmus.errors import FmuError
+from fmus.isolation.processor import Follower
 from fmus.isolation.wire import (
     CONNECTION_LOST,
     DONE,
@@ -112,6 +113,7 @@ class _Worker:
         self._connection = connection
         self._vehicle: VehicleFmu | None = None
         self._warned = 0
+        self._follower = Follower()
 
     def run(self) -> None:
         while (request := receive(self._connection)) is not None:
@@ -123,13 +125,14 @@ class _Worker:
             except Exception as error:  # a fault of giveway, or an FMU that tampers with Python
                 self._refuse(number, "", f"{type(error).__name__}: {printable(error)}")
             else:
-                reply(self._connection, DONE, number, self._state, text)
+                reply(self._connection, DONE, number, self._state(), text)
                 if what == QUIT:
                     return
 
     def _do(self, what: bytes, first: float, second: float) -> Text | None:
         vehicle = self._vehicle
         if what == STEP and vehicle is not None:
+            self._follower.follow(int(second))
             vehicle.step(first)
         elif what == LOAD:
             self._vehicle = self._order.vehicle()
@@ -148,7 +151,6 @@ class _Worker:
         self._warned = len(warnings)
         return {"warnings": [printable(w, _WARNING) for w in new]}
 
-    @property
     def _state(self) -> tuple[float, float, float]:
         vehicle = self._vehicle
         if vehicle is None:
@@ -159,4 +161,4 @@ class _Worker:
         text: dict[str, Any] = {"error": kind, "message": printable(message, _MESSAGE)}
         text["time"] = 0.0 if self._vehicle is None else self._vehicle.time
         text |= self._new_warnings() or {}
-        reply(self._connection, FAILED, number, self._state, text)
+        reply(self._connection, FAILED, number, self._state(), text)
