@@ -10,14 +10,13 @@ from collections.abc import Mapping
 
 from giveway.ego.ego import Ego
 from giveway.ego.gaps import travel_time
+from giveway.ego.giving_way import AFTER, BEFORE, HARDEST, USUAL_SPEED
 from giveway.ego.junctions import PathJunction
-from giveway.ego.right_of_way import RED, SIGHT, Approach, Traffic, letter_of
+from giveway.ego.lights import RED
+from giveway.ego.right_of_way import SIGHT, Approach, Traffic, letter_of
 
 _PULL_AWAY = 2.0  # [m/s^2] of those that have to wait, if they did not
 _COMING, _LEAVING = 1.5, 1.0  # [m/s^2] of the ego
-_USUAL = 13.9  # [m/s]
-_AFTER, _BEFORE = 1.0, 0.5  # [s] between the ego and whoever passes before or after it
-_HARDEST = 3.0  # [m/s^2] of braking that is asked of anybody
 
 
 def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[str, float]:
@@ -41,7 +40,7 @@ def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[
             if other.name == ego.id or other.distance <= 0.0:
                 continue
             needed = other.speed**2 / (2.0 * other.distance)
-            if needed <= _HARDEST and _gives_way(place, other, inside, states, ego):
+            if needed <= HARDEST and _gives_way(place, other, inside, states, ego):
                 found[other.name] = min(other.distance, found.get(other.name, other.distance))
     return found
 
@@ -60,10 +59,11 @@ def _gives_way(
     if its in RED or its == "G" or not named or (mutual and not inside):
         return False
     speed, front = ego.vehicle.speed, ego.front
-    comes = travel_time(where.enter - front, speed, _COMING, max(_USUAL, speed))
+    comes = travel_time(where.enter - front, speed, _COMING, max(USUAL_SPEED, speed))
     goes = travel_time(where.leave + ego.shape.length - front, speed, _LEAVING, max(speed, 4.0))
+    fastest = max(USUAL_SPEED, other.speed)
     enters, clears = (
-        travel_time(other.distance + station, other.speed, _PULL_AWAY, max(_USUAL, other.speed))
+        travel_time(other.distance + station, other.speed, _PULL_AWAY, fastest)
         for station in (where.other_enter, where.other_leave + other.length)
     )
-    return clears + _AFTER > comes and goes + _BEFORE > enters
+    return clears + AFTER > comes and goes + BEFORE > enters

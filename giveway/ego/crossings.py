@@ -23,6 +23,7 @@ from giveway.crowd.crossings import (
     turning_in,
     use_of,
 )
+from giveway.ego.giving_way import CRAWLING, HARDEST, STOP_BEFORE, leaves_no_room
 from giveway.ego.leader import NO_LEADER, Leader
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
@@ -30,8 +31,6 @@ from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
 from pedestrian_model import Crowd
 
-HARDEST = 3.0  # [m/s^2] braking that anybody who wants to cross may ask of the ego
-STOP_BEFORE = 1.0  # [m] before the crossing the front bumper is to stand
 _SAMPLE, _COARSE = 0.1, 2.0  # [m] between the places of the body that are looked at
 _GRAIN = 0.5  # [m] between the points of its outline, at most
 _BESIDE = 0.8  # [m] from the ego's side to the middle of somebody who is not in its way
@@ -40,8 +39,6 @@ _PATIENCE = 4.5  # [s] away from the ego's way, and a little more than an encoun
 _CLEAR = 0.3  # [m] before the crossing it stops at the latest
 _SURE = 1.0  # [s] in addition, before it starts again; else it would creep on bit by bit
 _PULL_AWAY = 1.5  # [m/s^2] of the ego that has waited
-_GAP = 1.0  # [m] behind the ego once it has left a crossing
-_CRAWLING = 2.0  # [m/s] a vehicle ahead that is slower may come to a stand
 _SIGHT = 60.0  # [m] before a crossing from which on people are looked at
 
 
@@ -193,7 +190,7 @@ class Crossings:
             if place.entry - front > _SIGHT:
                 break
             wanted = self._is_wanted(number, front, speed, crowd)
-            if wanted or self._is_blocked(place, leader):
+            if wanted or leaves_no_room(leader, place.entry, place.exit, self._length):
                 for before in self._stops_before(number, front):
                     entry = self._crossings[before].entry
                     first = before == self._next
@@ -220,15 +217,6 @@ class Crossings:
             stops.append(stops[-1] - 1)
         return stops[::-1]
 
-    def _is_blocked(self, place: PathCrossing, leader: Leader) -> bool:
-        """Whether the vehicle ahead leaves no room behind the crossing."""
-        room = leader.station - place.exit
-        return (
-            leader.speed < _CRAWLING
-            and leader.station > place.entry
-            and room < self._length + _GAP + leader.speed
-        )
-
     def _is_wanted(self, number: int, front: float, speed: float, crowd: Crowd) -> bool:
         """Whether somebody with priority and the ego would be on its way over it together."""
         place = self._crossings[number]
@@ -254,14 +242,14 @@ class Crossings:
         pace = np.maximum(crowd.desired_speed[rows], 0.1)
         arrives, leaves = to_go / pace, to_leave / pace
         enters, clears = self._own_times(place, front, speed)
-        first = leaves + (_BEFORE if speed > _CRAWLING else _AFTER) < enters
+        first = leaves + (_BEFORE if speed > CRAWLING else _AFTER) < enters
         later = arrives > max(clears + _BEFORE, _PATIENCE) + sure
         return bool((coming & (to_leave > 0.0) & ~first & ~later).any())
 
     def _own_times(self, place: PathCrossing, front: float, speed: float) -> tuple[float, float]:
         """When [s] the ego would enter the crossing and have left it, if it went on."""
         entry, left = place.entry - front, place.exit + self._length - front
-        if speed > _CRAWLING:
+        if speed > CRAWLING:
             return entry / speed, left / speed
         a = _PULL_AWAY
         return (

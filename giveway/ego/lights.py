@@ -3,12 +3,12 @@
 import math
 from collections.abc import Mapping, Sequence
 
+from giveway.ego.giving_way import STOP_BEFORE
 from giveway.sumo.lanes import Light
 
-STOP_BEFORE = 1.0  # [m] before the line the front bumper is to stand
-_RED = frozenset("rRu")  # red, red with yellow
+RED = frozenset("rRu")  # red, red with yellow
 _ARROW = frozenset("s")  # red with a green arrow: after a stop one may go
-_YELLOW = frozenset("yY")
+YELLOW = frozenset("yY")
 
 
 class Lights:
@@ -40,7 +40,7 @@ class Lights:
         self._hardest = hardest
         self._colours = ["g"] * len(lights)
         self._passing = [False] * len(lights)  # decided at yellow
-        self._red = _RED if arrows else _RED | _ARROW
+        self._red = RED if arrows else RED | _ARROW
         self._next = 0
         self.systems = frozenset(light.system for light in self._lights)
 
@@ -56,9 +56,9 @@ class Lights:
             light = self._lights[i]
             state = states.get(light.system, "")
             colour = state[light.link] if light.link < len(state) else "O"
-            if colour in _YELLOW and self._colours[i] not in _YELLOW:
+            if colour in YELLOW and self._colours[i] not in YELLOW:
                 self._passing[i] = self._needed(i, front, speed) > self._comfortable
-            elif colour not in _YELLOW:
+            elif colour not in YELLOW:
                 self._passing[i] = False
             self._colours[i] = colour
 
@@ -68,7 +68,7 @@ class Lights:
             self._next += 1
         for i in range(self._next, len(self._lights)):
             colour = self._colours[i]
-            stops = colour in self._red or (colour in _YELLOW and not self._passing[i])
+            stops = colour in self._red or (colour in YELLOW and not self._passing[i])
             if stops and self._needed(i, front, speed) <= self._hardest:
                 return self._lights[i].station - STOP_BEFORE
         return math.inf

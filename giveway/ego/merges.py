@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from giveway.ego.giving_way import HARDEST
 from giveway.ego.leader import NO_LEADER, Leader
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
@@ -27,7 +28,6 @@ _BEFORE = 1.0  # [m] before the place that a short vehicle waits for another one
 _SHORT, _SWEPT = 4.0, 0.5  # [m] of length, beyond which this share of it cuts the corner
 _GAP = 1.0  # [m] between two vehicles where the ways are one
 _OPENING = 0.25  # [m] of that which may still be missing, per metre before the place
-_HARDEST = 3.0  # [m/s^2] that the ego brakes for others
 _ASKED = 2.0  # [m/s^2] that it may ask of them
 _FIRM = 3.0  # [m/s^2] for an ego that has waited, or of somebody who brakes for it already
 _PATIENCE = 5.0  # [s] that it waits before
@@ -207,7 +207,7 @@ class Merges:
             if rear >= front + _GAP:
                 # as the place comes closer, less of the gap may be missing
                 leader = min(leader, Leader(rear, max(0.0, rival.speed - _OPENING * speed)))
-            elif speed * speed <= 2.0 * _HARDEST * to_go:
+            elif speed * speed <= 2.0 * HARDEST * to_go:
                 place_to_wait = place.entry - _before(rival.length)
                 stop = min(stop, max(place_to_wait, min(front, place.entry)))
         return leader, stop

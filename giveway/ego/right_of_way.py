@@ -15,27 +15,31 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from giveway.ego.crossings import HARDEST, STOP_BEFORE
 from giveway.ego.gaps import travel_time
+from giveway.ego.giving_way import (
+    AFTER,
+    BEFORE,
+    CRAWLING,
+    HARDEST,
+    STOP_BEFORE,
+    USUAL_SPEED,
+    leaves_no_room,
+)
 from giveway.ego.junctions import PathJunction
 from giveway.ego.leader import NO_LEADER, Leader
+from giveway.ego.lights import RED, YELLOW
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.junctions import Movement
 
 SIGHT = 60.0  # [m] before a junction from which on others are looked at
 _PULL_AWAY, _BRISK = 1.5, 3.0  # [m/s^2] of the ego: no less, no more
 _COMING = 1.0  # [m/s^2] of others, who may speed up
-_USUAL = 13.9  # [m/s] that others may speed up to
-_AFTER, _BEFORE = 1.0, 0.5  # [s] between the ego and whoever passes after or before it
 _GOING = 0.3  # [s] to whoever passes after it, for an ego that has decided to go
 _STAYS = 3.0  # [s] after which one who stands and need not will go on standing
 _STANDING = 0.2  # [m/s]
-_CRAWLING = 2.0  # [m/s] a vehicle ahead that is slower may come to a stand
-_GAP = 1.0  # [m] behind the ego once it has left a junction
 _AT_LINE = 4.0  # [m] before the line a vehicle stands at it
 _DECIDED = 10.0  # [m] before the line the ego keeps to its decision to go
 _STOPS_AT_YELLOW = 2.5  # [m/s^2] of braking with which others stop at yellow
-RED, _YELLOW = frozenset("rRu"), frozenset("yY")
 _NOBODY = frozenset("GZ")  # with priority, or a zip, whose order :mod:`giveway.ego.merges` knows
 
 
@@ -144,16 +148,14 @@ class RightOfWay:
             leader: the vehicle ahead.
         """
         stop = self._stop
-        if leader.speed < _CRAWLING:
-            for place in self.junctions[self._next :]:
-                if place.entry < front:
-                    continue
-                room = leader.station - place.exit
-                if leader.station > place.entry and room < self._length + _GAP + leader.speed:
-                    needed = speed * speed / (2.0 * max(place.entry - front, 1e-3))
-                    if needed <= HARDEST:
-                        stop = min(stop, max(place.entry - STOP_BEFORE, min(front, place.entry)))
-                break
+        for place in self.junctions[self._next :]:
+            if place.entry < front:
+                continue
+            if leaves_no_room(leader, place.entry, place.exit, self._length):
+                needed = speed * speed / (2.0 * max(place.entry - front, 1e-3))
+                if needed <= HARDEST:
+                    stop = min(stop, max(place.entry - STOP_BEFORE, min(front, place.entry)))
+            break
         return stop
 
     def _note(
@@ -192,7 +194,7 @@ class RightOfWay:
         )
         if first and before and letter not in "GM" and self._time - self._followed < follow_up:
             return line
-        margin = _AFTER
+        margin = AFTER
         if first and self._going:
             critical, margin = 0.0, _GOING
         stop, stay = math.inf, set[str]()
@@ -243,7 +245,7 @@ class RightOfWay:
                 return False
             there = other.distance + where.other_enter <= 0.0
             waits = other.standing > 0.0  # inside the junction, for others
-            return there or other.speed > _CRAWLING or (named and letter != "G" and not waits)
+            return there or other.speed > CRAWLING or (named and letter != "G" and not waits)
         if letter in _NOBODY or not named:
             return False
         if movement.system:
@@ -251,7 +253,7 @@ class RightOfWay:
             if its in RED:
                 return False
             needed = other.speed**2 / (2.0 * other.distance)
-            return its not in _YELLOW or needed > _STOPS_AT_YELLOW
+            return its not in YELLOW or needed > _STOPS_AT_YELLOW
         if letter == "w":
             return other.distance < _AT_LINE and other.standing > self._stood
         return True
@@ -275,14 +277,14 @@ class RightOfWay:
         enter = travel_time(where.enter - front, speed, _BRISK, fastest)
         to_enter = other.distance + where.other_enter
         to_leave = other.distance + where.other_leave + other.length
-        comes = travel_time(to_enter, other.speed, _COMING, max(_USUAL, other.speed))
+        comes = travel_time(to_enter, other.speed, _COMING, max(USUAL_SPEED, other.speed))
         goes = math.inf
         if other.speed >= _STANDING:  # in the junction it drives no faster than its lanes allow
             inside = min(other.speed, place.movements[other.number].speed)
             outside = min(max(other.distance, 0.0), to_leave)
             goes = outside / other.speed + (to_leave - outside) / inside
         in_time = comes >= max(clear + margin, line + critical if front <= place.entry else 0.0)
-        return not in_time and goes + _BEFORE > enter
+        return not in_time and goes + BEFORE > enter
 
 
 def letter_of(movement: Movement, states: Mapping[str, str]) -> str:

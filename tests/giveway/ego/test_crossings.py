@@ -13,7 +13,8 @@ import math
 import numpy as np
 import pytest
 
-from giveway.ego.crossings import STOP_BEFORE, Crossings, crossings_on
+from giveway.ego.crossings import Crossings, crossings_on
+from giveway.ego.giving_way import STOP_BEFORE
 from giveway.ego.leader import Leader
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath

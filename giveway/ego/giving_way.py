@@ -1,0 +1,28 @@
+"""What giving way has in common, at crossings, at junctions and where lanes become one."""
+
+from giveway.ego.leader import Leader
+
+STOP_BEFORE = 1.0  # [m] before a line or a crossing the front bumper is to stand
+HARDEST = 3.0  # [m/s^2] of braking that anybody with priority may ask for
+CRAWLING = 2.0  # [m/s] a vehicle that is slower may come to a stand
+USUAL_SPEED = 13.9  # [m/s] that vehicles are expected to speed up to
+AFTER, BEFORE = 1.0, 0.5  # [s] to whoever has priority, who passes after or before
+_GAP = 1.0  # [m] between the ego and a vehicle that stands ahead
+
+
+def leaves_no_room(leader: Leader, entry: float, leave: float, length: float) -> bool:
+    """Whether a slow vehicle ahead may keep the ego from leaving a crossing or junction.
+
+    Who enters would have to stand on it (Vienna Convention on Road Traffic, 1968, art. 18.2).
+
+    Args:
+        leader: the vehicle ahead.
+        entry: station [m] of the front bumper at which the ego comes onto it.
+        leave: station [m] that the rear passes last.
+        length: of the ego's body [m].
+    """
+    return (
+        leader.speed < CRAWLING
+        and leader.station > entry
+        and leader.station - leave < length + _GAP + leader.speed
+    )
