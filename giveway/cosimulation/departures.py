@@ -21,7 +21,7 @@ from giveway.geometry.bodies import BODY
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.geometry.path import EgoPath
 from giveway.scenario_files import declares, flows_due, undeclared
-from giveway.sumo.lanes import LanePath
+from giveway.sumo.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 
 LONGEST_WAIT = 86_400.0  # [s] for a departure in a scenario that never ends

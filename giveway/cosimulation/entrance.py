@@ -24,7 +24,7 @@ from giveway.errors import ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.records.way import EgoWay
-from giveway.sumo.lanes import LanePath
+from giveway.sumo.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.sumo.vehicles import VehicleState
 

@@ -5,7 +5,8 @@ from collections.abc import Mapping, Sequence
 
 from giveway.ego.stops import Stop
 from giveway.geometry.path import EgoPath
-from giveway.sumo.lanes import LanePath, Lanes
+from giveway.sumo.lane_path import LanePath
+from giveway.sumo.lanes import Lanes
 from giveway.sumo.vehicles import PlannedStop, VehicleState
 
 SERVING: tuple[str, ...] = ("bus", "coach", "tram")

@@ -14,7 +14,7 @@ from giveway.geometry.path import EgoPath
 from giveway.recording.recorder import Recorder
 from giveway.records.way import CrossingOnWay, EgoWay, Halt, JunctionOnWay, StopLine
 from giveway.sumo.crossings import Crossing
-from giveway.sumo.lanes import Light
+from giveway.sumo.lane_path import Light
 from giveway.sumo.session import SumoSession
 
 _SAMPLE = 0.5  # [m] between the points of the path that are looked at

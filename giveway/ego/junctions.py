@@ -11,7 +11,8 @@ from giveway.geometry.conflict import Conflict, conflict
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.sumo.junctions import Junctions, Movement
-from giveway.sumo.lanes import Lanes, Passage
+from giveway.sumo.lane_path import Passage
+from giveway.sumo.lanes import Lanes
 
 _ASIDE = 0.3  # [m] between bodies that just do not touch
 _ONWARDS = 10.0  # [m] behind a junction, where ways that join are one

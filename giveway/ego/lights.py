@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from giveway.ego.giving_way import STOP_BEFORE
-from giveway.sumo.lanes import Light
+from giveway.sumo.lane_path import Light
 
 RED = frozenset("rRu")  # red, red with yellow
 _ARROW = frozenset("s")  # red with a green arrow: after a stop one may go

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from giveway.scenario_files.right_of_way import JunctionLogic, right_of_way
+from giveway.sumo.inside import lanes_inside
 from giveway.sumo.lanes import Lanes
 
 
@@ -71,7 +72,7 @@ class Junctions:
             if source.startswith(":"):
                 continue  # people's
             for link in self._sumo.lane.getLinks(source):
-                inside = self._inside(link[4])
+                inside = lanes_inside(self._sumo, link[4])
                 number = numbers.get(inside[-1]) if inside else None
                 if number is not None:
                     found[number] = Movement(
@@ -87,12 +88,3 @@ class Junctions:
                         *logic.requests[number],
                     )
         return found
-
-    def _inside(self, lane: str) -> tuple[str, ...]:
-        """The lanes inside the junction from ``lane`` on."""
-        lanes: list[str] = []
-        while lane and lane not in lanes:
-            lanes.append(lane)
-            onwards = self._sumo.lane.getLinks(lane)
-            lane = onwards[0][4] if onwards else ""
-        return tuple(lanes)

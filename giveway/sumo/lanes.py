@@ -3,7 +3,6 @@
 import itertools
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,6 +12,8 @@ import numpy as np
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.sumo.crossings import Crossing, crossings
+from giveway.sumo.inside import lanes_inside
+from giveway.sumo.lane_path import LanePath, Light, Passage, SpeedLimit
 from giveway.sumo.merging import Merging, mergings
 
 CHANGE_LENGTH = 30.0  # [m] over which a vehicle changes to the next lane
@@ -25,48 +26,6 @@ class Link(NamedTuple):
 
     lane: str
     via: tuple[str, ...]  # lanes inside the junction
-
-
-class Light(NamedTuple):
-    """The traffic light at the end of a lane, for vehicles that go on to the path's next lane."""
-
-    station: float  # [m] of the stop line along the lane path
-    system: str  # SUMO's id of the traffic light
-    link: int  # index of the movement in the system's state
-
-
-class Passage(NamedTuple):
-    """A lane path's way through a junction."""
-
-    entry: float  # [m] station of the line before it
-    exit: float  # [m] station of the next edge's lane
-    inside: tuple[str, ...]  # lanes in between
-    waiting: tuple[float, ...]  # [m] stations inside at which SUMO's vehicles wait for others
-
-    def shifted(self, by: float) -> "Passage":
-        """The same passage of a path that begins ``by`` [m] earlier."""
-        waiting = tuple(station + by for station in self.waiting)
-        return self._replace(entry=self.entry + by, exit=self.exit + by, waiting=waiting)
-
-
-class SpeedLimit(NamedTuple):
-    """From where on a lane path another lane's limit holds."""
-
-    station: float  # [m] along the lane path
-    speed: float  # [m/s]
-
-
-@dataclass(frozen=True)
-class LanePath:
-    """What lies along a route: the lanes' centre line, the traffic lights and limits on it."""
-
-    points: Array  # (k, 2) [m]
-    lights: tuple[Light, ...]
-    first: str  # the lane that it begins on
-    edges: tuple[float, ...]  # station [m] at which each edge of the route begins
-    limits: tuple[SpeedLimit, ...]  # of each lane, in order; the first holds from the beginning
-    passages: tuple[Passage, ...]  # through junctions whose lanes inside the network has
-    lanes: tuple[tuple[str, str], ...]  # on which it enters and leaves each edge
 
 
 class Lanes:
@@ -277,18 +236,11 @@ class Lanes:
 
     def _links(self, lane: str, edge: str) -> list[Link]:
         """The links from ``lane`` over the junction to ``edge``."""
-        found = []
-        for link in self._sumo.lane.getLinks(lane):
-            target, inside = link[0], link[4]
-            if self._sumo.lane.getEdgeID(target) != edge:
-                continue
-            via = []
-            while inside:
-                via.append(inside)
-                onwards = self._sumo.lane.getLinks(inside)
-                inside = onwards[0][4] if onwards else ""
-            found.append(Link(target, tuple(via)))
-        return found
+        return [
+            Link(link[0], lanes_inside(self._sumo, link[4]))
+            for link in self._sumo.lane.getLinks(lane)
+            if self._sumo.lane.getEdgeID(link[0]) == edge
+        ]
 
     def _begins_inside(self, link: Link, station: float, end: Array) -> list[float]:
         """Stations [m] of the lanes of ``link``, which begins at ``station`` at ``end`` (1, 2)."""

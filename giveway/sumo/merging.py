@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from giveway.geometry.kernel import Array
+from giveway.sumo.inside import lanes_inside
 
 _ZIPPER = "Z"  # SUMO's state of a link at which lanes are joined in turn
 _NARROW = 30.0  # [m] before the junction, two roads may be close to each other already
@@ -71,20 +72,10 @@ def _zipper(
                     continue
                 longest = max(longest, link[7])
                 if other != lane:
-                    via = _inside(sumo, link[4])
+                    via = lanes_inside(sumo, link[4])
                     lines += [shape(name) for name in (other, *via)]
                     over.append(via[-1] if via else other)
     if not over:
         return []
     begin = origin - longest - _NARROW
     return [Merging(target, origin, begin, origin, tuple(lines), frozenset(over))]
-
-
-def _inside(sumo: Any, lane: str) -> list[str]:
-    """The lanes inside a junction from ``lane`` on; it may be empty."""
-    lanes = []
-    while lane:
-        lanes.append(lane)
-        onwards = sumo.lane.getLinks(lane)
-        lane = onwards[0][4] if onwards else ""
-    return lanes

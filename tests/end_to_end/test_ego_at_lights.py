@@ -17,7 +17,7 @@ from giveway.ego.waiting import make_waiting_ego
 from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
-from giveway.sumo.lanes import Light
+from giveway.sumo.lane_path import Light
 from pedestrian_model import OPEN_GROUND, Crowd
 
 STEP = 0.05  # [s]

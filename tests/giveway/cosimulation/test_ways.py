@@ -10,7 +10,7 @@ from giveway.geometry.path import EgoPath
 from giveway.recording.recorder import Recorder
 from giveway.records.way import EgoWay, Halt, JunctionOnWay, StopLine
 from giveway.sumo.crossings import Crossing
-from giveway.sumo.lanes import Light
+from giveway.sumo.lane_path import Light
 from pedestrian_model import Crowd
 
 PATH = EgoPath.through([(0.0, 0.0), (60.0, 0.0)])

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from giveway.ego.lights import STOP_BEFORE, Lights
-from giveway.sumo.lanes import Light
+from giveway.sumo.lane_path import Light
 
 LINE = 100.0  # [m]
 STOP = LINE - STOP_BEFORE
