@@ -14,7 +14,6 @@ lag of one sample: position and speed do not depend on the force instantaneously
 algebraic loop.
 """
 
-from collections.abc import Mapping, Sequence
 from time import perf_counter
 
 import numpy as np
@@ -23,17 +22,13 @@ from numpy.typing import NDArray
 from controller import ControllerError
 from fmus import FmuError
 from giveway.cosimulation.assembly import Parts
-from giveway.cosimulation.merging import Merging
+from giveway.cosimulation.meetings import Meetings
 from giveway.cosimulation.mirror import Mirror
-from giveway.cosimulation.priority import rooms_before
 from giveway.cosimulation.standstill import Standstill
-from giveway.cosimulation.traffic import TrafficWatch
 from giveway.cosimulation.ways import LawRecords
 from giveway.crowd.disturbance import disturbance_of
 from giveway.crowd.reachable import spawn_remark, way_of
 from giveway.ego.ego import Ego
-from giveway.ego.merges import Behind
-from giveway.ego.right_of_way import Traffic
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.geometry.kernel import Array
 from giveway.processes.heartbeat import INSTANT, MILLISECONDS, PHASE, Phase
@@ -85,9 +80,8 @@ class Loop:
         self.endings = {}
         self.remarks = []
         self._standstill = Standstill()
-        self._merging = Merging(parts.sumo.vehicles, parts.sumo.lanes)
         self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
-        self._traffic = TrafficWatch(parts.sumo)
+        self._meetings = Meetings(parts.sumo, parts.yielding)
         self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
         self._far_background = -self._far_steps
         self._near = parts.config.record.near
@@ -193,31 +187,13 @@ class Loop:
         if parts.priority is not None:
             parts.priority.update(self._roster.crowd)
         self._mirror.read(self._egos, self._roster.crowd.position)
-        rooms = self._look_ahead()
         if self._law.ruled:
             self._law.signals(self._start + self._k * self._time_step)
-        background, yielding = self._mirror.background, parts.yielding
-        merging: Sequence[Mapping[str, Behind]] = ()
-        if any(ego.way.merges is not None for ego in self._egos):
-            merging = self._merging.update(background, self._egos)
-        if yielding is not None and (background.ids or yielding.limited):
-            yielding.update(background, self._roster.crowd, self._egos, rooms, merging)
+        background, meetings = self._mirror.background, self._meetings
+        if background.ids or meetings.pending or any(ego.way.bounds for ego in self._egos):
+            meetings.update(background, self._roster.crowd, self._egos)
         self._record_background()
         self._recorder.ledger(self._roster.ledger)
-
-    def _look_ahead(self) -> dict[str, float]:
-        """Let egos take note of lights and traffic; who has to wait for one, and the room [m]."""
-        sumo, rooms = self._parts.sumo, dict[str, float]()
-        traffic: Traffic = {}
-        if any(ego.way.visited for ego in self._egos):
-            traffic = self._traffic.of(self._mirror.background, self._egos)
-        for ego in self._egos:
-            if ego.way.systems or traffic:
-                states = sumo.light_states(ego.way.systems)
-                ego.way.look(sumo.time, ego.front, ego.vehicle.speed, states, traffic)
-                for name, room in rooms_before(ego, states, traffic).items():
-                    rooms[name] = min(room, rooms.get(name, room))
-        return rooms
 
     def _remark_on_spawn_area(self) -> None:
         """Say so if the added pedestrians start where no ego comes by."""
