@@ -18,10 +18,10 @@ from giveway.config.controller_sections import (
     SafetyConfig,
     TunedPidConfig,
 )
+from giveway.config.crowd import CrowdConfig
 from giveway.config.option import Section, expectation, option
 from giveway.config.regulation import RegulationConfig
 from giveway.config.sections import (
-    CrowdConfig,
     EgoConfig,
     RecordConfig,
     SumoConfig,

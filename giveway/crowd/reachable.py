@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 import shapely.affinity
 
-from giveway.config.sections import CrowdConfig
+from giveway.config.crowd import CrowdConfig
 from giveway.geometry.kernel import Array
 from giveway.walkways import WalkNetwork, beside
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from giveway.config.sections import CrowdConfig
+from giveway.config.crowd import CrowdConfig
 from giveway.errors import CrowdError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, Pose

@@ -9,7 +9,7 @@ import pytest
 import shapely
 
 import giveway
-from giveway.config.sections import CrowdConfig
+from giveway.config.crowd import CrowdConfig
 from giveway.crowd.reachable import spawn_remark, way_of
 from giveway.walkways import WalkNetwork, beside
 

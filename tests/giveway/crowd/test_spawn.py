@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from giveway.config.sections import CrowdConfig
+from giveway.config.crowd import CrowdConfig
 from giveway.crowd.spawn import spawn
 from giveway.errors import CrowdError
 from giveway.geometry.path import EgoPath
