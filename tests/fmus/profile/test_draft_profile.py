@@ -4,59 +4,19 @@ from __future__ import annotations
 
 import re
 import tomllib
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.drafts import CS, PATH, a_model, drafted, questions, variable
 
 from fmus import bundled_fmu
 from fmus.description import units
-from fmus.description.model import Interface, Kind, Model, Unit, Variable
+from fmus.description.model import Interface, Kind, Unit, Variable
 from fmus.description.reading import read_model
-from fmus.errors import FmuProfileError
 from fmus.profile.draft_profile import draft_profile, require_confident
 from fmus.profile.matching import words_of
 from fmus.profile.vehicle_profile import make_profile
-
-PATH = Path("car.fmu")
-CS = Interface(Kind.CO_SIMULATION, "car")
-
-
-def variable(text, causality, **more):
-    """``name [unit]`` as a variable."""
-    name, _, unit = text.partition(" [")
-    return Variable(name, 0, "Real", causality, unit=unit.rstrip("]"), **more)
-
-
-def a_model(inputs, outputs, parameters=(), interfaces=(CS,), default_step=None, more=()):
-    """Of texts such as ``speed [m/s]``, or variables."""
-    variables = [
-        v if isinstance(v, Variable) else variable(v, causality, settable=causality != "output")
-        for causality, group in (("input", inputs), ("output", outputs), ("parameter", parameters))
-        for v in group
-    ]
-    return Model(
-        path=PATH,
-        fmi_version="2.0",
-        name="Car",
-        guid="{}",
-        generation_tool="",
-        description="",
-        interfaces={interface.kind: interface for interface in interfaces},
-        variables={v.name: v for v in [*variables, *more]},
-        units={},
-        platforms=(),
-        states=0,
-        event_indicators=0,
-        default_step=default_step,
-        default_tolerance=None,
-    )
-
-
-def drafted(inputs, outputs, parameters=(), **more):
-    return draft_profile(a_model(inputs, outputs, parameters, **more))
-
 
 # ---- what is sure ----
 
@@ -227,97 +187,6 @@ def test_the_fmus_own_unit_counts_before_the_name():
     model = a_model(["force [strange]"], ["speed [m/s]"])
     model.units["strange"] = Unit("strange", 1000.0, 0.0, units.FORCE)
     assert draft_profile(model).confident
-
-
-# ---- what is asked ----
-
-
-def questions(draft):
-    assert not draft.confident
-    with pytest.raises(FmuProfileError) as caught:
-        require_confident(draft, PATH)
-    message = str(caught.value)
-    assert message.startswith("car.fmu: ")
-    assert message.isprintable()
-    return message
-
-
-@pytest.mark.parametrize(
-    ("inputs", "outputs", "asked"),
-    [
-        (["force"], ["speed [m/s]"], "[inputs.force] 'force' has no unit; add unit = \"N\""),
-        (["force [N]"], ["speed"], "[outputs.speed] 'speed' has no unit; add unit = \"m/s\""),
-        (["force [N]"], ["speed_kmh"], 'add unit = "km/h"'),
-        (["force [N]"], ["v [m/s]", "x"], "[outputs.position] 'x' has no unit; add unit = \"m\""),
-        (["force [N]"], ["speed [warp]"], "'warp', an unknown unit"),
-    ],
-)
-def test_without_a_unit_nothing_is_sure(inputs, outputs, asked):
-    assert asked in questions(drafted(inputs, outputs))
-
-
-def test_a_force_in_kilograms_is_asked_about():
-    message = questions(drafted(["force [kg]"], ["speed [m/s]"]))
-    assert "in kg, a mass, not a force" in message
-
-
-def test_a_torque_asks_for_the_wheels():
-    message = questions(drafted(["traction [N.m]"], ["speed [m/s]"]))
-    assert "gain = 1 / (radius" in message
-
-
-@pytest.mark.parametrize(
-    ("outputs", "asked"),
-    [
-        (["speed [m/s]", "velocity [m/s]"], "which of 'speed', 'velocity'"),
-        (["v [m/s]", "s [m]", "x [m]"], "which of 's', 'x'"),
-    ],
-)
-def test_two_that_are_as_good_are_a_question(outputs, asked):
-    assert asked in questions(drafted(["force [N]"], outputs))
-
-
-def test_two_ways_to_drive_are_a_question():
-    message = questions(drafted(["force [N]", "speed_setpoint [m/s]"], ["speed [m/s]"]))
-    assert "Choose one way to drive" in message
-
-
-def test_pedals_have_a_strength_that_nobody_tells():
-    draft = drafted(["throttle [1]", "brake [%]"], ["speed [m/s]"])
-    message = questions(draft)
-    assert "[inputs.throttle]" in message
-    assert "full_force = 4000" in message
-    text = re.sub(r"# \? (full_force)", r"\1", draft.toml)
-    profile = make_profile(tomllib.loads(text), "edited draft")
-    assert profile.inputs.brake.full_force == 8000
-
-
-def test_a_throttle_without_a_brake():
-    message = questions(drafted(["throttle [1]"], ["speed [m/s]"]))
-    assert "'throttle' is a throttle, but no input is a brake" in message
-
-
-def test_an_inner_variable_is_not_taken_without_being_asked():
-    inner = variable("mass.v [m/s]", "local")
-    message = questions(drafted(["f [N]"], ["y"], more=[inner]))
-    assert "is it the local variable 'mass.v'" in message
-
-
-def test_nothing_to_drive():
-    message = questions(drafted(["k1", "on"], ["y [V]"]))
-    assert "its inputs are k1, on" in message
-    assert "its outputs are y" in message
-
-
-def test_an_array_asks_for_the_element():
-    states = Variable("speed", 0, "Float64", "output", unit="m/s", shape=(2,))
-    assert "which element" in questions(drafted(["force [N]"], [states]))
-
-
-def test_booleans_and_texts_are_no_candidates():
-    brake = Variable("brake", 0, "Boolean", "input")
-    force = Variable("force", 0, "String", "input")
-    assert "no numeric input" in questions(drafted([brake, force], ["speed [m/s]"]))
 
 
 # ---- how it is stepped ----

@@ -230,25 +230,6 @@ def test_the_api_takes_names_and_files_and_refuses_the_rest(tmp_path: Path) -> N
             as_layer(nonsense)  # type: ignore[arg-type]
 
 
-def test_an_ego_entry_overrides_its_own_keys_only() -> None:
-    config = RunConfig.model_validate(
-        {
-            "controller": "pid",
-            "vehicle": {"mass": 1200.0},
-            "egos": [
-                {"ego": {"id": "a", "route": ["x"]}, "controller": "mpc"},
-                {"ego": {"take_over": "b"}, "vehicle": {"friction": 50.0}},
-            ],
-        }
-    )
-    first, second = config.each_ego()
-    assert (first.ego_id, first.controller, first.vehicle.mass) == ("a", "mpc", 1200.0)
-    assert (second.ego_id, second.controller, second.vehicle.friction) == ("b", "pid-paper", 50.0)
-    assert second.vehicle.mass == 1200.0
-    again = build_config([Layer("dump", tomllib.loads(dump_toml(config)))])
-    assert again.each_ego() == config.each_ego()
-
-
 @pytest.mark.parametrize("given", ["lane", 6.5, "6.5"])
 def test_the_reference_speed_is_a_number_or_the_lane_s(given: object) -> None:
     entry = {"regulation": {"reference_speed": given}}
@@ -276,36 +257,6 @@ def test_another_reference_speed_is_refused(given: object, expected: str) -> Non
         build_config([Layer("file", {"egos": [entry]})])
 
 
-def test_several_vehicles_of_the_scenario_become_several_egos() -> None:
-    config = RunConfig.model_validate({"ego": {"take_over": "b.1, c"}})
-    assert [one.ego_id for one in config.each_ego()] == ["b.1", "c"]
-    assert RunConfig.model_validate({"ego": {"none": True}}).each_ego() == ()
-
-
-@pytest.mark.parametrize(
-    ("entry", "expected"),
-    [
-        ({"crowd": {"pedestrians": 3}}, r"egos\[0\]: unknown key 'crowd'"),
-        ({"vehicle": {"mass": -1}}, r"egos\[0\]: vehicle.mass = -1"),
-        ({"vehicle": {"mass": 1e-9}}, r"vehicle.mass = 1e-09: should be at least 10 \[kg\]: the"),
-        ({"ego": {"initial_speed": 30}}, r"expected within \[mpc\] speed_min"),
-    ],
-)
-def test_a_wrong_ego_entry_is_named(entry: dict, expected: str) -> None:
-    with pytest.raises(ConfigError, match=expected):
-        build_config([Layer("study.toml", {"egos": [entry]})])
-
-
-def test_contradictory_egos_are_refused_where_one_origin_names_both() -> None:
-    flags = {"ego": {"take_over": "5", "route": "a,b"}}
-    with pytest.raises(ConfigError, match="--ego and --ego-route: contradict"):
-        load([Layer("command line", flags, from_flags=True)])
-    with pytest.raises(ConfigError, match=r"take_over and .* none: contradict"):
-        load([Layer("study.toml", {"ego": {"take_over": "5", "none": True}})])
-    config, _ = load([Layer("", {"scenario": "street", "ego": {"take_over": "x"}})])
-    assert config.each_ego()[0].ego_id == "x"  # the scenario's own route gives way
-
-
 def test_a_radius_may_be_a_number() -> None:
     assert RunConfig.model_validate({"crowd": {"zone": 30}}).crowd.zone == "30"
 
@@ -328,13 +279,6 @@ def test_a_long_clock_keeps_its_fractions_on_the_way_to_sumo() -> None:
 
     config = RunConfig.model_validate({"sumo": {"end": 54012.35}})
     assert _start_options(config, True, None).extra == ("--end", "54012.350")
-
-
-def test_an_ego_taken_over_leaves_nothing_of_the_scenarios_route():
-    """What is written down can be read again: the two kinds of ego would contradict each other."""
-    config, _ = load([Layer("user", {"scenario": "shared_space", "ego": {"take_over": ["car"]}})])
-    assert config.ego.route == ()
-    assert load([Layer("again", config.model_dump())])[0] == config
 
 
 @pytest.mark.parametrize("profile", [{"a": 1}, ["car.toml"], 3])

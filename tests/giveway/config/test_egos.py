@@ -1,0 +1,66 @@
+"""Several egos: their entries, what they take from the run, and what contradicts."""
+
+import tomllib
+
+import pytest
+
+from giveway.config import RunConfig
+from giveway.config.layers import Layer, build_config, dump_toml
+from giveway.config.loading import load
+from giveway.errors import ConfigError
+
+
+def test_an_ego_entry_overrides_its_own_keys_only() -> None:
+    config = RunConfig.model_validate(
+        {
+            "controller": "pid",
+            "vehicle": {"mass": 1200.0},
+            "egos": [
+                {"ego": {"id": "a", "route": ["x"]}, "controller": "mpc"},
+                {"ego": {"take_over": "b"}, "vehicle": {"friction": 50.0}},
+            ],
+        }
+    )
+    first, second = config.each_ego()
+    assert (first.ego_id, first.controller, first.vehicle.mass) == ("a", "mpc", 1200.0)
+    assert (second.ego_id, second.controller, second.vehicle.friction) == ("b", "pid-paper", 50.0)
+    assert second.vehicle.mass == 1200.0
+    again = build_config([Layer("dump", tomllib.loads(dump_toml(config)))])
+    assert again.each_ego() == config.each_ego()
+
+
+def test_several_vehicles_of_the_scenario_become_several_egos() -> None:
+    config = RunConfig.model_validate({"ego": {"take_over": "b.1, c"}})
+    assert [one.ego_id for one in config.each_ego()] == ["b.1", "c"]
+    assert RunConfig.model_validate({"ego": {"none": True}}).each_ego() == ()
+
+
+@pytest.mark.parametrize(
+    ("entry", "expected"),
+    [
+        ({"crowd": {"pedestrians": 3}}, r"egos\[0\]: unknown key 'crowd'"),
+        ({"vehicle": {"mass": -1}}, r"egos\[0\]: vehicle.mass = -1"),
+        ({"vehicle": {"mass": 1e-9}}, r"vehicle.mass = 1e-09: should be at least 10 \[kg\]: the"),
+        ({"ego": {"initial_speed": 30}}, r"expected within \[mpc\] speed_min"),
+    ],
+)
+def test_a_wrong_ego_entry_is_named(entry: dict, expected: str) -> None:
+    with pytest.raises(ConfigError, match=expected):
+        build_config([Layer("study.toml", {"egos": [entry]})])
+
+
+def test_contradictory_egos_are_refused_where_one_origin_names_both() -> None:
+    flags = {"ego": {"take_over": "5", "route": "a,b"}}
+    with pytest.raises(ConfigError, match="--ego and --ego-route: contradict"):
+        load([Layer("command line", flags, from_flags=True)])
+    with pytest.raises(ConfigError, match=r"take_over and .* none: contradict"):
+        load([Layer("study.toml", {"ego": {"take_over": "5", "none": True}})])
+    config, _ = load([Layer("", {"scenario": "street", "ego": {"take_over": "x"}})])
+    assert config.each_ego()[0].ego_id == "x"  # the scenario's own route gives way
+
+
+def test_an_ego_taken_over_leaves_nothing_of_the_scenarios_route():
+    """What is written down can be read again: the two kinds of ego would contradict each other."""
+    config, _ = load([Layer("user", {"scenario": "shared_space", "ego": {"take_over": ["car"]}})])
+    assert config.ego.route == ()
+    assert load([Layer("again", config.model_dump())])[0] == config
