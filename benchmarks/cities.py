@@ -62,16 +62,24 @@ def build_city(folder: Path, walkers: int, turnover: float = TURNOVER) -> City:
 
 def netgenerate(network: Path, side: int) -> None:
     """Write a grid of ``side`` times ``side`` signalled junctions."""
-    package = importlib.util.find_spec("sumo")
-    if package is None or package.origin is None:
-        raise SystemExit("no netgenerate: pip install 'giveway[build]'")
-    home = Path(package.origin).parent
-    command = [home / "bin" / "netgenerate", "--grid", f"--grid.number={side}"]
+    command = ["--grid", f"--grid.number={side}"]
     command += [f"--grid.length={BLOCK}", "--default.lanenumber=1", "--sidewalks.guess"]
     command += ["--crossings.guess", "--walkingareas", "--default-junction-type=traffic_light"]
-    command += ["--default.speed=13.89", "--no-turnarounds", "-o", network]
+    command += ["--default.speed=13.89", "--no-turnarounds", "-o", str(network)]
+    call_sumo("netgenerate", *command)
+
+
+def call_sumo(program: str, *options: str | Path) -> None:
+    """Run one of SUMO's programs that build networks."""
+    package = importlib.util.find_spec("sumo")
+    if package is None or package.origin is None:
+        raise SystemExit(f"no {program}: pip install 'giveway[build]'")
+    home = Path(package.origin).parent
+    command = [str(home / "bin" / program), *map(str, options)]
     environment = os.environ | {"SUMO_HOME": str(home)}
-    subprocess.run(list(map(str, command)), check=True, capture_output=True, env=environment)
+    done = subprocess.run(command, check=False, capture_output=True, text=True, env=environment)
+    if done.returncode:
+        raise SystemExit(f"{program}: {' '.join(done.stderr.split())}")
 
 
 def departures(walkers: int, turnover: float) -> Iterator[float]:
