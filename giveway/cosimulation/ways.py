@@ -69,8 +69,7 @@ def _near(path: EgoPath, begin: float, crossings: Sequence[Crossing]) -> tuple[C
     begin = max(0.0, begin)
     count = 2 + round((path.length - begin) / _SAMPLE)
     stations = np.linspace(begin, path.length, count)
-    x = np.interp(stations, path.stations, path.vertices[:, 0])
-    y = np.interp(stations, path.stations, path.vertices[:, 1])
+    x, y = path.points(stations).T
     found: list[tuple[float, CrossingOnWay]] = []
     for crossing in crossings:
         (x_0, y_0), (x_1, y_1) = crossing.ends.tolist()

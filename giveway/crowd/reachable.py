@@ -9,6 +9,7 @@ import shapely.affinity
 
 from giveway.config.crowd import CrowdConfig
 from giveway.geometry.kernel import Array
+from giveway.geometry.path import points_at
 from giveway.walkways import WalkNetwork, beside
 
 _NEAR = 25.0  # [m] from the ego's way: who comes no nearer does not matter to the ego
@@ -43,4 +44,4 @@ def way_of(vertices: Array, stations: Array, first: float, last: float) -> Array
     """(k, 2) [m] the part of a path between two stations [m]."""
     inside = (stations > first) & (stations < last)
     at = np.concatenate([[first], stations[inside], [max(last, first + 1e-3)]])
-    return np.column_stack([np.interp(at, stations, vertices[:, i]) for i in range(2)])
+    return points_at(vertices, stations, at)

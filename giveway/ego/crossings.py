@@ -109,10 +109,10 @@ def crossings_on(
 
 def _points(path: EgoPath, stations: Array) -> Array:
     """(n, 2) [m] the path at ``stations`` (n,) [m], which goes on straight before its beginning."""
-    x, y = (np.interp(stations, path.stations, column) for column in path.vertices.T)
-    before = np.minimum(stations, 0.0)
+    points = path.points(stations)
     heading = path.headings[0]
-    return np.column_stack([x + before * np.cos(heading), y + before * np.sin(heading)])
+    points += np.outer(np.minimum(stations, 0.0), (np.cos(heading), np.sin(heading)))
+    return points
 
 
 def _outlines(path: EgoPath, shape: VehicleShape, stations: Array) -> Array:

@@ -10,6 +10,11 @@ AFTER, BEFORE = 1.0, 0.5  # [s] to whoever has priority, who passes after or bef
 _GAP = 1.0  # [m] between the ego and a vehicle that stands ahead
 
 
+def needed_braking(speed: float, room: float) -> float:
+    """The deceleration [m/s^2] that stops from ``speed`` [m/s] within ``room`` [m]."""
+    return speed * speed / (2.0 * max(room, 1e-3))
+
+
 def leaves_no_room(leader: Leader, entry: float, leave: float, length: float) -> bool:
     """Whether a slow vehicle ahead may keep the ego from leaving a crossing or junction.
 

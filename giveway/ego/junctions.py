@@ -9,7 +9,7 @@ from giveway.ego.gaps import Gap, gap_of
 from giveway.geometry.bodies import BODY
 from giveway.geometry.conflict import Conflict, conflict
 from giveway.geometry.kernel import Array
-from giveway.geometry.path import EgoPath
+from giveway.geometry.path import EgoPath, points_at, stations_of
 from giveway.sumo.junctions import Junctions, Movement
 from giveway.sumo.lane_path import Passage
 from giveway.sumo.lanes import Lanes
@@ -99,14 +99,12 @@ def _piece(path: EgoPath, start: float, end: float) -> Array:
     """(k, 2) [m] the path between two stations."""
     inside = (path.stations > start) & (path.stations < end)
     at = np.concatenate([[start], path.stations[inside], [min(end, path.length)]])
-    x, y = (np.interp(at, path.stations, column) for column in path.vertices.T)
-    return np.column_stack([x, y])
+    return path.points(at)
 
 
 def _way(movement: Movement, lanes: Lanes) -> Array:
     """(k, 2) [m] the way of a movement's vehicles from their line on."""
     onwards = lanes.shape(movement.target)
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(onwards, axis=0).T))])
+    along = stations_of(onwards)
     at = np.concatenate([along[along < _ONWARDS], [min(_ONWARDS, along[-1])]])
-    x, y = (np.interp(at, along, column) for column in onwards.T)
-    return np.concatenate([*map(lanes.shape, movement.inside), np.column_stack([x, y])])
+    return np.concatenate([*map(lanes.shape, movement.inside), points_at(onwards, along, at)])

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from giveway.ego.giving_way import STOP_BEFORE
+from giveway.ego.giving_way import STOP_BEFORE, needed_braking
 from giveway.sumo.lane_path import Light
 
 RED = frozenset("rRu")  # red, red with yellow
@@ -75,4 +75,4 @@ class Lights:
 
     def _needed(self, i: int, front: float, speed: float) -> float:
         """Deceleration [m/s^2] that stops at the line itself."""
-        return speed * speed / (2.0 * max(self._lights[i].station - front, 1e-3))
+        return needed_braking(speed, self._lights[i].station - front)

@@ -82,9 +82,7 @@ def places_of(
         stations = np.arange(max(merging.begin, departure), last, _SAMPLE)
         if not len(stations):
             continue
-        x = np.interp(stations, path.stations, path.vertices[:, 0])
-        y = np.interp(stations, path.stations, path.vertices[:, 1])
-        near = _distances(x, y, merging.lines)
+        near = _distances(path.points(stations), merging.lines)
         if near.min() >= apart:
             continue
         clear = np.flatnonzero(near >= apart)
@@ -99,8 +97,9 @@ def places_of(
     return tuple(sorted(places, key=lambda place: place.entry))
 
 
-def _distances(x: Array, y: Array, lines: Sequence[Array]) -> Array:
-    """(n,) [m] of points to the closest of polylines."""
+def _distances(points: Array, lines: Sequence[Array]) -> Array:
+    """(n,) [m] of ``points`` (n, 2) [m] to the closest of polylines."""
+    x, y = points.T
     nearest = np.full(len(x), np.inf)
     for line in lines:
         for (x_0, y_0), (x_1, y_1) in itertools.pairwise(line):

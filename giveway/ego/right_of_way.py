@@ -24,6 +24,7 @@ from giveway.ego.giving_way import (
     STOP_BEFORE,
     USUAL_SPEED,
     leaves_no_room,
+    needed_braking,
 )
 from giveway.ego.junctions import PathJunction
 from giveway.ego.leader import NO_LEADER, Leader
@@ -135,7 +136,7 @@ class RightOfWay:
             if first:
                 near = place.entry - front <= _DECIDED
                 self._going = stop == math.inf and (self._going or near) and letter not in RED
-            needed = speed * speed / (2.0 * max(stop + STOP_BEFORE - front, 1e-3))
+            needed = needed_braking(speed, stop + STOP_BEFORE - front)
             if stop < math.inf and (needed <= HARDEST or abs(stop - before) <= STOP_BEFORE):
                 self._stop = min(self._stop, max(stop, min(front, stop + STOP_BEFORE)))
 
@@ -151,10 +152,9 @@ class RightOfWay:
         for place in self.junctions[self._next :]:
             if place.entry < front:
                 continue
-            if leaves_no_room(leader, place.entry, place.exit, self._length):
-                needed = speed * speed / (2.0 * max(place.entry - front, 1e-3))
-                if needed <= HARDEST:
-                    stop = min(stop, max(place.entry - STOP_BEFORE, min(front, place.entry)))
+            blocked = leaves_no_room(leader, place.entry, place.exit, self._length)
+            if blocked and needed_braking(speed, place.entry - front) <= HARDEST:
+                stop = min(stop, max(place.entry - STOP_BEFORE, min(front, place.entry)))
             break
         return stop
 

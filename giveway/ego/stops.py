@@ -4,6 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from giveway.ego.giving_way import needed_braking
+
 _STANDING = 0.2  # [m/s] below it the ego has halted
 _PASSED = 1.0  # [m] beyond the stop's end, from which on the ego has driven past it
 
@@ -54,7 +56,7 @@ class Stops:
         following = self._next
         if following is None or front > following.end + _PASSED:
             return math.inf
-        needed = speed * speed / (2.0 * max(following.end - front, 1e-3))
+        needed = needed_braking(speed, following.end - front)
         self._approaching = self._approaching or needed <= self._hardest
         return max(following.end, front) if self._approaching else math.inf
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from giveway.geometry.kernel import Array
+from giveway.geometry.path import points_at, stations_of
 
 _SAMPLE = 0.25  # [m] between the points of the ways that are compared
 
@@ -43,7 +44,6 @@ def conflict(own: Array, other: Array, apart: float) -> Conflict | None:
 
 def _sampled(points: Array) -> tuple[Array, Array]:
     """Stations (n,) [m] along a polyline, and the points (n, 2) [m] there."""
-    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    at = stations_of(points)
     stations = np.linspace(0.0, at[-1], max(2, int(np.ceil(at[-1] / _SAMPLE)) + 1))
-    x, y = (np.interp(stations, at, column) for column in points.T)
-    return stations, np.column_stack([x, y])
+    return stations, points_at(points, at, stations)

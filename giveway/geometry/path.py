@@ -60,13 +60,16 @@ class EgoPath:
                 f"ego path: {len(vertices)} distinct points; expected at least two finite ones"
             )
         steps = np.diff(vertices, axis=0)
-        stations = np.concatenate([[0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))])
-        return cls(vertices, stations, np.arctan2(steps[:, 1], steps[:, 0]))
+        return cls(vertices, stations_of(vertices), np.arctan2(steps[:, 1], steps[:, 0]))
 
     @property
     def length(self) -> float:
         """Arc length [m]."""
         return float(self.stations[-1])
+
+    def points(self, stations: Array) -> Array:
+        """(n, 2) [m] the points at ``stations`` (n,) [m]; beyond an end, the end."""
+        return points_at(self.vertices, self.stations, stations)
 
     def pose(self, station: float, length: float = 0.0) -> Pose:
         """The pose of a body whose front and rear both have their middle on the path.
@@ -91,6 +94,22 @@ class EgoPath:
         frenet = np.empty((2, len(points)))
         project_all(self.vertices, self.stations, points, frenet)
         return frenet[0], frenet[1]
+
+
+def stations_of(vertices: Array) -> Array:
+    """Arc lengths (k,) [m] from the beginning of a polyline to its ``vertices`` (k, 2) [m]."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(vertices, axis=0).T))])
+
+
+def points_at(vertices: Array, stations: Array, at: Array) -> Array:
+    """The points (..., 2) [m] of a polyline at the arc lengths ``at`` (...) [m].
+
+    Args:
+        vertices: (k, 2) [m] of the polyline.
+        stations: (k,) [m] of its vertices.
+        at: where; beyond an end, it is the end.
+    """
+    return np.stack([np.interp(at, stations, column) for column in vertices.T], axis=-1)
 
 
 @kernel

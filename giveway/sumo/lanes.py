@@ -11,6 +11,7 @@ import numpy as np
 
 from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
+from giveway.geometry.path import points_at, stations_of
 from giveway.sumo.crossings import Crossing, crossings
 from giveway.sumo.inside import lanes_inside
 from giveway.sumo.lane_path import LanePath, Light, Passage, SpeedLimit
@@ -302,10 +303,8 @@ def _length(points: Array) -> float:
 
 def _at(points: Array, shares: Array) -> Array:
     """The points of a polyline at ``shares`` in [0, 1] of its length."""
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    x = np.interp(shares * along[-1], along, points[:, 0])
-    y = np.interp(shares * along[-1], along, points[:, 1])
-    return np.column_stack([x, y])
+    along = stations_of(points)
+    return points_at(points, along, shares * along[-1])
 
 
 def lane_area(centre_line: Array, width: float) -> Array:

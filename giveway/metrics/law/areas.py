@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
+from giveway.geometry.path import points_at
 from giveway.metrics.law.drive import Drive, runs
 from giveway.records.way import CrossingOnWay
 
@@ -65,8 +66,7 @@ class _Line:
 
     def at(self, station: Array) -> Array:
         """(n, 2) [m] the points at ``station`` (n,) [m]."""
-        columns = [np.interp(station, self.stations, column) for column in self.vertices.T]
-        return np.stack(columns, axis=-1)
+        return points_at(self.vertices, self.stations, station)
 
 
 def _visits(line: _Line, shape: VehicleShape, crossing: CrossingOnWay) -> list[Area]:
