@@ -1,12 +1,15 @@
 """The commands and their help; what they do stands in the module of each."""
 
+import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from giveway.cli.completion import complete_scenario
 from giveway.cli.fmu import build_export, build_fmu
+from giveway.cli.help import Commands
 from giveway.cli.studies import add_studies
 from giveway.cli.validation import add_validation
 
@@ -15,29 +18,26 @@ HELP = """How should a vehicle drive through a crowd, and what happens to both?
 A vehicle FMU, driven by MPC or PID, and a crowd of VCI pedestrians meet in a SUMO scenario.
 """
 
+_COMPLETING = "_GIVEWAY_COMPLETE"  # with this in the environment a shell asks for completions
+_TYPED = ("COMP_WORDS", "_TYPER_COMPLETE_ARGS")  # the line so far: bash, other shells
 
-def build_app(arguments: Sequence[str]) -> typer.Typer:
+
+def build_app(arguments: Sequence[str]) -> Commands:
     """The typer application that ``arguments`` need.
 
-    The configuration's flags and the framed help take a quarter of a second to load, so they are
-    there only when a command is named: a bare ``giveway --help`` answers at once.
+    The configuration's flags take a tenth of a second to load, so they are there only when a
+    command that has them is named.
     """
     command = next((word for word in arguments if not word.startswith("-")), None)
-    app = typer.Typer(
-        help=HELP,
-        no_args_is_help=True,
-        add_completion=False,
-        pretty_exceptions_enable=False,
-        rich_markup_mode="rich" if command else None,
-    )
+    app = Commands(HELP, completion=True)
     app.callback()(_main)
-    app.command("run")(_with_flags(_run, command))
+    app.add("run", _with_flags(_run, command))
     add_studies(app)
     add_validation(app)
-    app.command("scenarios")(_scenarios)
-    app.command("doctor")(_doctor)
-    app.command("recover")(_recover)
-    app.command("config")(_with_flags(_config, command))
+    app.add("scenarios", _scenarios)
+    app.add("doctor", _doctor)
+    app.add("recover", _recover)
+    app.add("config", _with_flags(_config, command))
     app.add_typer(build_fmu(), name="fmu")
     app.add_typer(build_export(lambda f: _with_flags(f, command, "export")), name="export")
     app.add_typer(_build_plot(), name="plot")
@@ -49,6 +49,9 @@ def invoke(words: list[str]) -> int:
 
     Not by calling the application, which would turn a Ctrl-C into an exit code without a line.
     """
+    if _COMPLETING in os.environ:
+        typed = next((os.environ[name] for name in _TYPED if name in os.environ), "")
+        typer.main.get_command(build_app(typed.split()[1:])).main(prog_name="giveway")
     command = typer.main.get_command(build_app(words))
     try:
         with command.make_context("giveway", words) as context:
@@ -94,7 +97,10 @@ def _run(
     settings: dict[str, object],
     scenario: Annotated[
         str | None,
-        typer.Argument(help="Bundled scenario, folder or .sumocfg (default shared_space)."),
+        typer.Argument(
+            help="Bundled scenario, folder or .sumocfg (default shared_space).",
+            autocompletion=complete_scenario,
+        ),
     ] = None,
     config: Annotated[
         Path | None, typer.Option(help="TOML file with options; flags override it.")
@@ -104,14 +110,20 @@ def _run(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the results there.")] = False,
     parquet: Annotated[
-        bool, typer.Option("--parquet", help="Write the tables as Parquet too.")
+        bool,
+        typer.Option("--parquet", help="Write the tables as Parquet too.", rich_help_panel="Run"),
     ] = False,
-    pictures: Annotated[bool, typer.Option(help="Draw the pictures.")] = True,
+    pictures: Annotated[
+        bool, typer.Option(help="Draw the pictures.", rich_help_panel="Run")
+    ] = True,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Neither progress bar nor summary.")
     ] = False,
     isolate: Annotated[
-        bool, typer.Option(help="Run in a process of its own, whose crash loses no row.")
+        bool,
+        typer.Option(
+            help="Run in a process of its own, whose crash loses no row.", rich_help_panel="Run"
+        ),
     ] = True,
 ) -> None:
     """Drive the ego through a crowd once: summary, CSVs, pictures."""
@@ -133,7 +145,9 @@ def _run(
 
 def _config(
     settings: dict[str, object],
-    scenario: Annotated[str | None, typer.Argument(help="As for run.")] = None,
+    scenario: Annotated[
+        str | None, typer.Argument(help="As for run.", autocompletion=complete_scenario)
+    ] = None,
     config: Annotated[Path | None, typer.Option(help="As for run.")] = None,
 ) -> None:
     """Print the effective configuration as TOML, with units."""
@@ -146,7 +160,10 @@ def _config(
 
 def _doctor(
     scenario: Annotated[
-        str | None, typer.Argument(help="Bundled scenario, folder or .sumocfg.")
+        str | None,
+        typer.Argument(
+            help="Bundled scenario, folder or .sumocfg.", autocompletion=complete_scenario
+        ),
     ] = None,
 ) -> None:
     """Examine the installation, and a scenario: findings and their remedies."""
@@ -178,10 +195,10 @@ def _scenarios() -> None:
         typer.echo(f"{name:14} {find(name).description}")
 
 
-def _build_plot() -> typer.Typer:
-    plot = typer.Typer(help="Draw figures.", no_args_is_help=True)
-    plot.command("influence")(_influence)
-    plot.command("reference")(_reference)
+def _build_plot() -> Commands:
+    plot = Commands("Draw figures.")
+    plot.add("influence", _influence)
+    plot.add("reference", _reference)
     plot.callback()(_plot)
     return plot
 

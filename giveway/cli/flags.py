@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from giveway.cli.help import show_all_options
 from giveway.config.layers import Location, Option, options
 
 if typing.TYPE_CHECKING:
@@ -30,6 +31,31 @@ _PANELS = {
     "record": "Recording",
 }
 
+_HelpAll = Annotated[
+    bool,
+    typer.Option(
+        "--help-all",
+        help="Show all options and exit.",
+        is_eager=True,
+        callback=show_all_options,
+    ),
+]
+_EVERYDAY = frozenset(
+    {
+        ("controller",),
+        ("seed",),
+        ("time_limit",),
+        ("ego", "take_over"),
+        ("ego", "none"),
+        ("vehicle", "fmu"),
+        ("vehicle", "profile"),
+        ("crowd", "pedestrians"),
+        ("crowd", "two_sided"),
+        ("regulation", "reference_speed"),
+        ("regulation", "priority"),
+    }
+)
+
 
 def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     """``command`` with one flag per configuration option; those given arrive as ``settings``.
@@ -41,6 +67,7 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
 
     def call(**arguments: Any) -> None:
         settings: dict[str, Any] = {}
+        del arguments["help_all"]
         for name, option in locations.items():
             value = arguments.pop(name)
             if value is not None:
@@ -53,6 +80,7 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
         inspect.Parameter(name, keyword, default=None, annotation=_annotation(option))
         for name, option in locations.items()
     ]
+    flags.append(inspect.Parameter("help_all", keyword, default=False, annotation=_HelpAll))
     call.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [parameter.replace(kind=keyword) for parameter in own] + flags
     )
@@ -69,12 +97,9 @@ def _put(settings: dict[str, Any], location: Location, value: Any) -> None:
 
 
 def _annotation(option: Option) -> Any:
-    default = option.field.get_default(call_default_factory=True)
-    shown = ",".join(map(str, default)) if isinstance(default, tuple) else default
-    known = "" if shown in (None, "") else f"default {shown}"
-    remarks = "; ".join(part for part in (option.unit, known) if part)
-    text = f"{option.field.description} ({remarks})" if remarks else option.field.description
-    panel = _PANELS.get(option.location[0], "Run")
+    everyday = option.location in _EVERYDAY
+    panel = None if everyday else _PANELS.get(option.location[0], "Run")
+    text = _help(option)
     switch = option.field.annotation in (bool, bool | None)
     if switch and option.flag.startswith("--no-"):
         return Annotated[bool | None, typer.Option(option.flag, help=text, rich_help_panel=panel)]
@@ -88,16 +113,46 @@ def _annotation(option: Option) -> Any:
             help=text,
             rich_help_panel=panel,
             metavar=_metavar(option.field.annotation),
+            autocompletion=_choices(option.field.annotation),
         ),
     ]
 
 
+def _help(option: Option) -> str:
+    """What the option means, its unit and its default, as a sentence."""
+    default = option.field.get_default(call_default_factory=True)
+    shown = ",".join(map(str, default)) if isinstance(default, tuple) else default
+    shown = {True: "yes", False: ""}.get(shown, shown) if isinstance(shown, bool) else shown
+    known = "" if shown in (None, "") else f"default {shown}"
+    remarks = "; ".join(part for part in (option.unit, known) if part)
+    text = option.field.description or ""
+    first = text.split(maxsplit=1)[0]
+    if first.isalpha() and first.islower():
+        text = first.capitalize() + text[len(first) :]
+    return f"{text} ({remarks})." if remarks else f"{text}."
+
+
+def _choices(annotation: Any) -> Callable[[str], list[str]] | None:
+    """Completes the words that an option may be; None: it takes others than words."""
+    if typing.get_origin(annotation) in (typing.Union, types.UnionType):
+        annotation = typing.get_args(annotation)[0]
+    if typing.get_origin(annotation) is not Literal:
+        return None
+    words = [str(word) for word in typing.get_args(annotation)]
+
+    def complete(incomplete: str) -> list[str]:
+        return [word for word in words if word.startswith(incomplete)]
+
+    return complete
+
+
 def _metavar(annotation: Any) -> str:
     origin = typing.get_origin(annotation)
+    if origin in (typing.Union, types.UnionType):
+        annotation = typing.get_args(annotation)[0]
+        origin = typing.get_origin(annotation)
     if origin is Literal:
         return "|".join(map(str, typing.get_args(annotation)))
     if origin is tuple:
         return "A,B,..."
-    if origin in (typing.Union, types.UnionType):
-        annotation = typing.get_args(annotation)[0]
     return {int: "INTEGER", float: "NUMBER"}.get(annotation, "TEXT")

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from giveway.cli.help import Commands
 from giveway.errors import ConfigError
 
 _Fmu = Annotated[Path, typer.Argument(help="The FMU (.fmu).")]
@@ -20,11 +21,11 @@ _Force = Annotated[bool, typer.Option("--force", help="Replace a file that is th
 
 def build_fmu() -> typer.Typer:
     """The commands about vehicle FMUs."""
-    app = typer.Typer(help="Look at, try and fit a vehicle FMU.", no_args_is_help=True)
-    app.command("inspect")(_inspect)
-    app.command("check")(_check)
-    app.command("identify")(_identify)
-    app.command("compile")(_compile)
+    app = Commands("Look at, try and fit a vehicle FMU.")
+    app.add("inspect", _inspect)
+    app.add("check", _check)
+    app.add("identify", _identify)
+    app.add("compile", _compile)
     return app
 
 
@@ -34,8 +35,8 @@ def build_export(with_flags: Callable[[Callable[..., None]], Callable[..., None]
     Args:
         with_flags: adds the flags of the configuration.
     """
-    app = typer.Typer(help="Make FMUs for other co-simulation masters.", no_args_is_help=True)
-    app.command("controller")(with_flags(_controller))
+    app = Commands("Make FMUs for other co-simulation masters.")
+    app.add("controller", with_flags(_controller))
     app.callback()(_export)
     return app
 

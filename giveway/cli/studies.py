@@ -5,20 +5,28 @@ from typing import Annotated
 
 import typer
 
+from giveway.cli.completion import complete_study
+from giveway.cli.help import Commands
+
 _Folder = Annotated[Path, typer.Argument(help="The study's folder.")]
 
 
-def add_studies(app: typer.Typer) -> None:
+def add_studies(app: Commands) -> None:
     """Add the commands about studies to ``app``."""
-    app.command("study")(_study)
-    app.command("studies")(_studies)
-    app.command("rerun")(_rerun)
-    app.command("report")(_report)
-    app.command("replay")(_replay)
+    app.add("study", _study)
+    app.add("studies", _studies)
+    app.add("rerun", _rerun)
+    app.add("report", _report)
+    app.add("replay", _replay)
 
 
 def _study(
-    study: Annotated[str, typer.Argument(help="Bundled study (see giveway studies) or .toml.")],
+    study: Annotated[
+        str,
+        typer.Argument(
+            help="Bundled study (see giveway studies) or .toml.", autocompletion=complete_study
+        ),
+    ],
     out: Annotated[Path | None, typer.Option(help="Folder (default results/study_NAME).")] = None,
     runs: Annotated[
         int | None, typer.Option(help="Seeds per cell, instead of the study's.", min=1)

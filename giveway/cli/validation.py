@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from giveway.cli.help import Commands
+
 _Clips = Annotated[Path, typer.Argument(help="A data set's folder, or any part of it with clips.")]
 _Dataset = Annotated[
     str | None,
@@ -15,10 +17,10 @@ _PARAMETERS = (
 )
 
 
-def add_validation(app: typer.Typer) -> None:
+def add_validation(app: Commands) -> None:
     """Add the commands about recorded trajectories to ``app``."""
-    app.command("validate")(_validate)
-    app.command("calibrate")(_calibrate)
+    app.add("validate", _validate)
+    app.add("calibrate", _calibrate)
 
 
 def _validate(

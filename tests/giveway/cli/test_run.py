@@ -63,13 +63,6 @@ def test_flags_override_the_file_and_the_file_the_scenario(type_here: Type, tmp_
     assert re.search(r'^route = \["plaza"\]', done.stdout, re.M)
 
 
-def test_help_names_the_commands_and_run_every_option(type_here: Type) -> None:
-    assert "scenarios" in type_here("--help").stdout
-    text = type_here("run", "--help").stdout
-    for flag in ("--pedestrians", "--mpc-horizon", "--pid-proportional-gain", "--vehicle-mass"):
-        assert flag in text
-
-
 def test_version_and_scenarios(type_here: Type) -> None:
     assert type_here("--version").stdout.startswith("giveway 0.")
     listed = type_here("scenarios").stdout

@@ -1,0 +1,37 @@
+"""What the shell may complete: bundled names, and files where a file may stand."""
+
+from pathlib import Path
+
+
+def complete_scenario(incomplete: str) -> list[str]:
+    """Bundled scenarios, and SUMO's configurations."""
+    from sumo_scenarios import available
+
+    return _beginning(available(), incomplete) + _files(incomplete, ".sumocfg")
+
+
+def complete_study(incomplete: str) -> list[str]:
+    """Bundled studies, and definitions of studies."""
+    from giveway.studies.definition import bundled_studies
+
+    return _beginning(bundled_studies(), incomplete) + _files(incomplete, ".toml")
+
+
+def _beginning(names: list[str] | tuple[str, ...], incomplete: str) -> list[str]:
+    return [name for name in names if name.startswith(incomplete)]
+
+
+def _files(incomplete: str, suffix: str) -> list[str]:
+    """Folders and files with that suffix, whose path begins so."""
+    folder, _, start = incomplete.rpartition("/")
+    try:
+        entries = sorted(Path(f"{folder}/" if folder or incomplete[:1] == "/" else ".").iterdir())
+    except OSError:
+        return []
+    before = incomplete[: len(incomplete) - len(start)]
+    return [
+        f"{before}{entry.name}" + "/" * entry.is_dir()
+        for entry in entries
+        if entry.name.startswith(start)
+        and (entry.suffix == suffix or (entry.is_dir() and entry.name[0] != "."))
+    ]

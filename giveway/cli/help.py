@@ -1,0 +1,92 @@
+"""How help pages look: one plain style for all of them, everyday options first.
+
+Names are never cut: a long one has a line of its own (as click writes definition lists).
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_KIND = re.compile(r"<(\w+)(?: range)?>")
+_KINDS = {"int": "INTEGER", "float": "NUMBER", "str": "TEXT"}
+_LONGEST = 300  # letters of a command's sentence in the list of commands: all of it
+
+
+class Commands(typer.Typer):
+    """A group of commands in our style.
+
+    Args:
+        purpose: of the group.
+        completion: whether it has the options that install the shell's completion.
+    """
+
+    def __init__(self, purpose: str, *, completion: bool = False) -> None:
+        super().__init__(
+            cls=_Group,
+            help=purpose,
+            no_args_is_help=True,
+            add_completion=completion,
+            pretty_exceptions_enable=False,
+            rich_markup_mode=None,
+        )
+
+    def add(self, name: str, function: Callable[..., None]) -> None:
+        """Add the command ``name``, whose help is the function's docstring."""
+        self.command(name, cls=_Command)(function)
+
+
+def show_all_options(ctx: typer.Context, wanted: bool) -> None:
+    """The callback of ``--help-all``."""
+    if wanted:
+        assert isinstance(ctx.command, _Command)
+        ctx.command.everything = True
+        typer.echo(ctx.get_help())
+        raise typer.Exit
+
+
+class _Command(TyperCommand):
+    """A command whose help leaves the options in panels to ``--help-all``."""
+
+    everything = False
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write the arguments, the everyday options, and if wanted the others by their panels."""
+        groups: dict[str, list[tuple[str, str]]] = {"Arguments": [], "Options": []}
+        for parameter in self.get_params(ctx):
+            record = parameter.get_help_record(ctx)
+            if record is None:
+                continue
+            is_option = parameter.param_type_name == "option"
+            panel = getattr(parameter, "rich_help_panel", None)
+            group = panel or ("Options" if is_option else "Arguments")
+            groups.setdefault(group, []).append((_KIND.sub(_kind, record[0]), record[1]))
+        for name, records in groups.items():
+            if records and (self.everything or name in {"Arguments", "Options"}):
+                with formatter.section(name):
+                    formatter.write_dl(records)
+
+
+class _Group(TyperGroup):
+    """A group of commands; each is listed with its whole first sentence."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the list of commands."""
+        commands = [(name, self.get_command(ctx, name)) for name in self.list_commands(ctx)]
+        rows = [
+            (name, command.get_short_help_str(_LONGEST))
+            for name, command in commands
+            if command is not None
+        ]
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+
+def _kind(match: re.Match[str]) -> str:
+    return _KINDS.get(match[1], match[1].upper())
