@@ -9,7 +9,7 @@ import typer
 
 from giveway.cli.completion import complete_scenario
 from giveway.cli.fmu import build_export, build_fmu
-from giveway.cli.help import Commands
+from giveway.cli.help import Commands, JsonFlag
 from giveway.cli.studies import add_studies
 from giveway.cli.validation import add_validation
 
@@ -119,6 +119,7 @@ def _run(
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Neither progress bar nor summary.")
     ] = False,
+    as_json: JsonFlag = False,
     isolate: Annotated[
         bool,
         typer.Option(
@@ -139,7 +140,9 @@ def _run(
             raise typer.Exit(run_isolated())
     from giveway.cli.run import Outputs, run_command
 
-    outputs = Outputs(out, force=force, parquet=parquet, pictures=pictures, quiet=quiet)
+    outputs = Outputs(
+        out, force=force, parquet=parquet, pictures=pictures, quiet=quiet, as_json=as_json
+    )
     supervised(journal, lambda: run_command(scenario, config, settings, outputs, journal))
 
 
@@ -165,11 +168,12 @@ def _doctor(
             help="Bundled scenario, folder or .sumocfg.", autocompletion=complete_scenario
         ),
     ] = None,
+    as_json: JsonFlag = False,
 ) -> None:
     """Examine the installation, and a scenario: findings and their remedies."""
     from giveway.cli.doctor import doctor_command
 
-    raise typer.Exit(doctor_command(scenario))
+    raise typer.Exit(doctor_command(scenario, as_json=as_json))
 
 
 def _recover(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from giveway.cli.printing import findings_table
+from giveway.cli.printing import findings_table, print_json
 from giveway.doctor import Finding, examine_environment, examine_scenario
 
 if TYPE_CHECKING:
@@ -16,13 +17,17 @@ if TYPE_CHECKING:
 _STYLES = {"ok": "green", "note": "cyan", "warning": "yellow", "error": "bold red"}
 
 
-def doctor_command(scenario: str | None) -> int:
+def doctor_command(scenario: str | None, *, as_json: bool = False) -> int:
     """Examine the environment, and the scenario if one is named.
+
+    Args:
+        scenario: name or path.
+        as_json: print the findings as JSON.
 
     Returns:
         1 if there is an error among the findings, 0 otherwise.
     """
-    console = Console()
+    console = Console(quiet=as_json)
     with console.status("Examining the environment ..."):
         findings = examine_environment()
     console.print(_table("Environment", findings))
@@ -34,6 +39,14 @@ def doctor_command(scenario: str | None) -> int:
     errors = sum(finding.level == "error" for finding in findings)
     warnings = sum(finding.level == "warning" for finding in findings)
     console.print(_verdict(errors, warnings), highlight=False)
+    if as_json:
+        print_json(
+            {
+                "errors": errors,
+                "warnings": warnings,
+                "findings": [asdict(finding) for finding in findings],
+            }
+        )
     return 1 if errors else 0
 
 

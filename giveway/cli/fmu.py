@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from giveway.cli.help import Commands
+from giveway.cli.help import Commands, JsonFlag
 from giveway.errors import ConfigError
 
 _Fmu = Annotated[Path, typer.Argument(help="The FMU (.fmu).")]
@@ -75,6 +75,7 @@ def _check(
     friction: Annotated[float, typer.Option(help="alpha of it in N.s/m.", min=0.0)] = 100.0,
     force_limit: _Limit = 8000.0,
     speed: Annotated[float, typer.Option(help="Rolling start in m/s.", min=0.0)] = 4.0,
+    as_json: JsonFlag = False,
 ) -> None:
     """Drive an FMU for some seconds: pass, or what is wrong and the line that mends it."""
     from giveway.cli.fmu_check import check_command
@@ -89,6 +90,7 @@ def _check(
         friction=friction,
         force_limit=force_limit,
         speed=speed,
+        as_json=as_json,
     )
     raise typer.Exit(code)
 

@@ -1,6 +1,7 @@
 """``giveway fmu check``: a vehicle FMU's dry run as a table, and as a picture."""
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 from rich.console import Console
@@ -14,7 +15,7 @@ from fmus.profile.preparation import choose_profile, prepare
 from fmus.profile.vehicle_profile import Axis, VehicleProfile
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
-from giveway.cli.printing import findings_table, print_place
+from giveway.cli.printing import findings_table, print_json, print_place
 from giveway.errors import ConfigError
 
 _STYLES = {
@@ -33,6 +34,7 @@ def check_command(
     friction: float = 100.0,
     force_limit: float = 8000.0,
     speed: float = 4.0,
+    as_json: bool = False,
 ) -> int:
     """Dry-run a vehicle FMU, print what was found, draw its response.
 
@@ -47,6 +49,7 @@ def check_command(
         friction: alpha of it [N.s/m]; likewise.
         force_limit: u_max [N].
         speed: of the rolling start [m/s].
+        as_json: print the findings as JSON.
 
     Returns:
         0 if every test passed, with warnings or without; 1 if one failed.
@@ -67,12 +70,12 @@ def check_command(
     require_number("--force-limit", force_limit, 0.0, 1e6, "N")
     require_number("--speed", speed, -1e-300, 70.0, "m/s")
     given = profile_in(profile)
-    console = Console()
+    console = Console(quiet=as_json)
     try:
         chosen = choose_profile(path, given)
         fmu_step = prepare(path, step_size=step, profile=chosen).pace.step
     except FmuError as error:
-        return _conclude(console, path, [Finding("fits", "fail", plain(error))])
+        return _conclude(console, path, [Finding("fits", "fail", plain(error))], as_json=as_json)
     with console.status("Driving ...") as status:
         report = check(
             opener_of(path, step_size=step, profile=chosen),
@@ -88,7 +91,7 @@ def check_command(
             progress=lambda name: status.update(f"Driving: {name} ..."),
         )
     findings = [_profile_found(path, profile, chosen), *report.findings]
-    code = _conclude(console, path, findings)
+    code = _conclude(console, path, findings, as_json=as_json)
     if out is not None:
         _draw(console, report, path, out)
     return code
@@ -115,13 +118,23 @@ def _profile_found(path: Path, file: Path | None, profile: VehicleProfile) -> Fi
     )
 
 
-def _conclude(console: Console, path: Path, findings: Sequence[Finding]) -> int:
+def _conclude(console: Console, path: Path, findings: Sequence[Finding], *, as_json: bool) -> int:
     rows = ((f.verdict, f.name, printable(f.text, 1000), f.remedy) for f in findings)
     console.print(findings_table(f"Check of {printable(path.name, 60)}", _STYLES, rows))
     failed = sum(finding.verdict == "fail" for finding in findings)
     warned = sum(finding.verdict == "warn" for finding in findings)
     asked = sum(finding.verdict == "ask" for finding in findings)
     console.print(_verdict(failed, warned, asked), highlight=False)
+    if as_json:
+        print_json(
+            {
+                "fmu": str(path),
+                "failed": failed,
+                "warned": warned,
+                "asked": asked,
+                "findings": [asdict(finding) for finding in findings],
+            }
+        )
     return 1 if failed else 0
 
 

@@ -6,13 +6,18 @@ Names are never cut: a long one has a line of its own (as click writes definitio
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+JsonFlag = Annotated[
+    bool, typer.Option("--json", help="Print what was found as JSON, for scripts, and no more.")
+]
+"""Of every command whose findings a script may want."""
 
 _KIND = re.compile(r"<(\w+)(?: range)?>")
 _KINDS = {"int": "INTEGER", "float": "NUMBER", "str": "TEXT"}

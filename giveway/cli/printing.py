@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich import markup
 from rich.table import Table
@@ -13,6 +14,7 @@ from rich.text import Text
 
 from giveway.cli.exit import visible
 from giveway.errors import ResultsError
+from giveway.results.json_text import json_text
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -51,6 +53,11 @@ def print_place(console: Console, what: str, path: Path) -> None:
     """Tell where something has been written, on one line, so that the path can be copied."""
     where = f"{what} in [bold]{escape(str(path))}[/bold]"
     console.print(where, highlight=False, soft_wrap=True)
+
+
+def print_json(content: dict[str, Any]) -> None:
+    """Print what a command has found for a script: JSON on standard output, and nothing else."""
+    sys.stdout.write(json_text(content))
 
 
 @contextmanager

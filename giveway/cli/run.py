@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 
 from giveway.cli.exit import INTERRUPTED, fail
-from giveway.cli.printing import escape
+from giveway.cli.printing import escape, print_json
 from giveway.cli.progress import run_progress
 from giveway.config.layers import Layer, read_toml
 from giveway.config.loading import load
@@ -33,6 +34,7 @@ class Outputs:
     parquet: bool
     pictures: bool
     quiet: bool
+    as_json: bool = False
 
 
 def layers_of(
@@ -63,7 +65,7 @@ def run_command(
     Raises:
         GivewayError: one line that says what to do.
     """
-    console = Console(quiet=outputs.quiet)
+    console = Console(quiet=outputs.quiet or outputs.as_json)
     effective, found = load(layers_of(scenario, config, settings))
     folder = outputs.folder or default_folder(effective, found.name)
     check_folder(folder, force=outputs.force)
@@ -94,6 +96,15 @@ def run_command(
     if result.ending is Ending.INTERRUPTED:
         return interrupted(result, folder)
     show(console, result, folder)
+    if outputs.as_json:
+        print_json(
+            {
+                "results": str(folder),
+                "ending": result.ending.value,
+                "remarks": list(result.remarks),
+                "summary": json.loads((folder / "summary.json").read_text(encoding="utf-8")),
+            }
+        )
     return 0
 
 

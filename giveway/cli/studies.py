@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from giveway.cli.completion import complete_study
-from giveway.cli.help import Commands
+from giveway.cli.help import Commands, JsonFlag
 
 _Folder = Annotated[Path, typer.Argument(help="The study's folder.")]
 
@@ -61,6 +61,7 @@ def _study(
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")
     ] = False,
+    as_json: JsonFlag = False,
 ) -> None:
     """Run a study: many paired runs, compared; can be ended at any moment and resumed."""
     from giveway.cli.study import StudyRequest, study_command
@@ -76,7 +77,14 @@ def _study(
         run_limit=run_limit,
     )
     request = StudyRequest(
-        study, out, runs, first_seed, dry_run=dry_run, report=report, quiet=quiet
+        study,
+        out,
+        runs,
+        first_seed,
+        dry_run=dry_run,
+        report=report,
+        quiet=quiet,
+        as_json=as_json,
     )
     raise typer.Exit(study_command(request, options))
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
+from giveway.cli.printing import print_json
 from giveway.cli.study_summary import print_plan, print_summary
 from giveway.precompile import compile_kernels_once
 from giveway.studies.definition import changed, find_study, read_definition
@@ -32,6 +33,7 @@ class StudyRequest:
     dry_run: bool
     report: bool
     quiet: bool
+    as_json: bool = False
 
 
 def study_command(request: StudyRequest, options: StudyOptions) -> int:
@@ -40,7 +42,7 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
     Raises:
         GivewayError: one line that says what to do.
     """
-    console = Console(quiet=request.quiet)
+    console = Console(quiet=request.quiet or request.as_json)
     file = find_study(request.study)
     definition = read_definition(file)
     wanted = {"replications": request.runs, "first_seed": request.first_seed}
@@ -64,6 +66,18 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
         from giveway.cli.report import write_all
 
         write_all(study, console)
+    if request.as_json:
+        print_json(
+            {
+                "study": str(study.path),
+                "runs": len(study.records),
+                "made": watcher.made,
+                "failed": len(study.failures),
+                "seconds": elapsed,
+                "levels": study.levels.to_dict("records"),
+                "comparison": study.comparison.to_dict("records"),
+            }
+        )
     return 1 if len(study.failures) else 0
 
 

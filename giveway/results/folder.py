@@ -1,8 +1,6 @@
 """The results folder: tables, summary, manifest, data package, configuration and pictures."""
 
 import contextlib
-import json
-import math
 import shutil
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import partial
@@ -16,12 +14,12 @@ from giveway.errors import ResultsError
 from giveway.processes.locks import FolderInUseError, locked
 from giveway.records.columns import Column
 from giveway.records.scene import SCENE_FILE
+from giveway.results.json_text import DECIMALS, json_text
 from giveway.results.names import FILES, SUMO_FOLDER
 from giveway.results.run_result import RunResult
 from giveway.results.scene import scene_of
 
 _RUNNING = '{"ending": "running"}\n'
-_DECIMALS = 6  # micrometres, microseconds: finer than anything that is compared
 
 
 def check_folder(
@@ -178,7 +176,7 @@ def _plain(row: dict[Any, Any]) -> dict[str, Any]:
 def rounded_row(row: dict[Any, Any]) -> dict[str, Any]:
     """One row of a table as it is written: Python's own types, floats to six decimals."""
     return {
-        key: round(value, _DECIMALS) + 0.0 if isinstance(value, float) else value
+        key: round(value, DECIMALS) + 0.0 if isinstance(value, float) else value
         for key, value in _plain(row).items()
     }
 
@@ -264,7 +262,7 @@ def _rounded(frame: pd.DataFrame) -> pd.DataFrame:
     frame = frame.copy()
     for name in frame.columns:
         if frame[name].dtype == np.float64:
-            frame[name] = np.round(frame[name].to_numpy(), _DECIMALS) + 0.0
+            frame[name] = np.round(frame[name].to_numpy(), DECIMALS) + 0.0
     return frame
 
 
@@ -280,16 +278,4 @@ def _text(text: str) -> Callable[[Path], object]:
 
 
 def _json(content: dict[str, Any]) -> Callable[[Path], object]:
-    text = json.dumps(_json_ready(content), indent=2, ensure_ascii=False, allow_nan=False)
-    return _text(text + "\n")
-
-
-def _json_ready(value: Any) -> Any:
-    """The value for JSON, which has neither NaN nor infinity: they become null."""
-    if isinstance(value, dict):
-        return {key: _json_ready(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_json_ready(item) for item in value]
-    if isinstance(value, float):
-        return round(value, _DECIMALS) + 0.0 if math.isfinite(value) else None
-    return value
+    return _text(json_text(content))
