@@ -38,6 +38,7 @@ def build_app(arguments: Sequence[str]) -> Commands:
     app.add("doctor", _doctor)
     app.add("recover", _recover)
     app.add("config", _with_flags(_config, command))
+    app.add("schema", _schema)
     app.add_typer(build_fmu(), name="fmu")
     app.add_typer(build_export(lambda f: _with_flags(f, command, "export")), name="export")
     app.add_typer(_build_plot(), name="plot")
@@ -159,6 +160,15 @@ def _config(
     from giveway.config.loading import load
 
     typer.echo(dump_toml(load(layers_of(scenario, config, settings))[0]), nl=False)
+
+
+def _schema(
+    out: Annotated[Path, typer.Option(help="Folder for them.")] = Path(),
+) -> None:
+    """Write JSON schemas, with which editors complete and check run, study and other TOML files."""
+    from giveway.cli.schema import schema_command
+
+    raise typer.Exit(schema_command(out))
 
 
 def _doctor(

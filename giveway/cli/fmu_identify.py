@@ -18,6 +18,7 @@ from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
 from giveway.cli.printing import escape, print_place, writing
+from giveway.config.schema_names import PROFILE, with_schema
 from giveway.errors import ConfigError, VehicleError
 
 
@@ -173,7 +174,8 @@ def _text(path: Path, file: Path | None, profile: VehicleProfile) -> str:
         from fmus.description.reading import read_model
         from fmus.profile.draft_profile import draft_profile
 
-        text: str = draft_profile(read_model(path)).toml
+        text = draft_profile(read_model(path)).toml
         tomllib.loads(text)
-        return text
-    return profile_text(profile, f"{path.name}: how giveway drives it (docs/vehicles.md)")
+        return with_schema(text, PROFILE)
+    text = profile_text(profile, f"{path.name}: how giveway drives it (docs/vehicles.md)")
+    return with_schema(text, PROFILE)

@@ -23,6 +23,7 @@ from fmus.profile.draft import Draft
 from fmus.profile.draft_profile import draft_profile
 from fmus.text import printable
 from giveway.cli.exit import fail
+from giveway.config.schema_names import PROFILE, with_schema
 
 SHOWN: Final = 12  # rows of a list
 SHOWN_FINDINGS: Final = 4
@@ -60,7 +61,7 @@ def inspect_command(path: Path, draft: Path | None = None, *, everything: bool =
     if draft is not None:
         try:
             with draft.open("x", encoding="utf-8") as file:
-                file.write(drafted.toml)
+                file.write(with_schema(drafted.toml, PROFILE))
         except FileExistsError:
             return fail(f"{draft}: exists already; remove it, or name another file", REFUSED)
         except OSError as error:
@@ -227,7 +228,7 @@ def _list(title: str, count: int, shown: int) -> Table:
 
 def _profile(drafted: Draft) -> Text:
     text = Text()
-    for line in drafted.toml.splitlines():
+    for line in with_schema(drafted.toml, PROFILE).splitlines():
         code, mark, comment = line.partition("  # ")
         if line.startswith("# ?"):
             text.append(line, style="yellow")

@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 
 from giveway.config.option import Section, declared, expectation
 from giveway.config.run_config import RunConfig
+from giveway.config.schema_names import RUN, with_schema
 from giveway.config.toml import read_toml_file
 from giveway.errors import ConfigError
 
@@ -205,4 +206,4 @@ def dump_toml(config: RunConfig) -> str:
         for ego in config.egos:
             tables.append(tomlkit.item(ego))
         document.add("egos", tables)
-    return tomlkit.dumps(document)
+    return with_schema(tomlkit.dumps(document), RUN)

@@ -9,6 +9,7 @@ from typing import Any
 
 import tomlkit
 
+from giveway.config.schema_names import PRESET, with_schema
 from giveway.config.toml import read_toml_file
 from giveway.errors import ConfigError
 from pedestrian_model import PRESETS, ParameterError, VciParameters, require_steady
@@ -108,7 +109,7 @@ def preset_text(name: str, parameters: VciParameters, provenance: Mapping[str, A
     document["name"] = name
     document["parameters"] = asdict(parameters)
     document["provenance"] = dict(provenance)
-    return tomlkit.dumps(document)
+    return with_schema(tomlkit.dumps(document), PRESET)
 
 
 @functools.lru_cache(maxsize=64)

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, Field, ValidationError, model_validator
 
 from giveway.config.layers import anchored
 from giveway.config.option import Section
+from giveway.config.schema_names import STUDY, with_schema
 from giveway.config.toml import parse_toml, read_toml_file
 from giveway.errors import ConfigError
 
@@ -216,7 +217,7 @@ def dump_definition(definition: StudyDefinition) -> str:
             document.append(key, table)
         elif isinstance(value, dict):
             document.append(key, tomlkit.item(value))
-    return tomlkit.dumps(document)
+    return with_schema(tomlkit.dumps(document), STUDY)
 
 
 def _inline(value: Any) -> Any:
