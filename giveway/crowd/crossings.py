@@ -74,7 +74,8 @@ def use_of(
     at = crowd.waypoint_start[rows] + crowd.waypoint_index[rows]
     waiting = (crowd.waypoint_signal[at] >= 0) & (far <= _WAITING)
     inward = np.where(u < 0.0, onward, -onward)
-    return Use(on, waiting, ~on & (inward >= _ONWARD), ~on & (inward <= -_ONWARD), onward)
+    entering = ~on & ~waiting & (inward >= _ONWARD)  # who waits looks anywhere: see turning_in
+    return Use(on, waiting, entering, ~on & (inward <= -_ONWARD), onward)
 
 
 def turning_in(

@@ -23,7 +23,13 @@ from giveway.crowd.crossings import (
     turning_in,
     use_of,
 )
-from giveway.ego.giving_way import CRAWLING, HARDEST, STOP_BEFORE, leaves_no_room
+from giveway.ego.giving_way import (
+    CRAWLING,
+    HARDEST,
+    STOP_BEFORE,
+    leaves_no_room,
+    needed_braking,
+)
 from giveway.ego.leader import NO_LEADER, Leader
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
@@ -194,10 +200,12 @@ class Crossings:
                 for before in self._stops_before(number, front):
                     entry = self._crossings[before].entry
                     first = before == self._next
-                    too_late = speed * speed > 2.0 * HARDEST * max(entry - front, 1e-3)
+                    latest = entry - _CLEAR
+                    too_late = needed_braking(speed, latest - front) > HARDEST
                     if too_late and not (first and self._waits):
                         continue
-                    stop = max(entry - STOP_BEFORE, min(front, entry - _CLEAR))
+                    nearest = front + speed * speed / (2.0 * HARDEST)
+                    stop = max(entry - STOP_BEFORE, min(nearest, latest))
                     if first:
                         self._waits, self._place = True, min(self._place, stop)
                         stop = self._place

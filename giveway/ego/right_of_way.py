@@ -37,6 +37,8 @@ _PULL_AWAY, _BRISK = 1.5, 3.0  # [m/s^2] of the ego: no less, no more
 _COMING = 1.0  # [m/s^2] of others, who may speed up
 _GOING = 0.3  # [s] to whoever passes after it, for an ego that has decided to go
 _STAYS = 3.0  # [s] after which one who stands and need not will go on standing
+_BOXED_IN = 1.0  # [s] the same for one who has no room to go on
+_CLOSE = 3.0  # [m] behind who stands ahead, from which on there is none
 _STANDING = 0.2  # [m/s]
 _AT_LINE = 4.0  # [m] before the line a vehicle stands at it
 _DECIDED = 10.0  # [m] before the line the ego keeps to its decision to go
@@ -97,6 +99,7 @@ class RightOfWay:
         self._halted = False  # it has stood at the next line, where it has to
         self._stood = 0.0  # [s] at the next line, or behind it
         self._time = -math.inf
+        self._staying: set[str] = set()  # others who will go on standing
         self._green: dict[tuple[str, int], float] = {}  # since when others' lights have been green
         self.systems = frozenset(place.movement.system for place in junctions) - {""}
 
@@ -203,7 +206,7 @@ class RightOfWay:
             source = place.movements[other.number].source
             if where is None or front > where.enter or source in stay:
                 continue
-            if self._stays(place, other, states):
+            if self._stays(place, other, states, traffic):
                 stay.add(source)  # and who is behind it
                 continue
             if not self._goes_first(place, letter, other, where, states):
@@ -217,8 +220,13 @@ class RightOfWay:
                 stop = min(stop, line)
         return stop
 
-    def _stays(self, place: PathJunction, other: Approach, states: Mapping[str, str]) -> bool:
-        """Whether it could have gone on for some time, and has not."""
+    def _stays(
+        self, place: PathJunction, other: Approach, states: Mapping[str, str], traffic: Traffic
+    ) -> bool:
+        """Whether it could have gone on for some time and has not, or cannot for who is ahead."""
+        if other.standing <= 0.0:
+            self._staying.discard(other.name)
+            return False
         movement = place.movements[other.number]
         stood = other.standing
         if movement.system:
@@ -227,7 +235,10 @@ class RightOfWay:
                 self._green.pop(key, None)
                 return False
             stood = min(stood, self._time - self._green.setdefault(key, self._time))
-        return stood > _STAYS and self._stood > _STAYS
+        patient = stood > _STAYS and self._stood > _STAYS
+        if patient or (stood > _BOXED_IN and _is_boxed_in(place, other, traffic)):
+            self._staying.add(other.name)  # for as long as it stands: the ego may go now
+        return other.name in self._staying
 
     def _goes_first(
         self,
@@ -285,6 +296,18 @@ class RightOfWay:
             goes = outside / other.speed + (to_leave - outside) / inside
         in_time = comes >= max(clear + margin, line + critical if front <= place.entry else 0.0)
         return not in_time and goes + BEFORE > enter
+
+
+def _is_boxed_in(place: PathJunction, other: Approach, traffic: Traffic) -> bool:
+    """Whether somebody who stands right ahead of it, maybe to turn, keeps it from going on."""
+    source = place.movements[other.number].source
+    return any(
+        ahead.standing > _BOXED_IN
+        and ahead.distance < other.distance
+        and other.distance - ahead.distance - ahead.length < _CLOSE
+        and place.movements[ahead.number].source == source
+        for ahead in traffic.get(place.movement.junction, ())
+    )
 
 
 def letter_of(movement: Movement, states: Mapping[str, str]) -> str:

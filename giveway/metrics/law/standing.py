@@ -44,7 +44,7 @@ def blocked_crossings(
         areas: on its way.
         owed: when it owed somebody the way at which of them.
     """
-    free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, owed)
+    free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, areas, owed)
     front, found = drive.front, list[Blocked]()
     for area in areas:
         on = free & (front > area.entry) & (front < area.leave)
@@ -55,14 +55,17 @@ def blocked_crossings(
     return found
 
 
-def blocked_junctions(drive: Drive, owed: Sequence[Owed] = ()) -> list[Blocked]:
+def blocked_junctions(
+    drive: Drive, areas: tuple[Area, ...] = (), owed: Sequence[Owed] = ()
+) -> list[Blocked]:
     """The junctions in which the ego stood without having to, elsewhere than it may wait.
 
     Args:
         drive: the ego's.
+        areas: on its way.
         owed: when it owed somebody the way at a crossing.
     """
-    free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, owed)
+    free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, areas, owed)
     found = list[Blocked]()
     for number, junction in enumerate(drive.way.junctions):
         inside = (drive.front > junction.entry) & (drive.front < junction.exit + drive.shape.length)
@@ -73,10 +76,11 @@ def blocked_junctions(drive: Drive, owed: Sequence[Owed] = ()) -> list[Blocked]:
     return found
 
 
-def _lets_pass(drive: Drive, owed: Sequence[Owed]) -> NDArray[np.bool_]:
-    """(T,) whether the ego stands for somebody whom it owes the way right in front of it."""
+def _lets_pass(drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]) -> NDArray[np.bool_]:
+    """(T,) whether people are to pass right in front of the ego, by right or not."""
     passing = np.zeros(len(drive.ego.time), dtype=np.bool_)
-    for entry, there in owed:
+    on_it = [(area.entry, _used(drive, area)) for area in areas]
+    for entry, there in (*owed, *on_it):
         room = entry - drive.front
         passing |= there & (room >= 0.0) & (room <= NEAR)
     return passing

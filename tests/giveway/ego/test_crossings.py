@@ -111,6 +111,25 @@ def test_who_waits_for_green_a_step_from_the_kerb_costs_no_stop():
     assert crossings(light="r").stop_at(NEAR, 4.0, waiting) == math.inf
 
 
+def test_who_waits_at_another_crossings_light_costs_no_stop():
+    """The place to wait is so near that the way to it may lead anywhere."""
+    corner = Crowd.create(
+        [[22.0, -4.6]], [[0, 0]], 1.4, [[(22.1, -4.0), (30.0, -4.0)]], signals=[[1, -1]]
+    )
+    assert crossings(light="G", kerb_time=2.5).stop_at(NEAR, 4.0, corner) == math.inf
+    own = Crowd.create(
+        [[22.0, -4.6]], [[0, 0]], 1.4, [[(22.1, -4.0), (22.0, 4.0)]], signals=[[0, -1]]
+    )
+    assert crossings(light="G", kerb_time=2.5).stop_at(NEAR, 4.0, own) < math.inf
+
+
+def test_in_the_last_metre_it_brakes_no_harder_than_3():
+    somebody = walker(-2.0)
+    stop = crossings().stop_at(19.4, 0.8, somebody)
+    assert 19.4 + 0.8**2 / (2 * 3.0) <= stop <= 20.0
+    assert crossings().stop_at(19.4, 1.6, somebody) == math.inf  # too late: over it and away
+
+
 def test_who_heads_for_the_side_of_a_crossing_wants_to_cross():
     """The way-point at the kerb is a line; its middle is 1.8 m aside."""
     aside = Crowd.create(

@@ -157,6 +157,30 @@ def test_it_is_not_polite_for_ever_to_who_stands() -> None:
     assert last == math.inf
 
 
+def test_once_it_goes_past_who_stands_it_does_not_hesitate() -> None:
+    turn = junction(waiting=(54.0,))
+    drive = Drive(turn)
+    for _ in range(32):
+        last = drive.stop(53.0, 0.0, other(1.0, 0.0, standing=20.0))
+    assert last == math.inf
+    assert drive.stop(53.2, 0.6, other(1.0, 0.0, standing=21.0)) == math.inf
+    assert drive.stop(53.4, 0.9, other(0.9, 1.0)) < math.inf  # and now they come
+
+
+def test_who_stands_behind_somebody_who_turns_is_not_waited_for() -> None:
+    turn, left = junction(waiting=(54.0,)), 2
+    turning = turn.movements[OTHER]._replace(number=left, target="north_0")
+    turn = turn._replace(movements={**turn.movements, left: turning})
+    behind = other(1.0, 0.0, standing=1.5)
+    turner = Approach("turner", left, -4.0, 0.0, 4.5, 1.5)
+    assert stop(turn, 53.0, 0.0, behind) == 53.0
+    assert stop(turn, 53.0, 0.0, turner, behind) == math.inf
+    gone_on = turner._replace(distance=-8.0)
+    assert stop(turn, 53.0, 0.0, gone_on, behind) == 53.0
+    driving = turner._replace(speed=3.0, standing=0.0)
+    assert stop(turn, 53.0, 0.0, driving, behind) == 53.0
+
+
 def test_a_queue_whose_light_has_just_turned_green_will_start() -> None:
     drive = Drive(junction(lights=True))
     for _ in range(50):

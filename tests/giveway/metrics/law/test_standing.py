@@ -100,3 +100,11 @@ def test_who_lets_people_pass_at_the_next_crossing_blocks_none():
     # somebody walks up and down the next one's kerb and never gets out of the ego's way
     waits = Person([(26.0, -2.9)] * 600, way=((26.0, 20.0),))
     assert judged(24.0, 4.0, waits, **both)[0] == []
+
+
+def test_who_crosses_at_red_ahead_is_let_pass_as_well():
+    following = SIGNALLED._replace(lane=":j_c1_0", ends=((26.0, NORTH), (26.0, SOUTH)), width=2.0)
+    both = {"crossings": (ZEBRA, following), "lights": ((0.0, "r"),)}
+    assert len(judged(24.0, 4.0, **both)[0]) == 1
+    late = Person([(26.0, 1.0)] * 600, way=((26.0, 20.0),))
+    assert judged(24.0, 4.0, late, **both)[0] == []
