@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from giveway import errors
 from giveway.cli.completion import complete_scenario
 from giveway.cli.fmu import build_export, build_fmu
 from giveway.cli.help import Commands, JsonFlag
@@ -137,6 +138,8 @@ def _run(
         from giveway.cli.fmu_gate import require_archives
 
         require_archives(config, settings)
+        if scenario is not None:
+            _require_scenario(scenario)
         if isolate:
             raise typer.Exit(run_isolated())
     from giveway.cli.run import Outputs, run_command
@@ -145,6 +148,16 @@ def _run(
         out, force=force, parquet=parquet, pictures=pictures, quiet=quiet, as_json=as_json
     )
     supervised(journal, lambda: run_command(scenario, config, settings, outputs, journal))
+
+
+def _require_scenario(name: str) -> None:
+    """Refuse a scenario that is not there before anything that takes longer is loaded."""
+    from sumo_scenarios import ScenarioError, find
+
+    try:
+        find(name)
+    except ScenarioError as error:
+        raise errors.ScenarioError(str(error)) from None
 
 
 def _config(

@@ -64,6 +64,9 @@ def _study(
     as_json: JsonFlag = False,
 ) -> None:
     """Run a study: many paired runs, compared; can be ended at any moment and resumed."""
+    from giveway.studies.finding import find_study
+
+    find_study(study)  # before anything that takes longer is loaded
     from giveway.cli.study import StudyRequest, study_command
     from giveway.studies.study import StudyOptions
 
@@ -91,7 +94,8 @@ def _study(
 
 def _studies() -> None:
     """List the bundled studies."""
-    from giveway.studies.definition import bundled_studies, find_study, read_definition
+    from giveway.studies.definition import read_definition
+    from giveway.studies.finding import bundled_studies, find_study
 
     for name in bundled_studies():
         typer.echo(f"{name:14} {read_definition(find_study(name)).description}")

@@ -14,7 +14,8 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from giveway.cli.printing import print_json
 from giveway.cli.study_summary import print_plan, print_summary
 from giveway.precompile import compile_kernels_once
-from giveway.studies.definition import changed, find_study, read_definition
+from giveway.studies.definition import changed, read_definition
+from giveway.studies.finding import find_study
 from giveway.studies.plan import plan
 from giveway.studies.study import StudyOptions, StudyProgress, estimate, processors, run_study
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from copy import deepcopy
-from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -18,7 +17,6 @@ from giveway.errors import ConfigError
 
 Situation = Literal["general", "stop-and-wait", "non-stop"]
 
-BUNDLED = "bundled"
 _MOST_SEEDS = 1_000_000
 _NAME = r"^[\w.-]*\w[\w.-]*$"
 
@@ -98,33 +96,6 @@ class StudyDefinition(Section):
                 f"first_seed = {self.first_seed}: the last seed would be beyond 2147483647"
             )
         return self
-
-
-def bundled_studies() -> tuple[str, ...]:
-    """The names of the studies that come with giveway."""
-    folder = files("giveway.studies") / BUNDLED
-    return tuple(
-        sorted(
-            entry.name.removesuffix(".toml")
-            for entry in folder.iterdir()
-            if entry.name.endswith(".toml")
-        )
-    )
-
-
-def find_study(name: str | Path) -> Path:
-    """The file of a bundled study, or the user's own .toml file.
-
-    Raises:
-        ConfigError: there is none.
-    """
-    path = Path(name)
-    if path.suffix == ".toml":
-        return path
-    if str(name) in bundled_studies():
-        return Path(str(files("giveway.studies") / BUNDLED / f"{name}.toml"))
-    known = ", ".join(bundled_studies())
-    raise ConfigError(f"study '{name}': no such study; expected a .toml file or one of {known}")
 
 
 def read_definition(path: Path) -> StudyDefinition:

@@ -4,13 +4,12 @@ import pytest
 
 from giveway.errors import ConfigError
 from giveway.studies.definition import (
-    bundled_studies,
     dump_definition,
-    find_study,
     parse_definition,
     read_definition,
 )
 from giveway.studies.design import design
+from giveway.studies.finding import bundled_studies, find_study
 
 MINIMAL = 'name = "mine"\n[factors]\ncontroller = ["mpc", "pid"]\n'
 
