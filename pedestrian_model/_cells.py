@@ -85,24 +85,24 @@ def _lay_grid(position: NDArray[np.float64], reach: float, most: int) -> Grid:
 
 @inlined
 def _sort(index: NDArray[np.int64], position: NDArray[np.float64], grid: Grid) -> None:
-    """Counting sort: index[0] the order, index[2] the first of each cell. Stable: deterministic."""
+    """Counting sort: index[0] the order, index[2] the first of each cell. Stable: deterministic.
+
+    A cell's place in index[2] lags one behind, so that it is right when everybody is sorted in.
+    """
     order, cell, first = index[0], index[1], index[2]
     cells = grid.columns * grid.strips
-    for k in range(cells + 1):
+    for k in range(cells + 2):
         first[k] = 0
     for i in range(position.shape[0]):
         column = int((position[i, 0] - grid.x_0) * grid.per_x)
         strip = int((position[i, 1] - grid.y_0) * grid.per_y)
         cell[i] = strip * grid.columns + column
-        first[cell[i] + 1] += 1
-    for k in range(cells):
+        first[cell[i] + 2] += 1
+    for k in range(1, cells + 1):
         first[k + 1] += first[k]
     for i in range(position.shape[0]):
-        order[first[cell[i]]] = i
-        first[cell[i]] += 1
-    for k in range(cells, 0, -1):
-        first[k] = first[k - 1]
-    first[0] = 0
+        order[first[cell[i] + 1]] = i
+        first[cell[i] + 1] += 1
 
 
 @inlined

@@ -72,9 +72,25 @@ def set_targets(
     whose signal is closed. Towards all others people walk at their desired speed (ours: with the
     fading everywhere, way-points 2 m apart cost a quarter of it, 5 m apart an eighth).
     """
+    n = desired_speed.shape[0]
+    set_targets_of(n, rows, order, desired_speed, routes, waypoint_index, closed, c)
+
+
+@inlined
+def set_targets_of(
+    n: int,
+    rows: NDArray[np.float64],
+    order: NDArray[np.int64],
+    desired_speed: NDArray[np.float64],
+    routes: Routes,
+    waypoint_index: NDArray[np.int64],
+    closed: NDArray[np.bool_],
+    c: Any,
+) -> None:
+    """As ``set_targets``, for the first n rows."""
     w, q, signal, start = routes
     radius, R = c.r_waypoint, c.R
-    for k in range(desired_speed.shape[0]):
+    for k in range(n):
         i = order[k]
         x, y = rows[PX, k], rows[PY, k]
         last = start[i + 1] - 1

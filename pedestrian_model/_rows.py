@@ -86,19 +86,31 @@ def fill(
     velocity: NDArray[np.float64],
 ) -> None:
     """Copy the state into the rows in ``order``, pad them, and clear the forces."""
-    n = position.shape[0]
-    for k in range(n):
+    fill_some(rows, order, position, velocity, 0, position.shape[0])
+
+
+@inlined
+def fill_some(
+    rows: NDArray[np.float64],
+    order: NDArray[np.int64],
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    start: int,
+    stop: int,
+) -> None:
+    """As ``fill``, only the rows start ... stop - 1, and padding after them."""
+    for k in range(start, stop):
         i = order[k]
         rows[PX, k] = position[i, 0]
         rows[PY, k] = position[i, 1]
         rows[VX, k] = velocity[i, 0]
         rows[VY, k] = velocity[i, 1]
-    for k in range(n, n + 2 * BLOCK):
+    for k in range(stop, stop + 2 * BLOCK):
         rows[PX, k] = _FAR
         rows[PY, k] = _FAR
         rows[VX, k] = 0.0
         rows[VY, k] = 0.0
-    for k in range(n + 2 * BLOCK):
+    for k in range(start, stop + 2 * BLOCK):
         vx, vy = rows[VX, k], rows[VY, k]
         speed = math.sqrt(vx * vx + vy * vy)
         inverse = 1.0 / speed if speed > 0.0 else 0.0

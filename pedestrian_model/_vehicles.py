@@ -211,10 +211,57 @@ def add_near_vehicles(
     Whom it does not reach is left out strip by strip, by a box round its contour; with few
     vehicles nobody is, so that a crowd's size does not show in the last bits of their force.
     """
-    c = constants[0]
     if vehicles.shape[0] < _MANY:
-        add_vehicles(rows, n, vehicles, travelled, relied_on, c)
-        return
+        add_vehicles(rows, n, vehicles, travelled, relied_on, constants[0])
+    else:
+        _add_to_strips(rows, first, grid, 0, grid.strips, vehicles, travelled, relied_on, constants)
+
+
+@inlined
+def add_vehicles_to_strips(
+    rows: NDArray[np.float64],
+    first: NDArray[np.int64],
+    grid: Grid,
+    begin_strip: int,
+    end_strip: int,
+    vehicles: NDArray[np.float64],
+    travelled: float,
+    relied_on: bool,
+    constants: NDArray[Any],
+) -> None:
+    """As ``add_near_vehicles``, only for the rows of the strips begin_strip ... end_strip - 1."""
+    if vehicles.shape[0] < _MANY:
+        start, stop = first[begin_strip * grid.columns], first[end_strip * grid.columns]
+        for v in range(vehicles.shape[0]):
+            add_vehicle(rows, start, stop, vehicles[v], travelled, relied_on, constants[0])
+    else:
+        _add_to_strips(
+            rows,
+            first,
+            grid,
+            begin_strip,
+            end_strip,
+            vehicles,
+            travelled,
+            relied_on,
+            constants,
+        )
+
+
+@inlined
+def _add_to_strips(
+    rows: NDArray[np.float64],
+    first: NDArray[np.int64],
+    grid: Grid,
+    begin_strip: int,
+    end_strip: int,
+    vehicles: NDArray[np.float64],
+    travelled: float,
+    relied_on: bool,
+    constants: NDArray[Any],
+) -> None:
+    """Add the forces of vehicles to those rows of some strips that they reach."""
+    c = constants[0]
     for v in range(vehicles.shape[0]):
         cos, sin = cosine_sine(vehicles[v, HEADING])
         u = vehicles[v, SPEED]
@@ -230,10 +277,11 @@ def add_near_vehicles(
         if right < 0.0 or left >= grid.columns or high < 0.0 or low >= grid.strips:
             continue
         if not right - left + high - low < _ABSURD:  # a vehicle that is not finite spoils all
-            add_vehicle(rows, 0, n, vehicles[v], travelled, relied_on, c)
+            all_from, all_to = first[begin_strip * grid.columns], first[end_strip * grid.columns]
+            add_vehicle(rows, all_from, all_to, vehicles[v], travelled, relied_on, c)
             continue
         begin, end = max(int(left), 0), min(int(right), grid.columns - 1)
-        for strip in range(max(int(low), 0), min(int(high), grid.strips - 1) + 1):
+        for strip in range(max(int(low), begin_strip), min(int(high), end_strip - 1) + 1):
             base = strip * grid.columns
             start, stop = first[base + begin], first[base + end + 1]
             if start < stop:

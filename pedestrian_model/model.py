@@ -1,7 +1,7 @@
 """The crowd, stepped: Newton's law under the sum of the sub-forces."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +17,17 @@ from pedestrian_model.parameters import SIM, VciParameters
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings
 from pedestrian_model.vehicles import COLUMNS, Vehicles
 
+if TYPE_CHECKING:
+    from pedestrian_model._team import Team
+
 #: The longest step the integration takes at once: k_col dt^2 / m = 0.31 is stable.
 LONGEST_STEP = 0.05  # [s]
 #: From so many pedestrians on, neighbours are found by a cell list (benchmarks/bench_crowd.py).
 CELL_LIST_FROM = 100
+#: From so many on, several threads step a crowd: with fewer, they would wait for each other more.
+SHARED_FROM = 1000
+#: More threads than this are taken for a mistake.
+MOST_THREADS = 256
 
 
 def substeps(time_step: float) -> int:
@@ -83,9 +90,12 @@ class CrowdModel:
             stay there, as by the published forces alone.
         creep: whether the angle of a vehicle's force takes it to move below the static speed
             too, or to stand, as its contour does.
+        threads: how many step a crowd of ``SHARED_FROM`` or more; the result is the same, bit by
+            bit.
 
     Raises:
-        ParameterError: if the time step is not positive and finite, or makes speeds swing.
+        ParameterError: if the time step is not positive and finite, or makes speeds swing, or
+            there are less than one or more than ``MOST_THREADS`` threads.
     """
 
     def __init__(
@@ -96,8 +106,11 @@ class CrowdModel:
         cell_list_from: int = CELL_LIST_FROM,
         detour: bool = True,
         creep: bool = True,
+        threads: int = 1,
     ) -> None:
         require_steady(parameters, time_step)
+        if not 1 <= threads <= MOST_THREADS:
+            raise ParameterError(f"threads = {threads}, expected 1 to {MOST_THREADS}")
         self.parameters = parameters
         self.time_step = float(time_step)
         self.cell_list_from = int(cell_list_from)
@@ -105,6 +118,7 @@ class CrowdModel:
         self._dt = self.time_step / self._substeps
         self._constants = pack(parameters, detour=detour, creep=creep)
         self._workspace = Workspace()
+        self._team = _team(threads) if threads > 1 else None
 
     def step(
         self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
@@ -132,18 +146,26 @@ class CrowdModel:
         """
         if crowd.signals > surroundings.closed.shape[0]:
             raise unknown_signal(crowd, surroundings)
-        if crowd.position.shape[0] > self._workspace.capacity:
-            self._workspace.reserve(crowd.position.shape[0])
-        bad = _advance(
-            (*crowd.state, *crowd.wishes, *surroundings.arrays, *self._workspace.arrays),
-            vehicles.array,
-            self._constants,
-            self._dt,
-            self._substeps,
-            self.cell_list_from,
-        )
+        n = crowd.position.shape[0]
+        if n > self._workspace.capacity:
+            self._workspace.reserve(n)
+        arrays = (*crowd.state, *crowd.wishes, *surroundings.arrays, *self._workspace.arrays)
+        time = (self._dt, self._substeps)
+        if self._team is not None and n >= max(SHARED_FROM, self.cell_list_from):
+            bad = self._team.advance(
+                arrays, self._workspace, vehicles.array, self._constants, *time
+            )
+        else:
+            bad = _advance(arrays, vehicles.array, self._constants, *time, self.cell_list_from)
         if bad != FINE:
             raise divergence(bad, crowd, vehicles)
+
+
+def _team(threads: int) -> "Team":
+    """The threads; imported here, so that who has one only loads none of their kernels."""
+    from pedestrian_model._team import Team
+
+    return Team(threads)
 
 
 @kernel

@@ -118,6 +118,15 @@ class CrowdConfig(Section):
         None,
         "below 0.2 m/s the angle of a car's force has its true speed; else it stands for that too",
     )
+    threads: int = option(
+        1,
+        None,
+        "processor threads that step a crowd of 1,000 or more; the results do not depend on them",
+        flag="--threads",
+        ge=1,
+        le=256,
+        because="more than a machine has processors slow it down",
+    )
 
     @model_validator(mode="after")
     def _ordered(self) -> CrowdConfig:

@@ -147,6 +147,7 @@ def assemble(
             time_step,
             detour=config.crowd.detour,
             creep=config.crowd.creep,
+            threads=config.crowd.threads,
         ),
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
