@@ -6,9 +6,9 @@ the kerb, whatever its driver is about to do. Drivers give way (Vienna Conventio
 priority is left out as long as the vehicle can stop before that person, and acts in full on whom
 it cannot stop for any more, and on whoever is beside or behind its front. All of this file is ours.
 
-Most drivers brake with more than 4.5 m/s^2 where they have to (AASHTO, A Policy on Geometric Design
-of Highways and Streets, 2011, section 3.2.2), and so do SUMO's by default; who begins in time needs
-2 m/s^2.
+Most drivers brake with more than 4.5 m/s^2 for something unexpected (AASHTO, A Policy on Geometric
+Design of Highways and Streets, 2011, on stopping sight distance; it designs for 3.4 m/s^2), and so
+do SUMO's by default; who begins in time needs 2 m/s^2.
 """
 
 from pedestrian_model._jit import inlined

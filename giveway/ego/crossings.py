@@ -168,7 +168,7 @@ class Crossings:
         self._length = length
         self._kerb_distance, self._kerb_time = kerb_distance, kerb_time
         self._next = 0
-        self._waits = False  # at the next crossing
+        self._waits_for: int | None = None  # a crossing, before the next one
         self._place = math.inf  # [m] where it does, or did before; inf: it has not
         self._states: Mapping[str, str] = {}
         self.systems = frozenset(place.system for place in self._crossings if place.system)
@@ -190,28 +190,36 @@ class Crossings:
         """
         while self._next < len(self._crossings) and self._crossings[self._next].entry < front:
             self._next += 1
-            self._waits, self._place = False, math.inf
+            self._waits_for, self._place = None, math.inf
         for number in range(self._next, len(self._crossings)):
             place = self._crossings[number]
             if place.entry - front > _SIGHT:
                 break
             wanted = self._is_wanted(number, front, speed, crowd)
             if wanted or leaves_no_room(leader, place.entry, place.exit, self._length):
-                for before in self._stops_before(number, front):
-                    entry = self._crossings[before].entry
-                    first = before == self._next
-                    latest = entry - _CLEAR
-                    too_late = needed_braking(speed, latest - front) > HARDEST
-                    if too_late and not (first and self._waits):
-                        continue
-                    nearest = front + speed * speed / (2.0 * HARDEST)
-                    stop = max(entry - STOP_BEFORE, min(nearest, latest))
-                    if first:
-                        self._waits, self._place = True, min(self._place, stop)
-                        stop = self._place
+                stop = self._stop_for(number, front, speed)
+                if stop < math.inf:
                     return stop
-            elif number == self._next:
-                self._waits = False
+        self._waits_for = None
+        return math.inf
+
+    def _stop_for(self, number: int, front: float, speed: float) -> float:
+        """Station [m] at which to stop for one crossing; inf: it is too late everywhere."""
+        waits = self._waits_for is not None
+        for before in self._stops_before(number, front):
+            entry = self._crossings[before].entry
+            first = before == self._next
+            latest = entry - _CLEAR
+            too_late = needed_braking(speed, latest - front) > HARDEST
+            if too_late and not (first and waits):
+                continue
+            nearest = front + speed * speed / (2.0 * HARDEST)
+            stop = max(entry - STOP_BEFORE, min(nearest, latest))
+            self._waits_for = number if first else None
+            if first:
+                self._place = min(self._place, stop)
+                stop = self._place
+            return stop
         return math.inf
 
     def _stops_before(self, number: int, front: float) -> list[int]:
@@ -231,8 +239,7 @@ class Crossings:
         if not len(crowd):
             return False
         u, w = place_on(crowd.position, place.kerb, place.along)
-        waits = number == self._next and self._waits
-        sure = _SURE if waits else 0.0
+        sure = _SURE if number == self._waits_for else 0.0
         reach = np.maximum(self._kerb_distance, (self._kerb_time + sure) * crowd.desired_speed)
         near = is_near(u, w, place.length, place.half_width + reach, reach)
         if not near.any():

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
 from giveway.metrics.law.areas import Area
-from giveway.metrics.law.drive import Drive, runs
+from giveway.metrics.law.drive import Drive, runs, spread
 from giveway.metrics.law.encounters import AHEAD, Encounter
-from giveway.metrics.law.standing import Owed
+from giveway.metrics.law.standing import BEFORE, Owed
 
-BEFORE, AFTER = 1.0, 2.0
-"""[s] A cause counts from so long before it is there until so long after."""
+AFTER = 2.0
+"""[s] A cause counts for so long after it was there."""
 
 SIGHT = 10.0
 """[m] A cause counts this far in front of the ego."""
@@ -26,7 +26,6 @@ _FOE = 9.0  # [s] before another vehicle comes by: the largest critical gap, and
 _ROOM = 5.0  # [m] that the ego wants behind a crossing or a junction, besides its own length
 _STARTING = 3.0  # [s] in which an ego drives off that departs standing
 _HALT = 1.0  # [m] about a scheduled stop
-_SAME = 1e-6  # [s]
 _POINTS = 5  # of a vehicle's middle line, front to rear
 _GO = np.array(list("GgOo"))
 
@@ -68,7 +67,7 @@ def stops_without_cause(
         if begin == 0:
             caused |= time <= time[0] + _STARTING
         for there, before in _causes(drive, stand, owed):
-            caused |= _spread(time, there, before + BEFORE, AFTER)
+            caused |= spread(time, there, before + BEFORE, AFTER)
         wrong = ~caused[begin:end]
         if wrong.any():
             duration = float(lasting[begin:end][wrong].sum())
@@ -159,13 +158,3 @@ def _on_path(drive: Drive, x: Array, y: Array) -> tuple[Array, Array]:
     """Stations and distances (n,) [m] of points beside the ego's path."""
     station, lateral = drive.path.project(np.column_stack([x.ravel(), y.ravel()]))
     return station, np.abs(lateral)
-
-
-def _spread(time: Array, there: Mask, before: float, after: float) -> Mask:
-    """(T,) ``there`` from so long [s] before until so long [s] after."""
-    hits = time[there]
-    if not len(hits):
-        return there
-    following = np.minimum(np.searchsorted(hits, time - after - _SAME), len(hits) - 1)
-    near = hits[following]
-    return np.asarray((near >= time - after - _SAME) & (near <= time + before + _SAME))

@@ -100,3 +100,13 @@ def runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
     edges = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
     begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
     return list(zip(begins.tolist(), ends.tolist(), strict=True))
+
+
+def spread(time: Array, there: NDArray[np.bool_], before: float, after: float) -> NDArray[np.bool_]:
+    """(T,) ``there`` from so long [s] before until so long [s] after."""
+    hits = time[there]
+    if not len(hits):
+        return there
+    following = np.minimum(np.searchsorted(hits, time - after - _SAME), len(hits) - 1)
+    near = hits[following]
+    return np.asarray((near >= time - after - _SAME) & (near <= time + before + _SAME))

@@ -26,6 +26,9 @@ post-encroachment time that SSAM looks at (Gettman & Head 2003, FHWA)."""
 PULL_AWAY = 2.0
 """[m/s^2] with which it could come."""
 
+TOUCHES = 2.0
+"""[m] from its body an ego that stands may still push somebody; one that drives may anywhere."""
+
 BY = 20.0
 """[m] before a crossing from which on the ego may push people back there."""
 
@@ -98,7 +101,9 @@ def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:
 
 
 def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
-    """How far somebody with priority went back while the ego was near, if at all.
+    """How far somebody with priority went back where the ego may have pushed them, if at all.
+
+    What others on foot or SUMO's vehicles do to them while the ego stands away does not count.
 
     Args:
         drive: the ego's.
@@ -107,9 +112,12 @@ def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
     """
     front = drive.front[walk.steps]
     counts = walk.priority & (front >= area.entry - BY) & (front <= area.leave)
+    pushes = _may_push(drive, walk)
     worst: PushedBack | None = None
     for begin, end in runs(counts):
-        progress = walk.progress[begin:end]
+        moved = np.diff(walk.progress[begin:end], prepend=walk.progress[begin])
+        moved[(moved < 0.0) & ~pushes[begin:end]] = 0.0
+        progress = np.cumsum(moved)
         farthest = np.maximum.accumulate(progress)
         back = farthest - progress
         k = int(np.argmax(back))
@@ -117,6 +125,18 @@ def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
             at = begin + int(np.argmax(progress[: k + 1]))
             worst = PushedBack(area, walk, at, float(back[k]))
     return [] if worst is None else [worst]
+
+
+def _may_push(drive: Drive, walk: Walk) -> NDArray[np.bool_]:
+    """(m,) whether the ego drives, or stands right beside a person."""
+    ego, k = drive.ego, walk.steps
+    c, s = np.cos(ego.heading[k]), np.sin(ego.heading[k])
+    d_x, d_y = walk.x - ego.front_x[k], walk.y - ego.front_y[k]
+    ahead, aside = d_x * c + d_y * s, np.abs(d_y * c - d_x * s)
+    beyond = np.maximum(np.maximum(ahead, -ahead - drive.shape.length), 0.0)
+    beside = np.maximum(aside - drive.shape.width / 2, 0.0)
+    near = np.hypot(beyond, beside) <= TOUCHES + drive.body_radius
+    return np.asarray(near | (ego.speed[k] >= drive.stop_speed))
 
 
 def waiting_time(drive: Drive, found: Encounter) -> float:

@@ -7,17 +7,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.metrics.law.areas import Area
-from giveway.metrics.law.drive import Drive, runs
+from giveway.metrics.law.drive import Drive, runs, spread
 from giveway.metrics.law.walks import is_open
 
 LONG = 2.0
 """[s] A shorter stand blocks nobody."""
 
+BEFORE = 1.0
+"""[s] A cause to stand counts from so long before it is there: to be early is careful."""
+
 NEAR = 3.0
 """[m] Somebody who is this near in front keeps the ego from driving on."""
 
 _SAME = 1e-6  # [s]
-_WAITING = (-3.0, 0.5)  # [m] behind and beyond a waiting place at which the ego waits there
+_WAITING = (-3.0, 0.5)  # [m] behind and beyond a line or a waiting place the ego waits at it
 
 
 Owed = tuple[float, NDArray[np.bool_]]
@@ -68,7 +71,8 @@ def blocked_junctions(
     free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, areas, owed)
     found = list[Blocked]()
     for number, junction in enumerate(drive.way.junctions):
-        inside = (drive.front > junction.entry) & (drive.front < junction.exit + drive.shape.length)
+        inside = drive.front > junction.entry + _WAITING[1]
+        inside &= drive.front < junction.exit + drive.shape.length
         for place in junction.waiting:
             off = drive.front - place
             inside &= (off < _WAITING[0]) | (off > _WAITING[1])
@@ -82,7 +86,8 @@ def _lets_pass(drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]) -> NDA
     on_it = [(area.entry, _used(drive, area)) for area in areas]
     for entry, there in (*owed, *on_it):
         room = entry - drive.front
-        passing |= there & (room >= 0.0) & (room <= NEAR)
+        waiting = spread(drive.ego.time, there, BEFORE, 0.0)
+        passing |= waiting & (room >= 0.0) & (room <= NEAR)
     return passing
 
 

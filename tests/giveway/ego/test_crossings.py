@@ -191,3 +191,20 @@ def test_who_walks_along_the_road_and_is_going_to_turn_in(x, then, stops):
     corner = (22.0, -4.0)
     walks = Crowd.create([[x, -4.5]], [[1.4, 0.0]], 1.4, [[corner, then]])
     assert (crossings(kerb_time=3.5).stop_at(NEAR, 4.0, walks) < math.inf) == stops
+
+
+def test_who_waits_before_two_crossings_for_the_second_one_stays_as_sure():
+    """Between the two there is no room to stand; somebody else comes 3 s later."""
+    ends = np.array([[0.0, NORTHERN_KERB], [0.0, SOUTHERN_KERB]])
+    both = [Crossing(f":j_c{x}_0", ends + [x, 0.0], 4.0, True, "", -1) for x in (22.0, 28.0)]
+    path = EgoPath.through([(0.0, LANE), (60.0, LANE)])
+    found = crossings_on(path, SHAPE, both)
+    waiting, fresh = (
+        Crossings(found, length=SHAPE.length, kerb_distance=1.5, kerb_time=2.5) for _ in range(2)
+    )
+    later = walker(SOUTHERN_KERB - 3.0 * 1.4, x=28.0)
+    assert fresh.stop_at(LINE, 0.0, later) == math.inf
+    assert waiting.stop_at(LINE, 0.0, walker(-3.4, speed=1.0, x=28.0)) < math.inf
+    assert waiting.stop_at(LINE, 0.0, later) < math.inf
+    assert waiting.stop_at(LINE, 0.0, NOBODY) == math.inf
+    assert waiting.stop_at(LINE, 0.0, later) == math.inf

@@ -229,6 +229,19 @@ def test_only_people_with_priority_are_pushed_back_and_only_by_an_ego_that_is_ne
     assert far.summary.pushed_back == 0.0
 
 
+@pytest.mark.parametrize(
+    ("front", "speed", "rows"),
+    [(14.0, 0.0, 0), (14.0, 1.0, 1), (19.0, 0.0, 1)],
+)
+def test_an_ego_that_stands_away_from_them_pushes_nobody_back(front, speed, rows):
+    """Others do, as the ego stands 7 m away; not if it drives, or stands right before them."""
+    t = np.arange(120) * 0.05
+    y = np.interp(t, [0.0, 3.0, 4.0, 9.0], [4.4, -0.2, 0.5, 0.5])
+    person = Person(np.column_stack([np.full(120, 21.0), y]), way=((21.0, -20.0),))
+    found = judged(ego((6.0, 0.0), speed=speed, front=front), person, front=front)
+    assert kinds(found).count("pushed back") == rows
+
+
 def test_how_long_people_stand_at_a_zebra():
     t = np.arange(280) * 0.05
     stands = np.interp(t, [0.0, 1.0, 4.0, 14.0], [-4.9, -3.7, -3.7, 10.0])
