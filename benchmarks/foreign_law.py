@@ -6,8 +6,8 @@ SUMO runs the scenario once with its own cars; from those that depart in the fir
 seconds the seed draws as many as there are drives; where there are fewer, all of them drive again
 with the next seed. Each is taken over as the ego in a drive of its own, over its whole way or for
 180 s, with everything else as giveway has it by default. A scenario without cars needs routes
-instead, ``--route EDGE,EDGE`` (more than once, if you like), on which an ego is inserted at a time that
-the seed draws.
+instead, ``--route EDGE,EDGE`` (more than once, if you like), on which an ego is inserted at a time
+that the seed draws.
 
 One line of ``FOLDER/drives.jsonl`` per drive; what is done is not done again, so the campaign can
 be ended at any time, and another state of the repository needs another folder. The end prints the
@@ -31,7 +31,7 @@ from giveway.sumo.library import import_libsumo
 from giveway.sumo.types import ROAD_CLASSES
 
 LIMIT = 180.0  # [s] of each drive
-OTHERS = frozenset({"bus", "coach", "tram", "bicycle", "pedestrian", "emergency", "rail"})
+CARS = frozenset(ROAD_CLASSES) - {"bus", "coach", "tram", "bicycle", "emergency"}
 INSERTED = (30.0, 150.0)  # [s] between which an ego is inserted
 COUNTS = (
     "encounters",
@@ -58,7 +58,7 @@ def cars(scenario: Path, window: float, seed: int) -> list[str]:
         while sumo.simulation.getTime() < begin + window:
             sumo.simulationStep()
             for name in sumo.simulation.getDepartedIDList():
-                if sumo.vehicle.getVehicleClass(name) in ROAD_CLASSES - OTHERS:
+                if sumo.vehicle.getVehicleClass(name) in CARS:
                     found.append(name)
             if sumo.simulation.getMinExpectedNumber() == 0:
                 break
