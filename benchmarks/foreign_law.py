@@ -5,9 +5,9 @@
 SUMO runs the scenario once with its own cars; from those that depart in the first ``--window``
 seconds the seed draws as many as there are drives; where there are fewer, all of them drive again
 with the next seed. Each is taken over as the ego in a drive of its own, over its whole way or for
-180 s, with everything else as giveway has it by default. A scenario without cars needs routes
-instead, ``--route EDGE,EDGE`` (more than once, if you like), on which an ego is inserted at a time
-that the seed draws.
+180 s, as fast as its lanes allow, with everything else as giveway has it by default. A scenario
+without cars needs routes instead, ``--route EDGE,EDGE`` (more than once, if you like), on which an
+ego is inserted at a time that the seed draws.
 
 One line of ``FOLDER/drives.jsonl`` per drive; what is done is not done again, so the campaign can
 be ended at any time, and another state of the repository needs another folder. The end prints the
@@ -73,6 +73,7 @@ def drive(scenario: Path, ego: str, seed: int) -> dict[str, Any]:
     settings = {
         "scenario": str(scenario),
         "ego": inserted if "," in ego else {"take_over": [ego]},
+        "regulation": {"reference_speed": "lane"},
         "sumo": {"seed": seed},
         "seed": seed,
         "time_limit": LIMIT,
