@@ -29,6 +29,10 @@ runs without the mutant, and if it fails again it does not count. The verdicts:
     unfinished  --limit seconds were not enough
     gone, ambiguous   the tree has no such place, or several
 
+``run --guess`` needs no map, which takes most of the time: it lets those test files loose that are
+in the folder which mirrors the function's module, or mention its module, its class or its name.
+What it kills is killed; whether the other tests would find a survivor, only a map tells.
+
 Trees are copied, nothing is written into them. Everything is resumable: what is done is not done
 again; survivors and unfinished ones go on with test files that were mapped, or seconds that were
 granted, since. Linux and macOS; needs the ``test`` extra.
@@ -47,8 +51,8 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from mutants_drawn import Mutant, NoPlaceError, Renames, draw, place
-from mutants_functions import functions_of
-from mutants_tests import Place, fingerprint, map_file, read_map, test_files
+from mutants_functions import executors, functions_of
+from mutants_tests import Place, fingerprint, guess_map, map_file, read_map, test_files
 from mutants_verdicts import FOUND, Trial, Verdict, read_verdicts, try_mutant
 
 if TYPE_CHECKING:
@@ -90,7 +94,7 @@ def _run(options: argparse.Namespace) -> int:
     folder = _folder(options, "")
     results = folder / "results.jsonl"
     renames = Renames(options.renames.read_text() if options.renames else "")
-    functions, mapped = functions_of(options.tree), read_map(folder / "map")
+    functions = functions_of(options.tree)
     earlier, lock = read_verdicts(folder), Lock()
 
     def one(here: Place, mutant: Mutant) -> None:
@@ -100,6 +104,11 @@ def _run(options: argparse.Namespace) -> int:
         except NoPlaceError as reason:
             verdict = Verdict(mutant.name, str(reason))
         else:
+            if options.guess:
+                keys = executors(placed.function, functions)
+                mapped = guess_map(here.tree, placed.function, keys)
+            else:
+                mapped = read_map(folder / "map")
             trial = Trial(mutant, placed, functions, mapped, options.limit)
             if before is not None and not trial.continues(before, here.tree):
                 return
@@ -213,6 +222,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     mapping.add_argument(
         "--skip", nargs="*", default=[], help="parts of names of files that are left out"
+    )
+    running.add_argument(
+        "--guess", action="store_true", help="no map: test files whose text or folder suggests them"
     )
     running.add_argument("--mutants", type=Path, help="list of another --out")
     running.add_argument("--renames", type=Path, help="old=new, one a line")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -29,6 +30,7 @@ NO_TESTS: Final = 5  # pytest's exit code where nothing is left to run
 
 _RECORDER: Final = Path(__file__).resolve().parent / "mutants_recorder"
 _LEFT_OUT: Final = (".git", ".venv", "__pycache__", ".pytest_cache", ".hypothesis", ".*_cache")
+_QUICK, _SLOW = 5.0, 25.0  # [s] roughly, of a test file that has not been mapped
 _MARK: Final = "MUTANTS_TOKEN"  # in the environment of all processes that come from one of ours
 
 
@@ -258,6 +260,31 @@ def read_map(folder: Path) -> dict[str, Mapped]:
     """What is known of test files so far."""
     found = [Mapped(**json.loads(p.read_text())) for p in sorted(folder.glob("*.json"))]
     return {mapped.file: mapped for mapped in found}
+
+
+def guess_map(tree: Path, function: Function, executors: set[str]) -> dict[str, Mapped]:
+    """The test files that seem to concern a function, without a map.
+
+    Those in the folder that mirrors its own, and those that mention its class or its own name, or
+    import its module. The seconds are rough, but tell the slow ones from the quick.
+
+    Args:
+        tree: with the tests.
+        function: that is to be executed.
+        executors: what a recorder would see.
+    """
+    module = Path(function.file).with_suffix("")
+    mirrored = f"tests/{module.parent.as_posix()}/"
+    words = [re.escape(part) for part in function.name.split(".")[:2] if not part.startswith("__")]
+    names = [*words[:1], re.escape(".".join(module.parts))]
+    names += [rf"from {re.escape('.'.join(module.parts[:-1]))} import [^\n]*{module.name}"]
+    naming = re.compile(rf"\b(?:{'|'.join(names)})\b")
+    found = {}
+    for file in test_files(tree):
+        if file.startswith(mirrored) or naming.search((tree / file).read_text(encoding="utf-8")):
+            seconds = _SLOW if file.startswith("tests/end_to_end") else _QUICK
+            found[file] = Mapped(file, True, seconds, "", sorted(executors))
+    return found
 
 
 def fingerprint(tree: Path) -> str:
