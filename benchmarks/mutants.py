@@ -109,7 +109,7 @@ def _run(options: argparse.Namespace) -> int:
                 mapped = guess_map(here.tree, placed.function, keys)
             else:
                 mapped = read_map(folder / "map")
-            trial = Trial(mutant, placed, functions, mapped, options.limit)
+            trial = Trial(mutant, placed, functions, mapped, options.limit, options.guess)
             if before is not None and not trial.continues(before, here.tree):
                 return
             verdict = try_mutant(here, trial, before)

@@ -6,6 +6,7 @@ import json
 import re
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from math import inf
 from time import monotonic
 from typing import TYPE_CHECKING, Final
 
@@ -62,6 +63,7 @@ class Trial:
     functions: Sequence[Function]
     mapped: Mapping[str, Mapped]
     limit: float
+    guessed: bool = False  # nobody knows how long the tests take
 
     @property
     def recompiles(self) -> bool:
@@ -128,6 +130,7 @@ def _try_tests(
     """The verdict and the test that spoke it; nothing, if these files pass."""
     expected = sum(trial.mapped[f].seconds for f in files)
     granted = _SLOWER * expected + _PATIENCE + (_COMPILING if trial.recompiles else 0.0)
+    granted = inf if trial.guessed else granted
     end = monotonic() + left
     while (remaining := end - monotonic()) > expected:
         tests = [*files, *(f"--deselect={test}" for test in ignored)]
@@ -139,7 +142,7 @@ def _try_tests(
         test = outcome.first_failure()
         if outcome.code in _NOT_COLLECTED:
             return "broken", test
-        if "::" not in test or here.pytest([test], granted).code != FAILED:
+        if "::" not in test or here.pytest([test], min(granted, trial.limit)).code != FAILED:
             return "killed", test
         ignored.append(test)
     return "unfinished", ""
