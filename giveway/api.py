@@ -2,20 +2,24 @@
 
 import math
 import shlex
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, TypeVar
 
 from giveway.config import RunConfig
 from giveway.config.layers import dump_toml
 from giveway.config.loading import as_layer, load
-from giveway.cosimulation.assembly import Parts, assemble
+from giveway.cosimulation.assembly import Driven, Parts, assemble
+from giveway.cosimulation.followed import Followed
 from giveway.cosimulation.loop import Loop
 from giveway.cosimulation.preflight import CheckedRun, preflight
+from giveway.cosimulation.twin import Twin, twin_of
 from giveway.ego.vehicle import model_margin
-from giveway.errors import GivewayError, ResultsError
+from giveway.errors import CrowdError, GivewayError, ResultsError
 from giveway.processes.child import STDERR_FILE
 from giveway.processes.heartbeat import Phase
 from giveway.processes.interrupts import DeferredInterrupt
@@ -23,6 +27,7 @@ from giveway.recording.journal import Journal
 from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
 from giveway.results import law, mismatch, vehicle_contacts
+from giveway.results.effect import Effect
 from giveway.results.ego_result import EgoResult, results_of_egos
 from giveway.results.folder import (
     release_folder,
@@ -33,9 +38,17 @@ from giveway.results.folder import (
 )
 from giveway.results.provenance import manifest
 from giveway.results.run_result import RunResult
+from pedestrian_model import PedestrianModelError
 from sumo_scenarios import Scenario
 
 __all__ = ["RunResult", "run", "run_checked", "simulate"]
+
+TRAFFIC_DIFFERS = (
+    "twin: traffic lights or background vehicles did something else than in the run, so that the "
+    "delays of people are not the egos' alone"
+)
+
+Result = TypeVar("Result")
 
 
 def run(
@@ -193,7 +206,7 @@ def simulate(
     with ExitStack() as stack:
         parts = assemble(checked, stack, outputs=outputs, native_log=native_log, goes_on=goes_on)
         recorder = Recorder(journal)
-        loop = Loop(parts, recorder)
+        loop = Loop(parts, recorder, follow=checked.config.twin)
         began = perf_counter()
         error: Exception | None = None
         try:
@@ -201,7 +214,67 @@ def simulate(
         except Exception as failure:  # whatever it is, the rows so far are the user's
             error, ending = failure, Ending.FAILED
         elapsed = perf_counter() - began
-        return _result(parts, checked.scenario, recorder, loop, ending, error, elapsed)
+        result = _result(parts, checked.scenario, recorder, loop, ending, error, elapsed)
+        if loop.followed is None or error is not None or ending is Ending.INTERRUPTED:
+            return result
+        gone_on, error = _guarded(lambda: loop.follow_up(ending, interrupt))
+        driven = Driven({ego.id: ego.track for ego in result.egos}, parts.horizon)
+    twin = None
+    if gone_on and error is None and result.egos:
+        heartbeat = recorder.journal.heartbeat
+        make = partial(twin_of, checked, loop.followed, driven, heartbeat, interrupt, native_log)
+        twin, error = _guarded(make)
+    return _with_twin(result, loop.followed, twin, error, perf_counter() - began - elapsed)
+
+
+def _guarded(call: Callable[[], Result]) -> tuple[Result | None, Exception | None]:
+    """What a call returns, or its failure: the run's rows are the user's in any case."""
+    try:
+        return call(), None
+    except PedestrianModelError as error:
+        return None, CrowdError(f"crowd of the twin: {error}")
+    except Exception as error:
+        return None, error
+
+
+def _with_twin(
+    result: RunResult,
+    followed: Followed,
+    twin: Twin | None,
+    error: Exception | None,
+    seconds: float,
+) -> RunResult:
+    """The result with what the egos cost the people, or with why that is not known."""
+    if error is not None:
+        manifest = result.manifest | {"error": f"in the twin: {error}"}
+        return replace(result, error=error, manifest=manifest)
+    if twin is None:
+        interrupted = replace(result, ending=Ending.INTERRUPTED)
+        return interrupted if result.egos else result
+    walks = followed.walks.track
+    effect = Effect(
+        run=walks,
+        twin=twin.walks,
+        traffic_differs=twin.traffic_differs,
+        traffic_delay=math.nan,
+        among_themselves=twin.among_themselves,
+        seconds=seconds,
+    )
+    remarks = result.remarks
+    if twin.traffic_differs:
+        remarks = (*remarks, TRAFFIC_DIFFERS)
+    about = {
+        "is": "the crowd alone" if twin.among_themselves else "a second run",
+        "until": round(walks.time_step * walks.last, 6),
+    }
+    manifest = result.manifest | {"remarks": list(remarks), "twin": about}
+    return replace(
+        result,
+        egos=tuple(replace(ego, effect=effect) for ego in result.egos),
+        effect=effect,
+        remarks=remarks,
+        manifest=manifest,
+    )
 
 
 def _result(

@@ -14,7 +14,7 @@ from pedestrian_model.model import LONGEST_STEP, CrowdModel, arrived, require_st
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
 from pedestrian_model.prediction import Predictor
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
-from pedestrian_model.targets import targets
+from pedestrian_model.targets import remaining_distance, targets
 from pedestrian_model.vehicles import Vehicles
 
 __all__ = [
@@ -37,6 +37,7 @@ __all__ = [
     "Vehicles",
     "Walls",
     "arrived",
+    "remaining_distance",
     "require_steady",
     "targets",
     "vehicle_influence",

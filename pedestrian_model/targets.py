@@ -1,4 +1,4 @@
-"""Where people walk next."""
+"""Where people walk next, and how far it still is."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,42 @@ def targets(crowd: Crowd, rows: NDArray[np.int64]) -> NDArray[np.float64]:
         out,
     )
     return out
+
+
+def remaining_distance(crowd: Crowd) -> NDArray[np.float64]:
+    """(n,) [m] what is left of each pedestrian's route: straight from line to line, to the last."""
+    out = np.empty(len(crowd))
+    _fill_remaining(
+        crowd.position,
+        crowd.waypoints,
+        crowd.waypoint_passage,
+        crowd.waypoint_start,
+        crowd.waypoint_index,
+        out,
+    )
+    return out
+
+
+@kernel
+def _fill_remaining(
+    position: NDArray[np.float64],
+    waypoints: NDArray[np.float64],
+    passage: NDArray[np.float64],
+    start: NDArray[np.int64],
+    waypoint_index: NDArray[np.int64],
+    out: NDArray[np.float64],
+) -> None:
+    """From each way-point's line the way goes on at the line's point that was nearest."""
+    w, q = waypoints, passage
+    for i in range(len(out)):
+        x, y = position[i, 0], position[i, 1]
+        left = 0.0
+        for at in range(start[i] + waypoint_index[i], start[i + 1]):
+            p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+            to_x, to_y = aim(x, y, p, 0.0)
+            left += np.hypot(to_x - x, to_y - y)
+            x, y = to_x, to_y
+        out[i] = left
 
 
 @kernel

@@ -104,6 +104,12 @@ class RunConfig(Section):
         least=0.001,
         because="no step is shorter",
     )
+    twin: bool = option(
+        False,
+        None,
+        "make the run twice, the second time with people who do not feel the egos: what these cost",
+        flag="--twin",
+    )
     ego: EgoConfig = EgoConfig()
     vehicle: VehicleConfig = VehicleConfig()
     crowd: CrowdConfig = CrowdConfig()

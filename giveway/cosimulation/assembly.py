@@ -1,9 +1,10 @@
 """From a configuration to the parts of a run, each set up and at its initial state."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,9 +20,10 @@ from giveway.crowd.spawn import PREFIX, Spawned, spawn
 from giveway.crowd.zone import Zone
 from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_remark
-from giveway.ego.waiting import WaitingEgo, make_waiting_ego
+from giveway.ego.waiting import WaitingEgo, make_waiting_ego, recorded_ego
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
+from giveway.records.tracks import EgoTrack
 from giveway.scenario_files import StartOptions, free_prefix
 from giveway.sumo.session import SumoSession
 from giveway.sumo.types import all_types, inserted_type
@@ -34,6 +36,13 @@ from pedestrian_model import (
     Surroundings,
 )
 from sumo_scenarios import available
+
+
+class Driven(NamedTuple):
+    """How the egos of a run drove."""
+
+    tracks: Mapping[str, EgoTrack]  # by their ids
+    horizon: int  # steps that anybody looked ahead
 
 
 @dataclass(frozen=True)
@@ -54,6 +63,7 @@ class Parts:
     yielding: Yielding | None  # None: background vehicles do not yield to pedestrians
     priority: PriorityOnFoot | None  # None: nobody on foot relies on it
     net_file: Path  # the scenario's network
+    secluded: bool  # nobody but the egos and the people that we add is ever there
     remarks: tuple[str, ...]  # what the user should know
 
     @property
@@ -71,6 +81,12 @@ class Parts:
             )
         return (*self.remarks, *remarks)
 
+    def leave(self, names: Sequence[str]) -> None:
+        """Let pedestrians who have arrived leave SUMO with its next step."""
+        ours = names if self.exchange is None else self.exchange.arrive(names)
+        self.sumo.remove_persons(ours)
+        self.roster.count("arrived", len(ours))
+
 
 def assemble(
     checked: CheckedRun,
@@ -79,6 +95,7 @@ def assemble(
     outputs: Path | None = None,
     native_log: Path | None = None,
     goes_on: Callable[[float], bool] = lambda _: True,
+    driven: Driven | None = None,
 ) -> Parts:
     """Set up every part and let SUMO run up to the first departure; ``stack`` closes everything.
 
@@ -90,13 +107,15 @@ def assemble(
         outputs: folder for SUMO's own outputs; None drops them.
         native_log: file for what SUMO prints; None: a temporary one.
         goes_on: asked, with SUMO's clock, at each step until the first departure.
+        driven: how the egos drove in a run that is to be gone through again without FMUs and
+            controllers; None: these decide.
 
     Raises:
         GivewayError: a part cannot be set up as asked.
     """
     config, files, zone = checked.config, checked.files, checked.zone
     egos, time_step = checked.egos, checked.time_step
-    controllers = [make_controller(ego, time_step) for ego in egos]
+    controllers = [make_controller(ego, time_step) for ego in egos if driven is None]
     walkers = not zone.nowhere and not (zone.follows_egos and not egos)
     moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
     sumo = stack.enter_context(
@@ -105,7 +124,7 @@ def assemble(
             _start_options(config, moved, outputs),
             _types(egos),
             native_log=native_log,
-            careful=config.scenario not in available(),
+            careful=driven is None and config.scenario not in available(),
         )
     )
     substeps = substeps_of(time_step, sumo.step_length)
@@ -114,10 +133,13 @@ def assemble(
     if network is not None:
         zone.require_overlap(network.boundary)
         remarks += _remarks_on(network, files.net_file)
-    waiting = tuple(
-        make_waiting_ego(ego, controller, time_step, stack)
-        for ego, controller in zip(egos, controllers, strict=True)
-    )
+    if driven is None:
+        waiting = tuple(
+            make_waiting_ego(ego, controller, time_step, stack)
+            for ego, controller in zip(egos, controllers, strict=True)
+        )
+    else:
+        waiting = tuple(recorded_ego(ego, driven.tracks[ego.ego_id], time_step) for ego in egos)
     departures = Departures(waiting, sumo, files.config_file, time_step)
     departures.run_until_first(goes_on)
     roster = _roster(config, departures, sumo, files.net_file, network)
@@ -133,12 +155,15 @@ def assemble(
     yielding = None
     if config.traffic.yielding and (len(roster) or walkers or egos):
         yielding = Yielding(sumo.vehicles, sumo.step_length, config.traffic.yield_distance)
+    priority = _priority(config, egos, sumo) if len(roster) or walkers else None
     return Parts(
         config=config,
         sumo=sumo,
         time_step=time_step,
         substeps=substeps,
-        horizon=max((ego.horizon for ego in waiting), default=1),
+        horizon=max((ego.horizon for ego in waiting), default=1)
+        if driven is None
+        else driven.horizon,
         egos=waiting,
         departures=departures,
         roster=roster,
@@ -152,8 +177,14 @@ def assemble(
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
         yielding=yielding,
-        priority=_priority(config, egos, sumo) if len(roster) or walkers else None,
+        priority=priority,
         net_file=files.net_file,
+        secluded=(
+            exchange is None
+            and priority is None
+            and [path for _, path in files.inputs] == [files.net_file]
+            and not config.sumo.options
+        ),
         remarks=tuple(remarks),
     )
 

@@ -136,7 +136,7 @@ class Entrance:
         profile = profile_of(
             ego, path, lane_path.limits, departure, shape.length, capable, self._time_step
         )
-        if profile is not None:
+        if profile is not None and not ego.recorded:
             ego.controller = make_controller(config, self._time_step, profile.fastest)
         hardest = config.mpc.force_limit / config.vehicle.mass
         ego.start(speed)

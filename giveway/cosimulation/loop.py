@@ -22,11 +22,12 @@ from numpy.typing import NDArray
 from controller import ControllerError
 from fmus import FmuError
 from giveway.cosimulation.assembly import Parts
+from giveway.cosimulation.followed import Followed
 from giveway.cosimulation.meetings import Meetings
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.standstill import Standstill
+from giveway.cosimulation.walking import Walking
 from giveway.cosimulation.ways import LawRecords
-from giveway.crowd.disturbance import disturbance_of
 from giveway.crowd.reachable import spawn_remark, way_of
 from giveway.ego.ego import Ego
 from giveway.errors import ControlError, CrowdError, VehicleError
@@ -35,9 +36,7 @@ from giveway.processes.heartbeat import INSTANT, MILLISECONDS, PHASE, Phase
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
-from pedestrian_model import PedestrianModelError, arrived
-
-ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
+from pedestrian_model import PedestrianModelError
 
 
 def looks_ahead(period: float | None, time_step: float) -> int:
@@ -56,16 +55,19 @@ class Loop:
     Args:
         parts: what the run is made of, set up and at its initial state.
         recorder: gathers the rows.
+        follow: note how people and traffic get on, for :meth:`follow_up`.
 
     Attributes:
         endings: of each ego that has left the road or was on it when the run ended.
         remarks: what the user should know of how it went.
+        followed: what is noted for :meth:`follow_up`; None: nothing.
     """
 
     endings: dict[str, Ending]
     remarks: list[str]
+    followed: Followed | None
 
-    def __init__(self, parts: Parts, recorder: Recorder) -> None:
+    def __init__(self, parts: Parts, recorder: Recorder, *, follow: bool = False) -> None:
         self._parts = parts
         self._recorder = recorder
         self._law = LawRecords(parts.sumo, recorder)
@@ -88,7 +90,9 @@ class Loop:
         self._looks = looks_ahead(parts.config.record.predictions, parts.time_step)
         self._named = 0
         self._fronts = np.empty((0, 2))
-        self._disturbance = disturbance_of(parts.config, parts.crowd_model)
+        self.followed = Followed(parts) if follow else None
+        walks = None if self.followed is None else self.followed.walks
+        self._walking = Walking(parts.config, parts.crowd_model, parts.roster, walks)
 
     def run(self, watcher: Watcher | None, interrupt: DeferredInterrupt) -> Ending:
         """Step until every ego is done, a limit or an interrupt.
@@ -110,6 +114,31 @@ class Loop:
         if ending in {Ending.SCENARIO_END, Ending.TIME_LIMIT}:
             self._parts.departures.require_all()
         return ending
+
+    def follow_up(self, ending: Ending, interrupt: DeferredInterrupt) -> bool:
+        """Go on without egos until those who came close have arrived; no row is recorded.
+
+        Args:
+            ending: of the run.
+            interrupt: looked at between two steps.
+
+        Returns:
+            Whether it came to its end without an interrupt.
+
+        Raises:
+            GivewayError: a part failed.
+        """
+        if self.followed is None:
+            return False
+        return self.followed.follow(
+            ending is Ending.COMPLETED,
+            self._walking,
+            self._mirror,
+            self._k,
+            self._start,
+            self._recorder.journal.heartbeat,
+            interrupt,
+        )
 
     def _blame(self, error: PedestrianModelError) -> str:
         """Name the pedestrian whose state is not finite by its id."""
@@ -180,6 +209,8 @@ class Loop:
                 self._law.depart(parts.departures.ways[ego.id])
                 end = ego.departure + ego.goal
                 self._ways.append(way_of(ego.path.vertices, ego.path.stations, ego.departure, end))
+                if self.followed is not None:
+                    self.followed.walks.add_way(self._ways[-1])
             if arrivals and parts.config.crowd.pedestrians and not parts.departures.waiting:
                 self._remark_on_spawn_area()
         if parts.exchange is not None:
@@ -192,6 +223,8 @@ class Loop:
         background, meetings = self._mirror.background, self._meetings
         if background.ids or meetings.pending or any(ego.way.bounds for ego in self._egos):
             meetings.update(background, self._roster.crowd, self._egos)
+        if self.followed is not None:
+            self.followed.traffic.note(background)
         self._record_background()
         self._recorder.ledger(self._roster.ledger)
 
@@ -244,6 +277,7 @@ class Loop:
             controlling += controlled_at - decide_at
             acting = acting or decision.acting
         self._record_crowd()
+        self._walking.note(self._k)
         recorder.journal.commit()
         self._predicting, self._controlling = predicting, controlling
         return acting
@@ -286,15 +320,16 @@ class Loop:
 
     def _see_arrivals(self) -> None:
         """Egos that have driven their distance leave the road."""
-        for ego in self._egos[:]:
-            if not ego.arrived:
-                continue
+        gone = [ego for ego in self._egos if ego.arrived]
+        for ego in gone:
             self.endings[ego.id] = Ending.COMPLETED
             self._remark_on_missed_stops(ego)
             self._mirror.drop(self._egos.index(ego))
             self._egos.remove(ego)
             if self._egos or self._parts.departures.waiting:
                 self._parts.sumo.vehicles.dismiss(ego.id)
+        if gone and self.followed is not None:
+            self.followed.leave(gone, dismissed=bool(self._egos or self._parts.departures.waiting))
 
     def _advance(self) -> None:
         parts, mirror = self._parts, self._mirror
@@ -326,18 +361,7 @@ class Loop:
 
     def _step_crowd(self) -> None:
         """Move the crowd under the vehicles at t_k; pedestrians that have arrived leave."""
-        parts, roster = self._parts, self._roster
-        if not len(roster.present):
-            return
-        crowd, now = roster.crowd, (self._mirror.vehicles, parts.surroundings)
-        if self._disturbance is None:
-            parts.crowd_model.advance(crowd, *now)
-        else:
-            self._disturbance.advance(crowd, *now, roster.present, len(roster.ids))
-        there = arrived(roster.crowd, ARRIVAL_RADIUS)
-        if not np.count_nonzero(there):
-            return
-        names = roster.release(there)  # they leave SUMO with its next step
-        ours = names if parts.exchange is None else parts.exchange.arrive(names)
-        parts.sumo.remove_persons(ours)
-        roster.count("arrived", len(ours))
+        parts = self._parts
+        names = self._walking.advance(self._k, self._mirror.vehicles, parts.surroundings)
+        if names:  # they leave SUMO with its next step
+            parts.leave(names)

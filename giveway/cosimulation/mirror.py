@@ -42,11 +42,13 @@ class Mirror:
         poses: (N, e + b, 7) vehicles over the prediction horizon; the first e rows of each step
             are the egos, which their corridors fill in; ``poses[0]`` is now.
         vehicles: a view of ``poses[0]`` for the crowd's step.
+        others: the same without the egos.
     """
 
     background: BackgroundVehicles
     poses: Array
     vehicles: Vehicles
+    others: Vehicles
 
     def __init__(self, session: SumoSession, time_step: float, substeps: int, horizon: int) -> None:
         self._session = session
@@ -71,7 +73,11 @@ class Mirror:
         for row, ego in enumerate(egos):
             half = ego.shape.length / 2
             self.poses[:, row, 4:] = half, half, ego.shape.width
+        self._show()
+
+    def _show(self) -> None:
         self.vehicles = Vehicles(self.poses[0])
+        self.others = Vehicles(self.poses[0, self._egos :])
 
     # --- from SUMO ----------------------------------------------------------------------------
 
@@ -127,7 +133,7 @@ class Mirror:
         """Remove the ego in ``row`` from the vehicles; possible at every control step."""
         self._egos -= 1
         self.poses = np.ascontiguousarray(np.delete(self.poses, row, axis=1))
-        self.vehicles = Vehicles(self.poses[0])
+        self._show()
 
     def carry_on(self) -> None:
         """Move background vehicles on by one control step in which SUMO itself does not step."""

@@ -8,8 +8,10 @@ from controller import Controller, SafetyParameters
 from fmus import FmuError, Vehicle
 from giveway.config import EgoRunConfig
 from giveway.config.presets import parameters_of
+from giveway.ego.recorded import NoController, RecordedVehicle
 from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
 from giveway.errors import VehicleError
+from giveway.records.tracks import EgoTrack
 from pedestrian_model import Predictor
 
 _WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut off at two of them in x and in y
@@ -44,6 +46,11 @@ class WaitingEgo:
     def taken_over(self) -> bool:
         """Whether the vehicle is the scenario's."""
         return bool(self.config.ego.take_over)
+
+    @property
+    def recorded(self) -> bool:
+        """Whether it will drive as it did in a run that is over."""
+        return isinstance(self.vehicle, RecordedVehicle)
 
     def start(self, speed: float) -> None:
         """Set the FMU to where it departs.
@@ -96,6 +103,19 @@ def make_waiting_ego(
     fastest = max(crowd.max_speed, expected.max_speed)
     safety = safety_parameters(config, time_step) if config.safety_layer else None
     return WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety)
+
+
+def recorded_ego(config: EgoRunConfig, track: EgoTrack, time_step: float) -> WaitingEgo:
+    """An ego that will drive as it did in a run that is over.
+
+    Args:
+        config: of the ego.
+        track: its rows.
+        time_step: of the co-simulation [s].
+    """
+    vehicle = RecordedVehicle(track, time_step)
+    fastest = parameters_of(config.crowd.preset).max_speed
+    return WaitingEgo(config, vehicle, {}, NoController(), None, fastest, None)
 
 
 def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameters:

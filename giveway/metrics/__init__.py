@@ -2,7 +2,16 @@
 
 from giveway.metrics.conflicts import CRITICAL_TTC, Critical, Proximity, conflicts, proximity
 from giveway.metrics.contacts import FRONTAL, NO_CONTACT, SIDE, contacts
-from giveway.metrics.encroachment import post_encroachment_time
+from giveway.metrics.delays import (
+    DELAY_FIELDS,
+    DELAY_SUMMARY_FIELDS,
+    Delays,
+    DelaySummary,
+    delays,
+    gave_way,
+    summarise_delays,
+)
+from giveway.metrics.encroachment import encroachment, post_encroachment_time
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS, pedestrian_metrics
 from giveway.metrics.summary import (
     SUMMARY_FIELDS,
@@ -15,6 +24,8 @@ from giveway.records.rows import STOP_SPEED
 
 __all__ = [
     "CRITICAL_TTC",
+    "DELAY_FIELDS",
+    "DELAY_SUMMARY_FIELDS",
     "FRONTAL",
     "NO_CONTACT",
     "PEDESTRIAN_FIELDS",
@@ -22,15 +33,21 @@ __all__ = [
     "STOP_SPEED",
     "SUMMARY_FIELDS",
     "Critical",
+    "DelaySummary",
+    "Delays",
     "Proximity",
     "Summary",
     "VehicleContact",
     "conflicts",
     "contacts",
+    "delays",
+    "encroachment",
+    "gave_way",
     "pedestrian_metrics",
     "post_encroachment_time",
     "proximity",
     "summarise",
+    "summarise_delays",
     "vehicle_contacts",
     "waiting_times",
 ]

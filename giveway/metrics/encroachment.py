@@ -1,6 +1,7 @@
 """Post-encroachment time: how narrowly ego and pedestrian missed each other in time."""
 
 from math import hypot, inf, nan
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +24,31 @@ SECTIONS = 16  # of a control period, to find the smallest separation in it
 GOLDEN = 0.6180339887498949
 
 
-def post_encroachment_time(
-    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
-) -> NDArray[np.float64]:
+PERSON, EGO, CONTACT = "person", "ego", "contact"
+"""Who was first at the place that both came to; contact: they were there together."""
+_WHO = np.array(["", PERSON, EGO, CONTACT])
+_NEVER, _PERSON, _EGO, _CONTACT = range(4)
+
+
+class Encroachment(NamedTuple):
+    """How narrowly the ego and each of n pedestrians missed each other in time.
+
+    Attributes:
+        time: (n,) [s] post-encroachment time; nan where the paths never cross.
+        first: (n,) who was first: ``PERSON``, ``EGO`` or ``CONTACT``; empty: they never cross.
+    """
+
+    time: NDArray[np.float64]
+    first: NDArray[np.str_]
+
+
+def encroachment(
+    ego: EgoTrack,
+    crowd: CrowdTrack,
+    shape: VehicleShape,
+    body_radius: float,
+    clock: NDArray[np.float64] | None = None,
+) -> Encroachment:
     """Smallest time between the pedestrian's and the ego's presence at the same place.
 
     Allen, Shin & Cooper (1978) measure from the instant at which the first road user leaves the
@@ -34,7 +57,8 @@ def post_encroachment_time(
     in place of a conflict area that somebody has to draw: a pedestrian whose body is at a place at
     time t, and an ego whose rectangle touches that body's circle there during [t_in, t_out], are
     max(t_in - t, t - t_out, 0) apart, and the smallest value over all t counts. It holds whoever
-    comes first and on any curved path, since the ego's own poses are searched.
+    comes first and on any curved path, since the ego's own poses are searched. Which of the three
+    is the largest says who came first.
 
     Poses and positions are interpolated linearly between control instants, and the smallest value
     within a control period is found to less than a thousandth of it.
@@ -44,17 +68,21 @@ def post_encroachment_time(
         crowd: the crowd's track, R records of n pedestrians.
         shape: the ego's rectangle.
         body_radius: radius of a pedestrian [m].
+        clock: (K,) [s] control instants to which the crowd's records belong, the first T of them
+            the ego's; None: the ego's.
 
     Returns:
-        (n,) [s]: 0 for a collision, nan where the paths never cross, which includes an ego whose
+        The time is 0 for a collision, nan where the paths never cross, which includes an ego whose
         track ends before it reaches the place.
 
     Raises:
-        ValueError: a record points outside the ego's track.
+        ValueError: a record points outside the instants.
     """
-    check_records(ego, crowd)
+    if clock is None:
+        check_records(ego, crowd)
     groups = PedestrianGroups(crowd)
-    return _smallest_separations(
+    times, first = _smallest_separations(
+        as_floats(ego.time if clock is None else clock),
         as_floats(ego.time),
         centre_poses(ego, shape),
         as_integers(groups.bounds),
@@ -63,6 +91,14 @@ def post_encroachment_time(
         as_floats(crowd.y[groups.order]),
         contact_body(shape, body_radius),
     )
+    return Encroachment(times, _WHO[first])
+
+
+def post_encroachment_time(
+    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
+) -> NDArray[np.float64]:
+    """(n,) [s] the times of :func:`encroachment`."""
+    return encroachment(ego, crowd, shape, body_radius).time
 
 
 @kernel
@@ -185,15 +221,16 @@ def _separation_on_the_way(
     x: tuple[float, float],
     y: tuple[float, float],
     cutoff: float,
+    clock: NDArray[np.float64],
     time: NDArray[np.float64],
     poses: NDArray[np.float64],
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> float:
     """The separation after a ``share`` of step k, walking from (x[0], y[0]) to (x[1], y[1])."""
-    t = share * (time[k + 1] - time[k])
+    t = share * (clock[k + 1] - clock[k])
     at_x, at_y = x[0] + share * (x[1] - x[0]), y[0] + share * (y[1] - y[0])
-    return _separation(time[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, body)
+    return _separation(clock[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, body)
 
 
 @kernel
@@ -203,6 +240,7 @@ def _smallest_between(
     y: tuple[float, float],
     leaving: bool,
     cutoff: float,
+    clock: NDArray[np.float64],
     time: NDArray[np.float64],
     poses: NDArray[np.float64],
     blocks: NDArray[np.float64],
@@ -218,8 +256,8 @@ def _smallest_between(
     low, high = 0.0, 1.0
     for _ in range(SECTIONS):
         early, late = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-        at_early = _separation_on_the_way(early, k, x, y, cutoff, time, poses, blocks, body)
-        at_late = _separation_on_the_way(late, k, x, y, cutoff, time, poses, blocks, body)
+        at_early = _separation_on_the_way(early, k, x, y, cutoff, clock, time, poses, blocks, body)
+        at_late = _separation_on_the_way(late, k, x, y, cutoff, clock, time, poses, blocks, body)
         smallest = min(smallest, at_early, at_late)
         if at_early < at_late or (at_early == at_late and leaving):
             high = late
@@ -229,7 +267,57 @@ def _smallest_between(
 
 
 @kernel
+def _ego_comes_later(
+    t: float,
+    x: float,
+    y: float,
+    step: int,
+    nearest: float,
+    time: NDArray[np.float64],
+    poses: NDArray[np.float64],
+    blocks: NDArray[np.float64],
+    body: tuple[float, float, float],
+) -> bool:
+    """Whether the ego touches a circle at (x, y) within ``nearest`` after t, not before.
+
+    Arguments as for ``_separation``.
+    """
+    steps = max(time.size - 1, 1)
+    k = min(step, steps - 1)
+    while k < steps and time[k] - t <= nearest:
+        b = k // BLOCK
+        if _out_of_reach(b, x, y, blocks):
+            k = (b + 1) * BLOCK
+            continue
+        first, _ = _touch_in_step(k, x, y, time, poses, body)
+        if t <= first <= t + nearest:
+            return True
+        k += 1
+    return False
+
+
+@kernel
+def _share_inside(
+    k: int,
+    x: tuple[float, float],
+    y: tuple[float, float],
+    clock: NDArray[np.float64],
+    time: NDArray[np.float64],
+    poses: NDArray[np.float64],
+    blocks: NDArray[np.float64],
+    body: tuple[float, float, float],
+) -> float:
+    """The share of step k after which a walk is first found within the strip; 0 if it never is."""
+    for section in range(1, 4 * SECTIONS):
+        share = section / (4.0 * SECTIONS)
+        if _separation_on_the_way(share, k, x, y, inf, clock, time, poses, blocks, body) < inf:
+            return share
+    return 0.0
+
+
+@kernel
 def _smallest_separations(
+    clock: NDArray[np.float64],
     time: NDArray[np.float64],
     poses: NDArray[np.float64],
     bounds: NDArray[np.int64],
@@ -237,32 +325,50 @@ def _smallest_separations(
     x: NDArray[np.float64],
     y: NDArray[np.float64],
     body: tuple[float, float, float],
-) -> NDArray[np.float64]:
-    """The post-encroachment times; pedestrian i has the records bounds[i] to bounds[i + 1]."""
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The post-encroachment times, and who was first.
+
+    Pedestrian i has the records bounds[i] to bounds[i + 1].
+    """
     blocks = _blocks(poses, *body)
     at_record = np.empty(x.size)
     pets = np.full(bounds.size - 1, nan)
+    who = np.full(bounds.size - 1, _NEVER)
     for i in range(pets.size):
         nearest = inf
+        t, at_x, at_y, at, reach = 0.0, 0.0, 0.0, 0, inf  # where and when that was, on record
         for r in range(bounds[i], bounds[i + 1]):
             k = step[r]
             # Within a period a separation shrinks by less than a period: what is larger than the
             # cutoff cannot lead to the smallest value.
-            period = time[k] - time[max(k - 1, 0)]
+            period = clock[k] - clock[max(k - 1, 0)]
             cutoff = nearest + 2.0 * period
-            at_record[r] = _separation(time[k], x[r], y[r], k, cutoff, time, poses, blocks, body)
-            nearest = min(nearest, at_record[r])
+            at_record[r] = _separation(clock[k], x[r], y[r], k, cutoff, time, poses, blocks, body)
+            if at_record[r] < nearest:
+                nearest = reach = at_record[r]
+                t, at_x, at_y, at = clock[k], x[r], y[r], k
         for r in range(bounds[i] + 1, bounds[i + 1]):
             k = step[r - 1]
-            period = time[step[r]] - time[k]
+            period = clock[step[r]] - clock[k]
             ends = at_record[r - 1], at_record[r]
             if step[r] == k + 1 and min(ends) - period < nearest and nearest > 0.0:
                 walk = (x[r - 1], x[r]), (y[r - 1], y[r])
                 cutoff = nearest + 2.0 * period
                 between = _smallest_between(
-                    k, *walk, ends[0] < ends[1], cutoff, time, poses, blocks, body
+                    k, *walk, ends[0] < ends[1], cutoff, clock, time, poses, blocks, body
                 )
+                if reach == inf and between < nearest:  # the strip was crossed between two records
+                    share = _share_inside(k, *walk, clock, time, poses, blocks, body)
+                    t, at = clock[k] + share * period, k
+                    at_x = x[r - 1] + share * (x[r] - x[r - 1])
+                    at_y = y[r - 1] + share * (y[r] - y[r - 1])
                 nearest = min(nearest, between)
-        if nearest < inf:
-            pets[i] = nearest
-    return pets
+        if nearest == inf:
+            continue
+        pets[i] = nearest
+        if nearest <= 0.0:
+            who[i] = _CONTACT
+        else:
+            later = _ego_comes_later(t, at_x, at_y, at, reach + 1e-9, time, poses, blocks, body)
+            who[i] = _PERSON if later else _EGO
+    return pets, who

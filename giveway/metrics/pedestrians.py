@@ -9,10 +9,13 @@ from numpy.typing import NDArray
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.conflicts import proximity
 from giveway.metrics.contacts import contacts
-from giveway.metrics.encroachment import post_encroachment_time
+from giveway.metrics.encroachment import encroachment
 from giveway.metrics.groups import PedestrianGroups
 from giveway.records.columns import Quantity, columns_of
 from giveway.records.tracks import CrowdTrack, EgoTrack
+
+SLOW = 0.2
+"""[m/s] Who walks slower stands: as of the ego, Yang & Özgüner 2019, section 2.1."""
 
 
 class PedestrianRow:
@@ -43,6 +46,17 @@ class PedestrianRow:
     maximum_drac: Annotated[
         float, Quantity("m/s^2", "largest deceleration that the ego needed to spare it")
     ]
+    slow_time: Annotated[
+        float,
+        Quantity("s", "for how long it was slower than 0.2 m/s, near the ego"),
+    ]
+    peak_acceleration: Annotated[
+        float, Quantity("m/s^2", "largest change of its velocity in a control step, over the step")
+    ]
+    passed_first: Annotated[
+        str,
+        Quantity(None, "who was first where both came: person, ego, contact; empty: nowhere"),
+    ]
 
 
 PEDESTRIAN_FIELDS = columns_of(PedestrianRow)
@@ -69,6 +83,8 @@ def pedestrian_metrics(
     clear, ttc, drac = proximity(ego, crowd, shape, body_radius)
     groups = PedestrianGroups(crowd)
     time = ego.time[crowd.step]
+    missed = encroachment(ego, crowd, shape, body_radius)
+    lasting, change = _changes(ego, crowd, groups)
     closest, soonest = groups.first_minimum(clear), groups.first_minimum(ttc)
     minimum_ttc = groups.at(ttc, soonest)
     on_course = np.isfinite(minimum_ttc)
@@ -88,10 +104,32 @@ def pedestrian_metrics(
         "contact": contacts(ego, crowd, shape, body_radius, clear),
         "minimum_ttc": np.where(on_course, minimum_ttc, np.nan),
         "time_of_minimum_ttc": np.where(on_course, groups.at(time, soonest), np.nan),
-        "post_encroachment_time": post_encroachment_time(ego, crowd, shape, body_radius),
+        "post_encroachment_time": missed.time,
         "maximum_drac": -groups.at(-drac, groups.first_minimum(-drac)),
+        "slow_time": groups.total(np.where(np.hypot(crowd.vx, crowd.vy) < SLOW, lasting, 0.0)),
+        "peak_acceleration": -groups.at(-change, groups.first_minimum(-change)),
+        "passed_first": missed.first,
     }
     return pd.DataFrame(columns, columns=[column.name for column in PEDESTRIAN_FIELDS])
+
+
+def _changes(
+    ego: EgoTrack, crowd: CrowdTrack, groups: PedestrianGroups
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Each record's duration (R,) [s], and the acceleration (R,) [m/s^2] that led to it.
+
+    A duration lasts until the same pedestrian's record of the next control instant; both are 0
+    where that, or the one before, is not on record.
+    """
+    order = groups.order
+    step, time = crowd.step[order], ego.time[crowd.step[order]]
+    follows = (np.diff(groups.pedestrian) == 0) & (np.diff(step) == 1)
+    period = np.where(follows, np.diff(time), 0.0)
+    speeding = np.hypot(np.diff(crowd.vx[order]), np.diff(crowd.vy[order]))
+    lasting, change = np.zeros(step.size), np.zeros(step.size)
+    lasting[order[:-1]] = period
+    change[order[1:]] = np.where(follows, speeding / np.where(follows, period, 1.0), 0.0)
+    return lasting, change
 
 
 def durations(ego: EgoTrack) -> NDArray[np.float64]:

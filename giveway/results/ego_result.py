@@ -5,12 +5,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.presets import parameters_of
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
+    DELAY_FIELDS,
     VehicleContact,
     conflicts,
     pedestrian_metrics,
@@ -21,6 +24,7 @@ from giveway.metrics.law import Drive, Ledger, ledger
 from giveway.recording.recorded import RecordedEgo, RecordedRows
 from giveway.records.progress import Ending
 from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack
+from giveway.results.effect import Effect
 from giveway.results.law import LawRows, others_of, people_from
 
 
@@ -40,6 +44,7 @@ class EgoResult:
         predictions: what its controller expected of the crowd, if that was recorded.
         background: the background vehicles of the run.
         law: what its drive is judged by; None: the law of the road has no say on its way.
+        effect: the run's people beside those of its twin; None: there is no twin.
     """
 
     config: EgoRunConfig
@@ -53,6 +58,7 @@ class EgoResult:
     predictions: PredictionTrack
     background: BackgroundTrack
     law: LawRows | None = None
+    effect: Effect | None = None
 
     @property
     def body_radius(self) -> float:
@@ -61,8 +67,21 @@ class EgoResult:
 
     @cached_property
     def pedestrians(self) -> pd.DataFrame:
-        """One row per pedestrian: closest approach to this ego, TTC, PET."""
-        return pedestrian_metrics(self.track, self.crowd, self.shape, self.body_radius)
+        """One row per pedestrian: closest approach to this ego, TTC, PET; delay."""
+        table = pedestrian_metrics(self.track, self.crowd, self.shape, self.body_radius)
+        if self.effect is None:
+            return table
+        found = self.effect.delays
+        columns = found.delay, found.basis, found.detour, self._gave_way
+        names = [column.name for column in DELAY_FIELDS]
+        more = pd.DataFrame(dict(zip(names, columns, strict=True)), index=self.effect.run.ids)
+        more = more.reindex(table["id"]).reset_index(drop=True)
+        return table.assign(**{name: more[name] for name in names})
+
+    @cached_property
+    def _gave_way(self) -> NDArray[np.str_]:
+        assert self.effect is not None
+        return self.effect.gave_way(self.track, self.first, self.shape, self.body_radius)
 
     @cached_property
     def vehicle_contacts(self) -> tuple[VehicleContact, ...]:
@@ -104,7 +123,12 @@ class EgoResult:
             controller=config.controller,
             vehicles=self.vehicle_contacts,
         )
-        return figures.as_dict() | ({} if self.ledger is None else self.ledger.summary.as_dict())
+        row = figures.as_dict()
+        if self.ledger is not None:
+            row |= self.ledger.summary.as_dict()
+        if self.effect is not None:
+            row |= self.effect.summary(self._gave_way).as_dict()
+        return row
 
 
 def results_of_egos(

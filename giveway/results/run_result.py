@@ -12,6 +12,8 @@ from giveway.config.presets import parameters_of
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.metrics import (
+    DELAY_FIELDS,
+    DELAY_SUMMARY_FIELDS,
     PEDESTRIAN_FIELDS,
     SUMMARY_FIELDS,
 )
@@ -36,6 +38,7 @@ from giveway.records.tracks import (
     SignalTrack,
     Timings,
 )
+from giveway.results.effect import Effect
 from giveway.results.ego_result import EgoResult
 from giveway.results.law import (
     ledger_table,
@@ -65,6 +68,7 @@ class RunResult:
         sumo_messages: what SUMO printed.
         road: outlines (k, 2) [m] of the network's lanes, crossings and walkingareas.
         remarks: what differs from the scenario, or from what the user may expect.
+        effect: the people beside those of the run's twin; None: there is no twin.
     """
 
     config: RunConfig
@@ -83,6 +87,7 @@ class RunResult:
     sumo_messages: str
     road: tuple[Array, ...]
     remarks: tuple[str, ...]
+    effect: Effect | None = None
 
     @property
     def completed(self) -> bool:
@@ -132,9 +137,9 @@ class RunResult:
 
     @cached_property
     def pedestrians(self) -> pd.DataFrame:
-        """One row per ego and pedestrian: closest approach, TTC, PET."""
+        """One row per ego and pedestrian: closest approach, TTC, PET; delay, if there is a twin."""
         tables = [table.assign(ego=ego.id) for ego in self.egos for table in [ego.pedestrians]]
-        return _stacked(tables, [column.name for column in PEDESTRIAN_TABLE])
+        return _stacked(tables, [column.name for column in self.schemas["pedestrians"]])
 
     @cached_property
     def predictions(self) -> pd.DataFrame:
@@ -201,7 +206,7 @@ class RunResult:
             "wall_clock": self.elapsed,
             "real_time_factor": simulated / self.elapsed if self.elapsed else None,
             "shares": shares,
-        }
+        } | ({} if self.effect is None else {"twin": self.effect.seconds})
 
     @property
     def schemas(self) -> dict[str, tuple[Column, ...]]:
@@ -213,12 +218,16 @@ class RunResult:
         if any(ego.law is not None for ego in self.egos):
             summary = (*summary, *LAW_FIELDS)
             optional |= {"ledger": LEDGER_COLUMNS, "people": PEOPLE_COLUMNS}
+        pedestrians = PEDESTRIAN_TABLE
+        if self.effect is not None:
+            summary = (*summary, *DELAY_SUMMARY_FIELDS)
+            pedestrians = (*pedestrians, *DELAY_FIELDS)
         if len(self.signal_track.time):
             optional |= {"signals": SIGNAL_COLUMNS}
         return {
             "ego": EGO_COLUMNS,
             "trajectories": TRAJECTORY_COLUMNS,
-            "pedestrians": PEDESTRIAN_TABLE,
+            "pedestrians": pedestrians,
             "summary": summary,
             "timing": TIMING_COLUMNS,
             **optional,

@@ -19,6 +19,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Container, Iterable, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import IO, Any, Self
 
@@ -157,6 +158,11 @@ class SumoSession:
     def light_states(self, systems: Iterable[str]) -> dict[str, str]:
         """The state of each of these traffic lights, one letter per movement."""
         return {system: self.light_state(system) for system in systems}
+
+    @cached_property
+    def light_systems(self) -> tuple[str, ...]:
+        """SUMO's ids of all traffic lights."""
+        return tuple(self._sumo.trafficlight.getIDList())
 
     def persons(self, added: Container[str]) -> ScenarioPersons:
         """The scenario's own persons, to take over and hand back.

@@ -71,6 +71,7 @@ class SumoVehicles:
         self._lane_id = direct(sumo, "vehicle", "getLaneID")
         self._lane_position = direct(sumo, "vehicle", "getLanePosition")
         self._route_id = direct(sumo, "vehicle", "getRouteID")
+        self._time_loss = direct(sumo, "vehicle", "getTimeLoss")
         self.egos: set[str] = set()  # driven by giveway
 
     # --- reading ------------------------------------------------------------------------------
@@ -225,6 +226,10 @@ class SumoVehicles:
     def deceleration(self, name: str) -> float:
         """How hard the vehicle's driver brakes [m/s^2]."""
         return float(self._vehicle.getDecel(name))
+
+    def time_loss(self, name: str) -> float:
+        """[s] that the vehicle has lost since its departure by driving slower than it would."""
+        return float(self._time_loss(name))
 
     # --- doing --------------------------------------------------------------------------------
 

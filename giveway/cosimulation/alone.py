@@ -1,0 +1,41 @@
+"""A crowd on open ground among itself: what it does where nobody else is, with or without SUMO."""
+
+from giveway.cosimulation.walking import Walking
+from giveway.crowd.roster import Roster
+from giveway.processes.heartbeat import Heartbeat
+from giveway.recording.walk_log import WalkLog
+from pedestrian_model import OPEN_GROUND, Vehicles
+
+_NOBODY = Vehicles.empty()
+
+
+class CrowdAlone:
+    """Steps a crowd without vehicles, as far as it is asked to.
+
+    Args:
+        roster: the crowd, and who is in it.
+        walking: its step.
+        walks: notes how people get on.
+        step: the control step that has been reached.
+    """
+
+    def __init__(self, roster: Roster, walking: Walking, walks: WalkLog, step: int = 0) -> None:
+        self._roster = roster
+        self._walking = walking
+        self.walks = walks
+        self._k = step
+        walking.note(step)
+
+    def go_on(self, last: int, names: frozenset[str], heartbeat: Heartbeat) -> None:
+        """Step until none of those named is on the way any more, or up to a control step.
+
+        Args:
+            last: the control step.
+            names: of the people who count.
+            heartbeat: tells another process that all is well.
+        """
+        while self._k < last and not names.isdisjoint(self._roster.names):
+            heartbeat.step(self._k, 0.0)
+            self._walking.advance(self._k, _NOBODY, OPEN_GROUND)
+            self._k += 1
+            self._walking.note(self._k)

@@ -1,0 +1,97 @@
+"""A run followed: how people and traffic get on, also when the last ego has arrived."""
+
+import math
+
+import numpy as np
+
+from giveway.cosimulation.alone import CrowdAlone
+from giveway.cosimulation.assembly import Parts
+from giveway.cosimulation.mirror import Mirror
+from giveway.cosimulation.replayed import ReplayedLoop, Standing
+from giveway.cosimulation.traffic_notes import TrafficNotes
+from giveway.cosimulation.walking import Walking
+from giveway.ego.ego import Ego
+from giveway.geometry.kernel import Array
+from giveway.processes.heartbeat import Heartbeat
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.walk_log import WalkLog
+
+LONGEST = 60.0
+"""[s] after the last ego's arrival, for which people are followed at most."""
+
+
+class Followed:
+    """What is noted of a run for its twin.
+
+    Args:
+        parts: of the run, at its initial state.
+
+    Attributes:
+        crowd: the people that giveway adds, as they began.
+        names: their ids.
+        secluded: nobody but they and the egos is ever there.
+        walks: how they get on.
+        traffic: what the background vehicles do.
+        last: the control step at which following ends at the latest.
+    """
+
+    def __init__(self, parts: Parts) -> None:
+        self._parts = parts
+        self.crowd = parts.roster.crowd.copy()
+        self.names = tuple(parts.roster.ids)
+        self.secluded = parts.secluded
+        self.walks = WalkLog(parts.time_step)
+        self.traffic = TrafficNotes(parts.sumo)
+        self.last = 0
+        self._fronts: Array = np.empty((0, 2))
+        self._parked: list[str] = []
+
+    def leave(self, egos: list[Ego], dismissed: bool) -> None:
+        """Note that egos have arrived; those that are not dismissed are still in SUMO."""
+        self._fronts = np.array([ego.pose[:2] for ego in egos])
+        self._parked = [] if dismissed else [egos[-1].id]
+
+    def follow(
+        self,
+        completed: bool,
+        walking: Walking,
+        mirror: Mirror,
+        step: int,
+        start: float,
+        heartbeat: Heartbeat,
+        interrupt: DeferredInterrupt,
+    ) -> bool:
+        """Go on from the control step ``step`` until those who came close have arrived.
+
+        A run whose egos have not all arrived is not gone on with; its twin ends with it.
+
+        Args:
+            completed: whether every ego has arrived.
+            walking: the crowd's step.
+            mirror: the run's.
+            step: the last one of the run.
+            start: SUMO's clock [s] at step 0.
+            heartbeat: tells another process that all is well.
+            interrupt: looked at between two steps.
+
+        Returns:
+            Whether it came to its end without an interrupt.
+
+        Raises:
+            GivewayError: a part failed.
+        """
+        parts = self._parts
+        self.walks.stop_looking()
+        self.last = step
+        if not completed:
+            return True
+        self.last = step + math.ceil(LONGEST / parts.time_step)
+        if self.secluded:
+            alone = CrowdAlone(parts.roster, walking, self.walks, step)
+            alone.go_on(self.last, self.walks.near, heartbeat)
+            return True
+        for name in self._parked:
+            parts.sumo.vehicles.dismiss(name)
+        since = Standing(mirror, step, start, self._fronts)
+        loop = ReplayedLoop(parts, walking, self.walks, self.traffic, heartbeat, since=since)
+        return loop.run(self.last, interrupt)

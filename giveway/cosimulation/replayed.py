@@ -1,0 +1,163 @@
+"""People and SUMO under egos whose motion is known: a run's own, or none any more.
+
+Two uses: the time after the last ego's arrival, and the twin of a run, in which egos drive as they
+did while people do not feel them. No controller and no vehicle FMU takes part.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from giveway.cosimulation.assembly import Parts
+from giveway.cosimulation.merging import Merging
+from giveway.cosimulation.mirror import Mirror
+from giveway.cosimulation.priority import rooms_before
+from giveway.cosimulation.traffic import TrafficWatch
+from giveway.cosimulation.traffic_notes import TrafficNotes
+from giveway.cosimulation.walking import Walking
+from giveway.ego.ego import Ego
+from giveway.ego.recorded import RecordedVehicle
+from giveway.ego.right_of_way import Traffic
+from giveway.geometry.kernel import Array
+from giveway.processes.heartbeat import Heartbeat, Phase
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.walk_log import WalkLog
+
+
+class Standing(NamedTuple):
+    """Where a run stands."""
+
+    mirror: Mirror
+    step: int  # control step
+    start: float  # [s] SUMO's clock at step 0
+    fronts: Array  # (e, 2) [m] round which the zone lies while no ego is on the road
+
+
+class ReplayedLoop:
+    """Steps people and SUMO until everybody who counts has arrived.
+
+    Args:
+        parts: what is stepped.
+        walking: the crowd's step.
+        walks: notes how people get on, and knows who counts.
+        traffic: notes what the background vehicles do.
+        heartbeat: tells another process that all is well.
+        since: where a run that is to be gone on with stands; None: at its beginning.
+    """
+
+    def __init__(
+        self,
+        parts: Parts,
+        walking: Walking,
+        walks: WalkLog,
+        traffic: TrafficNotes,
+        heartbeat: Heartbeat,
+        *,
+        since: Standing | None = None,
+    ) -> None:
+        self._parts = parts
+        self._walking = walking
+        self._walks = walks
+        self._notes = traffic
+        self._heartbeat = heartbeat
+        if since is None:
+            mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
+            since = Standing(mirror, 0, parts.sumo.time, np.empty((0, 2)))
+        self._mirror, self._k, self._start, self._fronts = since
+        self._read = self._k - 1 if self._k == 0 else self._k  # the step at which SUMO was read
+        self._egos: list[Ego] = []
+        self._watch = TrafficWatch(parts.sumo)
+        self._merging = Merging(parts.sumo.vehicles, parts.sumo.lanes)
+
+    def run(self, last: int, interrupt: DeferredInterrupt) -> bool:
+        """Step up to the control step ``last``, or until nobody who counts is on the way.
+
+        Returns:
+            Whether it came to its end without an interrupt.
+
+        Raises:
+            GivewayError: a part failed.
+        """
+        parts = self._parts
+        end = (parts.sumo.end - self._start) / parts.time_step - 1e-6
+        while True:
+            self._heartbeat.step(self._k, self._start + self._k * parts.time_step)
+            if self._k % parts.substeps == 0 and self._k > self._read:
+                self._read_sumo()
+            self._mirror.place(self._egos)
+            self._walking.note(self._k)
+            self._see_arrivals()
+            driving = bool(self._egos or parts.departures.waiting)
+            if not (driving or self._walks.awaits(parts.roster.present)):
+                return True
+            if self._k >= min(last, end):
+                return True
+            if interrupt.requested:
+                return False
+            self._advance()
+
+    def _read_sumo(self) -> None:
+        parts, crowd = self._parts, self._parts.roster
+        for ego in parts.departures.due():
+            self._egos.append(ego)
+            _recall(ego)
+        if parts.exchange is not None:
+            places = [ego.pose[:2] for ego in self._egos]
+            parts.exchange.update(np.array(places) if places else self._fronts)
+        if parts.priority is not None:
+            parts.priority.update(crowd.crowd)
+        self._mirror.read(self._egos, crowd.crowd.position)
+        background = self._mirror.background
+        rooms = self._look_ahead()
+        merging = self._merging.update(background, self._egos)
+        yielding = parts.yielding
+        if yielding is not None and (background.ids or yielding.limited):
+            yielding.update(background, crowd.crowd, self._egos, rooms, merging)
+        self._notes.note(background)
+
+    def _look_ahead(self) -> dict[str, float]:
+        """As in the run: let egos take note of lights and traffic; who has to wait for one."""
+        sumo, rooms = self._parts.sumo, dict[str, float]()
+        traffic: Traffic = {}
+        if any(ego.way.visited for ego in self._egos):
+            traffic = self._watch.of(self._mirror.background, self._egos)
+        for ego in self._egos:
+            if ego.way.systems or traffic:
+                states = sumo.light_states(ego.way.systems)
+                ego.way.look(sumo.time, ego.front, ego.vehicle.speed, states, traffic)
+                for name, room in rooms_before(ego, states, traffic).items():
+                    rooms[name] = min(room, rooms.get(name, room))
+        return rooms
+
+    def _see_arrivals(self) -> None:
+        gone = [ego for ego in self._egos if ego.arrived]
+        for ego in gone:
+            self._mirror.drop(self._egos.index(ego))
+            self._egos.remove(ego)
+            self._parts.sumo.vehicles.dismiss(ego.id)
+        if gone:
+            self._fronts = np.array([ego.pose[:2] for ego in gone])
+
+    def _advance(self) -> None:
+        parts, mirror = self._parts, self._mirror
+        for ego in self._egos:
+            ego.advance()
+            _recall(ego)
+        self._heartbeat.beat(Phase.CROWD)
+        names = self._walking.advance(self._k, mirror.others, parts.surroundings)
+        if names:
+            parts.leave(names)
+        self._k += 1
+        self._heartbeat.beat(Phase.SUMO)
+        if self._k % parts.substeps:
+            mirror.carry_on()
+        else:
+            mirror.push(self._k, self._egos, parts.roster)
+            if parts.departures.waiting:
+                parts.departures.note()
+
+
+def _recall(ego: Ego) -> None:
+    """Note where the ego had to stop, which nobody asks about again."""
+    if isinstance(ego.vehicle, RecordedVehicle):
+        ego.way.stop = ego.front + ego.vehicle.stop_gap

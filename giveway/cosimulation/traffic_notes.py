@@ -1,0 +1,60 @@
+"""What the background traffic of a run did, second by second, to be compared with its twin's."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from giveway.sumo.background import BackgroundVehicles
+from giveway.sumo.session import SumoSession
+
+_PERIOD = 1.0  # [s] between two looks
+_SAME_PLACE = 0.5  # [m]
+
+
+class TrafficNotes:
+    """Notes lights, places and lost time, at SUMO's instants.
+
+    Args:
+        session: the running simulation.
+    """
+
+    def __init__(self, session: SumoSession) -> None:
+        self._session = session
+        self._every = max(1, round(_PERIOD / session.step_length))
+        self._looks = 0
+        self._lights: list[Mapping[str, str]] = []
+        self._vehicles: list[BackgroundVehicles] = []
+        self._losses: dict[str, float] = {}
+
+    def note(self, background: BackgroundVehicles) -> None:
+        """Once after each of SUMO's steps."""
+        self._looks += 1
+        if (self._looks - 1) % self._every:
+            return
+        self._lights.append(self._session.light_states(self._session.light_systems))
+        self._vehicles.append(background)
+        for name in background.ids:
+            self._losses[name] = self._session.vehicles.time_loss(name)
+
+    @property
+    def time_loss(self) -> float:
+        """[s] that all background vehicles lost so far, by SUMO's reckoning."""
+        return float(sum(self._losses.values()))
+
+    @property
+    def vehicles(self) -> int:
+        """How many background vehicles there were."""
+        return len(self._losses)
+
+    def differ_from(self, other: "TrafficNotes") -> bool:
+        """Whether lights or vehicles ever did anything else while both were looked at."""
+        if any(a != b for a, b in zip(self._lights, other._lights, strict=False)):
+            return True
+        return any(not _same(a, b) for a, b in zip(self._vehicles, other._vehicles, strict=False))
+
+
+def _same(a: BackgroundVehicles, b: BackgroundVehicles) -> bool:
+    if a.ids != b.ids:
+        return False
+    apart = np.hypot(a.x - b.x, a.y - b.y)
+    return bool((apart <= _SAME_PLACE).all())

@@ -1,0 +1,126 @@
+"""The twin of a run: the same again, but people do not feel the egos.
+
+The egos are there for SUMO, as they drove in the run: the zone, the lights, the background vehicles
+and all that is drawn are the same. What differs is what the egos cost the people.
+
+On open ground, where nobody else ever is, that is the crowd among itself. It depends on no ego, so
+that the runs that one process makes with the same people share it.
+"""
+
+import hashlib
+from collections import OrderedDict
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from giveway.config import RunConfig
+from giveway.config.presets import parameters_of
+from giveway.cosimulation.alone import CrowdAlone
+from giveway.cosimulation.assembly import Driven, assemble
+from giveway.cosimulation.followed import Followed
+from giveway.cosimulation.preflight import CheckedRun
+from giveway.cosimulation.replayed import ReplayedLoop
+from giveway.cosimulation.traffic_notes import TrafficNotes
+from giveway.cosimulation.walking import Walking
+from giveway.crowd.roster import Roster
+from giveway.processes.heartbeat import Heartbeat
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.walk_log import WalkLog
+from giveway.records.walks import WalkTrack
+from pedestrian_model import Crowd, CrowdModel
+
+_KEPT = 8  # crowds among themselves that a process remembers
+_alone: OrderedDict[bytes, CrowdAlone] = OrderedDict()
+
+
+@dataclass(frozen=True)
+class Twin:
+    """What became of people whom no ego impressed.
+
+    Attributes:
+        walks: how they got on, up to the control step at which following ends.
+        traffic_differs: whether lights or background vehicles did anything else than in the run.
+        among_themselves: it is the crowd on open ground, without SUMO.
+    """
+
+    walks: WalkTrack
+    traffic_differs: bool
+    among_themselves: bool
+
+
+def twin_of(
+    checked: CheckedRun,
+    followed: Followed,
+    driven: Driven,
+    heartbeat: Heartbeat,
+    interrupt: DeferredInterrupt,
+    native_log: Path | None = None,
+) -> Twin | None:
+    """Go through a run again; SUMO must be free.
+
+    Args:
+        checked: the run.
+        followed: how its people got on.
+        driven: how its egos drove.
+        heartbeat: tells another process that all is well.
+        interrupt: looked at between two steps.
+        native_log: file for what SUMO prints; None: a temporary one.
+
+    Returns:
+        The twin; None: it was interrupted.
+
+    Raises:
+        GivewayError: a part failed.
+    """
+    names, last = followed.walks.near, followed.last
+    if followed.secluded:
+        alone = _crowd_alone(checked.config, followed, checked.time_step)
+        alone.go_on(last, names, heartbeat)
+        return Twin(alone.walks.track.until(last), traffic_differs=False, among_themselves=True)
+    walks = WalkLog(checked.time_step, names.__contains__)
+    with ExitStack() as stack:
+        parts = assemble(checked, stack, native_log=native_log, driven=driven)
+        walking = Walking(checked.config, parts.crowd_model, parts.roster, walks)
+        traffic = TrafficNotes(parts.sumo)
+        if not ReplayedLoop(parts, walking, walks, traffic, heartbeat).run(last, interrupt):
+            return None
+    differs = traffic.differ_from(followed.traffic)
+    return Twin(walks.track, traffic_differs=differs, among_themselves=False)
+
+
+def _crowd_alone(config: RunConfig, followed: Followed, time_step: float) -> CrowdAlone:
+    """The crowd of a run among itself, as far as it has been asked for already."""
+    key = _key(config, followed.crowd, followed.names, time_step)
+    if key in _alone:
+        _alone.move_to_end(key)
+        return _alone[key]
+    roster = Roster(followed.names, followed.crowd.copy())
+    walks = WalkLog(time_step, lambda _: True)
+    model = CrowdModel(
+        parameters_of(config.crowd.preset),
+        time_step,
+        detour=config.crowd.detour,
+        creep=config.crowd.creep,
+    )
+    alone = _alone[key] = CrowdAlone(roster, Walking(config, model, roster, walks), walks)
+    if len(_alone) > _KEPT:
+        _alone.popitem(last=False)
+    return alone
+
+
+def _key(config: RunConfig, crowd: Crowd, names: tuple[str, ...], time_step: float) -> bytes:
+    """A hash of all that the crowd among itself depends on."""
+    digest = hashlib.sha256()
+    settings = config.crowd
+    noise = settings.acceleration_noise
+    for part in (
+        parameters_of(settings.preset),
+        (settings.detour, settings.creep, time_step, noise, config.seed if noise else None),
+        names,
+    ):
+        digest.update(repr(part).encode())
+    for array in (*crowd.state, *crowd.wishes):
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.digest()

@@ -1,0 +1,202 @@
+"""What the egos cost each person: the run against its twin, in which nobody feels them."""
+
+from dataclasses import dataclass, fields
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.metrics.encroachment import CONTACT, EGO, PERSON
+from giveway.records.columns import Quantity, columns_of
+from giveway.records.walks import WalkTrack
+
+Basis = Literal["arrival", "route", ""]
+
+
+class DelayRow:
+    """The columns that a twin adds to a pedestrian's row; empty: it never came close to a way."""
+
+    delay: Annotated[
+        float,
+        Quantity("s", "that the egos cost it, the run against the twin; < 0: it gained time"),
+    ]
+    delay_by: Annotated[
+        str,
+        Quantity(None, "arrival: both arrived; route: by what was left of the way when last seen"),
+    ]
+    detour: Annotated[
+        float, Quantity("m", "by which its way became longer than in the twin; < 0: shorter")
+    ]
+    gave_way: Annotated[
+        str,
+        Quantity(None, "yes: the ego went first, in the twin not; no; empty: never crossed"),
+    ]
+
+
+DELAY_FIELDS = columns_of(DelayRow)
+
+
+class Delays(NamedTuple):
+    """What the egos cost each of n people, in the order of the run's ids; nan: it does not count.
+
+    Attributes:
+        delay: (n,) [s].
+        basis: (n,) how that was found.
+        detour: (n,) [m].
+    """
+
+    delay: NDArray[np.float64]
+    basis: NDArray[np.str_]
+    detour: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class DelaySummary:
+    """What a twin adds to the summary; nan says that nobody came close to an ego's way."""
+
+    people_delayed: Annotated[
+        int, Quantity("persons", "people who came within 30 m of an ego's way and have a delay")
+    ]
+    people_delay: Annotated[float, Quantity("s", "sum of these people's delays")]
+    mean_people_delay: Annotated[float, Quantity("s", "mean of these people's delays")]
+    people_delay_95: Annotated[float, Quantity("s", "95th percentile of these people's delays")]
+    worst_people_delay: Annotated[float, Quantity("s", "largest one of these people's delays")]
+    share_gave_way: Annotated[
+        float,
+        Quantity(None, "share of people who gave way, of those whose way crossed the ego's"),
+    ]
+    twin_differs: Annotated[
+        bool, Quantity(None, "whether lights or background vehicles did anything else in the twin")
+    ]
+    traffic_delay: Annotated[
+        float,
+        Quantity("s", "time loss of all background vehicles less that without the egos"),
+    ]
+
+    def as_dict(self) -> dict[str, bool | int | float]:
+        """Names and values, in the order of ``DELAY_SUMMARY_FIELDS``."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+DELAY_SUMMARY_FIELDS = columns_of(DelaySummary)
+
+
+def delays(run: WalkTrack, twin: WalkTrack) -> Delays:
+    """Compare everybody who came close to an ego's way with himself in the twin.
+
+    Who reached the last way-point in both has the difference of the instants. Everybody else has
+    the difference of what was left of the way at the last instant at which he was on record in
+    both, over the desired speed. With several walks (a person may go on by bus), the last one
+    counts that was finished in both.
+
+    Args:
+        run: how people got on.
+        twin: the same where they did not feel the egos.
+
+    Raises:
+        ValueError: their time steps differ.
+    """
+    if run.time_step != twin.time_step:
+        raise ValueError(f"time steps {run.time_step} and {twin.time_step} s; expected the same")
+    count = len(run.ids)
+    found = Delays(np.full(count, np.nan), np.full(count, "", dtype="U7"), np.full(count, np.nan))
+    ours, theirs = _Walks(run), _Walks(twin)
+    others = {name: j for j, name in enumerate(twin.ids)}
+    for i in np.flatnonzero(run.near).tolist():
+        j = others.get(run.ids[i])
+        if j is not None:
+            one = _delay(ours.of(i), theirs.of(j), run.time_step, float(run.desired_speed[i]))
+            found.delay[i], found.basis[i], found.detour[i] = one
+    return found
+
+
+def gave_way(
+    run: NDArray[np.str_], twin: NDArray[np.str_], crossed: NDArray[np.bool_]
+) -> NDArray[np.str_]:
+    """(n,) who of n people gave way to an ego: "yes", "no" or, without a crossing, "".
+
+    Somebody gives way who would have been at the place first, or together with the ego, had it
+    made no impression; and lets it go first.
+
+    Args:
+        run: (n,) who was first in the run, as in :class:`Encroachment`.
+        twin: (n,) the same in the twin.
+        crossed: (n,) whether the person counts at all.
+    """
+    met = crossed & (run != "")
+    yielded = met & (run == EGO) & ((twin == PERSON) | (twin == CONTACT))
+    return np.where(met, np.where(yielded, "yes", "no"), "")
+
+
+def summarise_delays(
+    delay: NDArray[np.float64], gave_way: NDArray[np.str_], *, differs: bool, traffic: float
+) -> DelaySummary:
+    """The delays of a run in one row.
+
+    Args:
+        delay: (n,) [s] of each person; nan: he does not count.
+        gave_way: (n,) whether he did: "yes", "no" or "".
+        differs: whether lights or background vehicles did anything else in the twin.
+        traffic: [s] delay of the background vehicles; nan: not known.
+    """
+    known = delay[np.isfinite(delay)]
+    crossed = np.count_nonzero(gave_way != "")
+    yielded = np.count_nonzero(gave_way == "yes")
+    return DelaySummary(
+        people_delayed=known.size,
+        people_delay=float(known.sum()),
+        mean_people_delay=float(known.mean()) if known.size else np.nan,
+        people_delay_95=float(np.percentile(known, 95.0)) if known.size else np.nan,
+        worst_people_delay=float(known.max()) if known.size else np.nan,
+        share_gave_way=yielded / crossed if crossed else np.nan,
+        twin_differs=differs,
+        traffic_delay=traffic,
+    )
+
+
+class _Walk(NamedTuple):
+    """One person's records."""
+
+    step: NDArray[np.int64]
+    remaining: NDArray[np.float64]  # [m]
+    length: NDArray[np.float64]  # [m] walked and remaining
+    arrivals: NDArray[np.int64]  # steps
+
+
+class _Walks:
+    """The records of a track by person."""
+
+    def __init__(self, track: WalkTrack) -> None:
+        self._track = track
+        self._order = np.argsort(track.pedestrian, kind="stable")
+        sorted_ = track.pedestrian[self._order]
+        self._bounds = np.searchsorted(sorted_, np.arange(len(track.ids) + 1))
+
+    def of(self, i: int) -> _Walk:
+        track = self._track
+        rows = self._order[self._bounds[i] : self._bounds[i + 1]]
+        left = track.remaining[rows]
+        arrivals = track.arrival_step[track.arrival_pedestrian == i]
+        return _Walk(track.step[rows], left, track.walked[rows] + left, arrivals)
+
+
+def _delay(
+    run: _Walk, twin: _Walk, time_step: float, desired_speed: float
+) -> tuple[float, Basis, float]:
+    """Delay [s], how it was found, detour [m]."""
+    walks = min(len(run.arrivals), len(twin.arrivals))
+    if walks:
+        ours, theirs = run.arrivals[walks - 1], twin.arrivals[walks - 1]
+        lengths = [
+            walk.length[max(int(np.searchsorted(walk.step, step)) - 1, 0)]
+            for walk, step in ((run, ours), (twin, theirs))
+            if len(walk.step)
+        ]
+        detour = float(lengths[0] - lengths[1]) if len(lengths) == 2 else np.nan
+        return float(ours - theirs) * time_step, "arrival", detour
+    common = np.intersect1d(run.step, twin.step, assume_unique=True)
+    if not common.size or not desired_speed > 0.0:
+        return np.nan, "", np.nan
+    at, there = (int(np.searchsorted(walk.step, common[-1])) for walk in (run, twin))
+    delay = float(run.remaining[at] - twin.remaining[there]) / desired_speed
+    return delay, "route", float(run.length[at] - twin.length[there])
