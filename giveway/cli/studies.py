@@ -57,6 +57,10 @@ def _study(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Show the plan and the time it will take.")
     ] = False,
+    twin: Annotated[
+        bool | None,
+        typer.Option(help="Make each run twice to know what the egos cost the people."),
+    ] = None,
     report: Annotated[bool, typer.Option(help="Write figures and report.html.")] = True,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Neither progress bar nor tables.")
@@ -84,6 +88,7 @@ def _study(
         out,
         runs,
         first_seed,
+        twin,
         dry_run=dry_run,
         report=report,
         quiet=quiet,

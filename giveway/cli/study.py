@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
@@ -31,6 +32,7 @@ class StudyRequest:
     out: Path | None
     runs: int | None
     first_seed: int | None
+    twin: bool | None
     dry_run: bool
     report: bool
     quiet: bool
@@ -47,7 +49,9 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
     file = find_study(request.study)
     definition = read_definition(file)
     wanted = {"replications": request.runs, "first_seed": request.first_seed}
-    changes = {key: value for key, value in wanted.items() if value is not None}
+    changes: dict[str, Any] = {key: value for key, value in wanted.items() if value is not None}
+    if request.twin is not None:
+        changes["run"] = definition.run | {"twin": request.twin}
     definition = changed(definition, changes, request.study)
     out = request.out or Path("results") / f"study_{definition.name}"
     planned = plan(definition, request.study)

@@ -31,7 +31,9 @@ _SHOWN = (
     ("rms_jerk", "general"),
     ("minimum_clearance", "general"),
     ("overlaps", "general"),
+    ("mean_people_delay", "general"),
 )
+_OF_TWINS = frozenset({"mean_people_delay"})  # nothing is said of it in a study without twins
 _MOST_ROWS = 40  # about a screen; comparison.csv has them all
 _BYTES_PER_RUN = 4096  # a file's block on most disks
 
@@ -131,7 +133,8 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
     for name, situation in _SHOWN:
         chosen = comparison[(comparison["metric"] == name) & (comparison["situation"] == situation)]
         if (chosen["verdict"] == "N.A.").all():
-            missing.append(f"{metric(name).label} ({situation})")
+            if name not in _OF_TWINS:
+                missing.append(f"{metric(name).label} ({situation})")
         elif left > 0:
             known = metric(name)
             unit = f" [{known.unit}]" if known.unit else ""

@@ -41,6 +41,14 @@ _OF_THE_LAW = (  # shown where the law of the road has a say on an ego's way
     ("Stops without a cause", "stops_without_cause", ""),
     ("Farthest that somebody was pushed back", "pushed_back", "m"),
 )
+_OF_THE_PEOPLE = (  # shown where there is a twin
+    ("People's delay, all together", "people_delay", "s"),
+    ("on average", "mean_people_delay", "s"),
+    ("of one in twenty at least", "people_delay_95", "s"),
+    ("of whom it cost most", "worst_people_delay", "s"),
+    ("People who gave way, of those who crossed", "share_gave_way", "%"),
+    ("Delay of background vehicles", "traffic_delay", "s"),
+)
 _COUNTED = (
     ("Pedestrians added", "added"),
     ("Persons taken over from SUMO", "taken_over"),
@@ -70,6 +78,8 @@ def summary_table(result: RunResult) -> Table:
         table.add_row(label, count, *blanks, "")
     factor, unit = _formatted(result.timing_summary["real_time_factor"], "x")
     table.add_row("Real-time factor", factor, *blanks, unit)
+    if result.effect is not None:
+        table.add_row("Computing time of the twin", f"{result.effect.seconds:.2f}", *blanks, "s")
     return table
 
 
@@ -77,6 +87,9 @@ def _shown(result: RunResult) -> Iterator[tuple[str, str, str]]:
     """Label, column and unit of what is shown of each ego."""
     if result.egos:
         yield from _SHOWN
+    if result.effect is not None:
+        has_traffic = any(math.isfinite(ego.summary["traffic_delay"]) for ego in result.egos)
+        yield from _OF_THE_PEOPLE if has_traffic else _OF_THE_PEOPLE[:-1]
     judged = [ego.summary for ego in result.egos if ego.ledger is not None]
     for label, name, unit in _OF_THE_LAW:
         always = name in {"encounters", "yielding_rate"}

@@ -140,15 +140,15 @@ def summarise_delays(
         traffic: [s] delay of the background vehicles; nan: not known.
     """
     known = delay[np.isfinite(delay)]
-    crossed = np.count_nonzero(gave_way != "")
-    yielded = np.count_nonzero(gave_way == "yes")
+    crossed = int(np.count_nonzero(gave_way != ""))
+    yielded = int(np.count_nonzero(gave_way == "yes"))
     return DelaySummary(
         people_delayed=known.size,
         people_delay=float(known.sum()),
         mean_people_delay=float(known.mean()) if known.size else np.nan,
         people_delay_95=float(np.percentile(known, 95.0)) if known.size else np.nan,
         worst_people_delay=float(known.max()) if known.size else np.nan,
-        share_gave_way=yielded / crossed if crossed else np.nan,
+        share_gave_way=float(yielded / crossed) if crossed else np.nan,
         twin_differs=differs,
         traffic_delay=traffic,
     )

@@ -36,7 +36,13 @@ _SHOWN = {
     "conflicts": "conflicts",
     "safety_share": "safety acts",
 }
-_IN_PERCENT = frozenset({"share_below_safe_distance", "safety_share"})
+_OF_TWINS = {  # shown where a run has a twin
+    "mean_people_delay": "people's delay",
+    "worst_people_delay": "worst delay",
+    "share_gave_way": "gave way",
+    "traffic_delay": "cars' delay",
+}
+_IN_PERCENT = frozenset({"share_below_safe_distance", "safety_share", "share_gave_way"})
 _MOST_DIGITS = 3
 _TIMES = ("control step", "worst step")
 
@@ -88,10 +94,17 @@ def level_table(study: StudyFolder) -> LevelTable:
 
     Half of the interval's width stands for both of its ends, which ``levels.csv`` has.
     """
-    headings = [(heading, _unit(name)) for name, heading in _SHOWN.items()]
+    headings = [(heading, _unit(name)) for name, heading in _shown(study).items()]
     headings += [(heading, "ms") for heading in _TIMES]
     rows = [row for context in contexts(study) for row in _rows(study, context)]
     return LevelTable(tuple(headings), tuple(rows), baseline_label(study))
+
+
+def _shown(study: StudyFolder) -> dict[str, str]:
+    """Metric and heading of each column of means."""
+    frame = study.levels
+    known = set(frame.loc[frame["n"] > 0, "metric"])
+    return _SHOWN | {name: heading for name, heading in _OF_TWINS.items() if name in known}
 
 
 def _unit(name: str) -> str:
@@ -109,7 +122,8 @@ def _rows(study: StudyFolder, context: Context) -> Iterator[Row]:
         for ego in dict.fromkeys(str(row["ego"]) for row in own):
             by_metric = {row["metric"]: row for row in own if str(row["ego"]) == ego}
             means = [
-                _mean(by_metric[name], verdicts.get((label, ego, name), "")) for name in _SHOWN
+                _mean(by_metric[name], verdicts.get((label, ego, name), ""))
+                for name in _shown(study)
             ]
             means += _times(study, context.cells[label])
             yield Row(title, f"{label} ({ego})" if several else label, tuple(means))

@@ -16,7 +16,7 @@ from markupsafe import Markup
 from giveway.config.layers import options
 from giveway.errors import ResultsError
 from giveway.figures.style import house_style, save_figure
-from giveway.metrics import SUMMARY_FIELDS
+from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.reports import findings, tables
 from giveway.reports.choice import ExamplePair, WorstRun, example_pairs, worst_runs
@@ -31,6 +31,7 @@ from giveway.results.run_result import RunResult
 from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import METRICS
 
+_MEANINGS = (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
 REPORT = "report.html"
 FIGURES = "figures"
 _FORMATS = (".png", ".svg")
@@ -222,13 +223,16 @@ def _execution(study: StudyFolder) -> dict[str, str]:
         found["computing time"] = f"{seconds.sum():,.0f} s"
         found["a run, median"] = f"{1000.0 * float(np.median(seconds)):,.0f} ms"
         found["a run, longest"] = f"{seconds.max():,.2f} s"
+        twins = float(np.nansum(frame["twin"].astype(float).to_numpy(np.float64)))
+        if twins:
+            found["of the computing time, for twins"] = f"{100.0 * twins / seconds.sum():.0f} %"
     if memory.size:
         found["memory of a worker, at most"] = f"{memory.max():,.0f} MB"
     return found | {"runs that were tried again": f"{repeated:,}"}
 
 
 def _glossary() -> list[dict[str, str]]:
-    meanings = {field.name: field.description for field in (*SUMMARY_FIELDS, *LAW_FIELDS)}
+    meanings = {field.name: field.description for field in _MEANINGS}
     return [
         {
             "name": metric.name,

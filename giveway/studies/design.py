@@ -7,7 +7,7 @@ from typing import Any
 
 from giveway.config.layers import Layer, merge, options
 from giveway.errors import ConfigError
-from giveway.metrics import SUMMARY_FIELDS
+from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.studies.columns import (
     COMPARISON_COLUMNS,
@@ -18,11 +18,14 @@ from giveway.studies.columns import (
 )
 from giveway.studies.definition import StudyDefinition
 
-_RESERVED = frozenset({"run", "cell", "seed", "ego", "ending", "runs", "failed", "seconds"}) | {
+_RESERVED = frozenset(
+    {"run", "cell", "seed", "ego", "ending", "runs", "failed", "seconds", "twin"}
+) | {
     column.name
     for columns in (
         SUMMARY_FIELDS,
         LAW_FIELDS,
+        DELAY_SUMMARY_FIELDS,
         COMPARISON_COLUMNS,
         LEVEL_COLUMNS,
         SITUATION_COLUMNS,

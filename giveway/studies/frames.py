@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from giveway.metrics import SUMMARY_FIELDS
+from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.records.columns import Column
 from giveway.studies.design import Cell, Design, Level
@@ -21,7 +21,7 @@ _EGO = (
     Column("ego", "string", None, "SUMO id of the ego; empty without one"),
     Column("ending", "string", None, "why it ended; failed and crashed runs have no numbers"),
 )
-_NUMBERS = (*SUMMARY_FIELDS, *LAW_FIELDS)
+_NUMBERS = (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
 EXECUTION_COLUMNS = (
     Column("run", "string", None, "id of the run"),
     Column("seconds", "number", "s", "wall clock of the run: set-up, loop, metrics"),
@@ -30,11 +30,13 @@ EXECUTION_COLUMNS = (
     Column("memory", "number", "MB", "memory that this process held afterwards"),
     Column("control_median", "number", "ms", "of one control step: prediction and controller"),
     Column("control_max", "number", "ms", "the longest control step but the first"),
+    Column("twin", "number", "s", "wall clock of these seconds that the twin took; empty: no twin"),
 )
 COMPUTING_COLUMNS = (
     Column("seconds", "number", "s", "median wall clock of the cell's runs"),
     Column("control_median", "number", "ms", "median of the runs' median control steps"),
     Column("control_max", "number", "ms", "the longest control step of any of the runs"),
+    Column("twin", "number", "s", "median wall clock of the runs' twins; empty: no twins"),
 )
 FAILURE_COLUMNS = (
     Column("run", "string", None, "id of the run"),
@@ -148,6 +150,7 @@ def computing_frame(cells: Iterable[Cell], records: Mapping[int, list[RunRecord]
                 "seconds": times["seconds"].median(),
                 "control_median": times["control_median"].median(),
                 "control_max": times["control_max"].max(),
+                "twin": times["twin"].median(),
             }
         rows.append(row | {"runs": len(made)})
     factors = [name for cell in cells for name in cell.levels]

@@ -48,6 +48,7 @@ class Computing:
         memory: resident set of the worker after the run [MB].
         control_median: of the time of one control step, prediction and controller [ms].
         control_max: the longest one [ms]; the run's first step is left out of both.
+        twin: of the seconds, those that following the run and its twin took; nan: no twin.
     """
 
     seconds: float = math.nan
@@ -56,6 +57,7 @@ class Computing:
     memory: float = math.nan
     control_median: float = math.nan
     control_max: float = math.nan
+    twin: float = math.nan
 
 
 @dataclass(frozen=True)

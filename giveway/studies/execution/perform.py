@@ -62,7 +62,9 @@ def perform(
         ending=str(result.ending),
         rows=rows,
         remarks=tuple(result.remarks),
-        computing=replace(_since(began), control_median=median, control_max=longest),
+        computing=replace(
+            _since(began), control_median=median, control_max=longest, twin=twin_time(result)
+        ),
     )
 
 
@@ -76,6 +78,11 @@ def control_times(timings: Timings) -> tuple[float, float]:
     if not steps.size:
         return math.nan, math.nan
     return round(float(np.median(steps)), 6), round(float(steps.max()), 6)
+
+
+def twin_time(result: RunResult) -> float:
+    """The seconds that a run's twin took; nan where there is none."""
+    return math.nan if result.effect is None else round(result.effect.seconds, 6)
 
 
 def rows_of(result: RunResult) -> tuple[dict[str, Scalar], ...]:

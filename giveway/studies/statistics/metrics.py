@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from giveway.errors import ConfigError
-from giveway.metrics import SUMMARY_FIELDS
+from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 
 
@@ -26,7 +26,10 @@ class Metric:
     label: str
 
 
-_UNITS = {column.name: column.unit or "" for column in (*SUMMARY_FIELDS, *LAW_FIELDS)}
+_UNITS = {
+    column.name: column.unit or ""
+    for column in (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
+}
 
 
 def _lower(name: str, label: str) -> Metric:
@@ -70,6 +73,12 @@ METRICS = (
     _lower("stops_without_cause", "stops without cause"),
     _lower("mean_zebra_wait", "mean wait at zebras"),
     _lower("longest_zebra_wait", "longest wait at zebras"),
+    _lower("people_delay", "people's delay, all together"),
+    _lower("mean_people_delay", "people's delay"),
+    _lower("people_delay_95", "people's delay, 95th percentile"),
+    _lower("worst_people_delay", "people's worst delay"),
+    _lower("share_gave_way", "share of people who gave way"),
+    _lower("traffic_delay", "delay of background vehicles"),
 )
 
 
