@@ -218,7 +218,8 @@ def simulate(
         if loop.followed is None or error is not None or ending is Ending.INTERRUPTED:
             return result
         gone_on, error = _guarded(lambda: loop.follow_up(ending, interrupt))
-        driven = Driven({ego.id: ego.track for ego in result.egos}, parts.horizon)
+        tracks = {ego.id: ego.track for ego in result.egos}
+        driven = Driven(tracks, parts.horizon, float(result.time[0]))
     twin = None
     if gone_on and error is None and result.egos:
         heartbeat = recorder.journal.heartbeat
@@ -256,7 +257,7 @@ def _with_twin(
         run=walks,
         twin=twin.walks,
         traffic_differs=twin.traffic_differs,
-        traffic_delay=math.nan,
+        traffic_delay=twin.traffic_delay,
         among_themselves=twin.among_themselves,
         seconds=seconds,
     )

@@ -43,6 +43,8 @@ class Driven(NamedTuple):
 
     tracks: Mapping[str, EgoTrack]  # by their ids
     horizon: int  # steps that anybody looked ahead
+    start: float  # [s] SUMO's clock at the run's first control step
+    absent: bool = False  # the egos are not to be there this time
 
 
 @dataclass(frozen=True)
@@ -141,7 +143,10 @@ def assemble(
     else:
         waiting = tuple(recorded_ego(ego, driven.tracks[ego.ego_id], time_step) for ego in egos)
     departures = Departures(waiting, sumo, files.config_file, time_step)
-    departures.run_until_first(goes_on)
+    if driven is not None and driven.absent:
+        departures.forgo(driven.start)
+    else:
+        departures.run_until_first(goes_on)
     roster = _roster(config, departures, sumo, files.net_file, network)
     exchange = None
     if network is not None:

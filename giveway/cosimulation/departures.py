@@ -114,6 +114,12 @@ class Departures:
             session.step()
             self.note()
 
+    def forgo(self, time: float) -> None:
+        """Let the scenario run by itself up to ``time`` [s]; no ego departs then or later."""
+        self.waiting.clear()
+        while self._session.time < time - 1e-9:
+            self._session.step()
+
     @property
     def _all_taken(self) -> bool:
         return all(ego.taken_over for ego in self.waiting)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from giveway.cosimulation.assembly import Parts
+from giveway.cosimulation.assembly import Driven, Parts
 from giveway.cosimulation.merging import Merging
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.priority import rooms_before
@@ -22,6 +22,8 @@ from giveway.geometry.kernel import Array
 from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.walk_log import WalkLog
+
+_SAME_INSTANT = 1e-6  # [s]
 
 
 class Standing(NamedTuple):
@@ -43,6 +45,7 @@ class ReplayedLoop:
         traffic: notes what the background vehicles do.
         heartbeat: tells another process that all is well.
         since: where a run that is to be gone on with stands; None: at its beginning.
+        driven: of egos that are not there, but round which the zone lies; None: they are there.
     """
 
     def __init__(
@@ -54,6 +57,7 @@ class ReplayedLoop:
         heartbeat: Heartbeat,
         *,
         since: Standing | None = None,
+        driven: Driven | None = None,
     ) -> None:
         self._parts = parts
         self._walking = walking
@@ -65,12 +69,18 @@ class ReplayedLoop:
             since = Standing(mirror, 0, parts.sumo.time, np.empty((0, 2)))
         self._mirror, self._k, self._start, self._fronts = since
         self._read = self._k - 1 if self._k == 0 else self._k  # the step at which SUMO was read
+        self._driven = driven
         self._egos: list[Ego] = []
         self._watch = TrafficWatch(parts.sumo)
         self._merging = Merging(parts.sumo.vehicles, parts.sumo.lanes)
 
-    def run(self, last: int, interrupt: DeferredInterrupt) -> bool:
+    def run(self, last: int, interrupt: DeferredInterrupt, *, to_the_end: bool = False) -> bool:
         """Step up to the control step ``last``, or until nobody who counts is on the way.
+
+        Args:
+            last: the control step.
+            interrupt: looked at between two steps.
+            to_the_end: whoever is on the way, up to ``last``.
 
         Returns:
             Whether it came to its end without an interrupt.
@@ -87,8 +97,8 @@ class ReplayedLoop:
             self._mirror.place(self._egos)
             self._walking.note(self._k)
             self._see_arrivals()
-            driving = bool(self._egos or parts.departures.waiting)
-            if not (driving or self._walks.awaits(parts.roster.present)):
+            goes_on = to_the_end or self._egos or parts.departures.waiting
+            if not (goes_on or self._walks.awaits(parts.roster.present)):
                 return True
             if self._k >= min(last, end):
                 return True
@@ -102,8 +112,7 @@ class ReplayedLoop:
             self._egos.append(ego)
             _recall(ego)
         if parts.exchange is not None:
-            places = [ego.pose[:2] for ego in self._egos]
-            parts.exchange.update(np.array(places) if places else self._fronts)
+            parts.exchange.update(self._places())
         if parts.priority is not None:
             parts.priority.update(crowd.crowd)
         self._mirror.read(self._egos, crowd.crowd.position)
@@ -114,6 +123,16 @@ class ReplayedLoop:
         if yielding is not None and (background.ids or yielding.limited):
             yielding.update(background, crowd.crowd, self._egos, rooms, merging)
         self._notes.note(background)
+
+    def _places(self) -> Array:
+        """(e, 2) [m] round which the zone lies."""
+        if self._driven is not None:
+            time = self._start + self._k * self._parts.time_step
+            places = _on_the_road(self._driven, time)
+            self._fronts = places if len(places) else self._fronts
+        elif self._egos:
+            return np.array([ego.pose[:2] for ego in self._egos])
+        return self._fronts
 
     def _look_ahead(self) -> dict[str, float]:
         """As in the run: let egos take note of lights and traffic; who has to wait for one."""
@@ -161,3 +180,13 @@ def _recall(ego: Ego) -> None:
     """Note where the ego had to stop, which nobody asks about again."""
     if isinstance(ego.vehicle, RecordedVehicle):
         ego.way.stop = ego.front + ego.vehicle.stop_gap
+
+
+def _on_the_road(driven: Driven, time: float) -> Array:
+    """(e, 2) [m] the front bumpers of those egos that were on the road at ``time`` [s]."""
+    places = []
+    for track in driven.tracks.values():
+        row = int(np.searchsorted(track.time, time - _SAME_INSTANT))
+        if row < len(track.time) and track.time[row] <= time + _SAME_INSTANT:
+            places.append((track.front_x[row], track.front_y[row]))
+    return np.array(places).reshape(-1, 2)

@@ -8,9 +8,11 @@ that the runs that one process makes with the same people share it.
 """
 
 import hashlib
+import math
 from collections import OrderedDict
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -42,11 +44,14 @@ class Twin:
     Attributes:
         walks: how they got on, up to the control step at which following ends.
         traffic_differs: whether lights or background vehicles did anything else than in the run.
+        traffic_delay: [s] that the background vehicles lost in the run, less what they lose where
+            the egos are not there at all; nan: there are none, or an ego is one of the scenario's.
         among_themselves: it is the crowd on open ground, without SUMO.
     """
 
     walks: WalkTrack
     traffic_differs: bool
+    traffic_delay: float
     among_themselves: bool
 
 
@@ -78,16 +83,42 @@ def twin_of(
     if followed.secluded:
         alone = _crowd_alone(checked.config, followed, checked.time_step)
         alone.go_on(last, names, heartbeat)
-        return Twin(alone.walks.track.until(last), traffic_differs=False, among_themselves=True)
+        return Twin(alone.walks.track.until(last), False, math.nan, among_themselves=True)
     walks = WalkLog(checked.time_step, names.__contains__)
+    again = partial(_again, checked, heartbeat=heartbeat, native_log=native_log)
+    traffic = again(walks, driven, last, interrupt)
+    if traffic is None:
+        return None
+    delay = math.nan
+    if followed.traffic.vehicles and not any(ego.ego.take_over for ego in checked.egos):
+        absent = driven._replace(absent=True)
+        alone_there = again(WalkLog(checked.time_step), absent, followed.walks.last, interrupt)
+        if alone_there is None:
+            return None
+        delay = followed.traffic.time_loss - alone_there.time_loss
+    differs = traffic.differ_from(followed.traffic)
+    return Twin(walks.track, differs, delay, among_themselves=False)
+
+
+def _again(
+    checked: CheckedRun,
+    walks: WalkLog,
+    driven: Driven,
+    last: int,
+    interrupt: DeferredInterrupt,
+    *,
+    heartbeat: Heartbeat,
+    native_log: Path | None,
+) -> TrafficNotes | None:
+    """Go through a run again up to the control step ``last``; None: it was interrupted."""
     with ExitStack() as stack:
         parts = assemble(checked, stack, native_log=native_log, driven=driven)
         walking = Walking(checked.config, parts.crowd_model, parts.roster, walks)
         traffic = TrafficNotes(parts.sumo)
-        if not ReplayedLoop(parts, walking, walks, traffic, heartbeat).run(last, interrupt):
-            return None
-    differs = traffic.differ_from(followed.traffic)
-    return Twin(walks.track, traffic_differs=differs, among_themselves=False)
+        absent = driven if driven.absent else None
+        loop = ReplayedLoop(parts, walking, walks, traffic, heartbeat, driven=absent)
+        ended = loop.run(last, interrupt, to_the_end=driven.absent)
+    return traffic if ended else None
 
 
 def _crowd_alone(config: RunConfig, followed: Followed, time_step: float) -> CrowdAlone:
