@@ -32,6 +32,8 @@ class Followed:
         secluded: nobody but they and the egos is ever there.
         walks: how they get on.
         traffic: what the background vehicles do.
+        arrival: the control step at which the run itself ended.
+        time_loss: [s] of the background vehicles up to then.
         last: the control step at which following ends at the latest.
     """
 
@@ -42,7 +44,8 @@ class Followed:
         self.secluded = parts.secluded
         self.walks = WalkLog(parts.time_step)
         self.traffic = TrafficNotes(parts.sumo)
-        self.last = 0
+        self.arrival = self.last = 0
+        self.time_loss = 0.0
         self._fronts: Array = np.empty((0, 2))
         self._parked: list[str] = []
 
@@ -82,7 +85,8 @@ class Followed:
         """
         parts = self._parts
         self.walks.stop_looking()
-        self.last = step
+        self.arrival = self.last = step
+        self.time_loss = self.traffic.time_loss
         if not completed:
             return True
         self.last = step + math.ceil(LONGEST / parts.time_step)

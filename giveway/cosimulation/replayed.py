@@ -4,6 +4,7 @@ Two uses: the time after the last ego's arrival, and the twin of a run, in which
 did while people do not feel them. No controller and no vehicle FMU takes part.
 """
 
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from giveway.cosimulation.traffic import TrafficWatch
 from giveway.cosimulation.traffic_notes import TrafficNotes
 from giveway.cosimulation.walking import Walking
 from giveway.ego.ego import Ego
+from giveway.ego.merges import Behind
 from giveway.ego.recorded import RecordedVehicle
 from giveway.ego.right_of_way import Traffic
 from giveway.geometry.kernel import Array
@@ -118,7 +120,9 @@ class ReplayedLoop:
         self._mirror.read(self._egos, crowd.crowd.position)
         background = self._mirror.background
         rooms = self._look_ahead()
-        merging = self._merging.update(background, self._egos)
+        merging: Sequence[Mapping[str, Behind]] = ()
+        if any(ego.way.merges is not None for ego in self._egos):
+            merging = self._merging.update(background, self._egos)
         yielding = parts.yielding
         if yielding is not None and (background.ids or yielding.limited):
             yielding.update(background, crowd.crowd, self._egos, rooms, merging)

@@ -44,8 +44,9 @@ class Twin:
     Attributes:
         walks: how they got on, up to the control step at which following ends.
         traffic_differs: whether lights or background vehicles did anything else than in the run.
-        traffic_delay: [s] that the background vehicles lost in the run, less what they lose where
-            the egos are not there at all; nan: there are none, or an ego is one of the scenario's.
+        traffic_delay: [s] that the background vehicles lost until the last ego's arrival, less what
+            they lose until then where the egos are not there at all; nan: there are none, or an ego
+            is one of the scenario's.
         among_themselves: it is the crowd on open ground, without SUMO.
     """
 
@@ -92,10 +93,10 @@ def twin_of(
     delay = math.nan
     if followed.traffic.vehicles and not any(ego.ego.take_over for ego in checked.egos):
         absent = driven._replace(absent=True)
-        alone_there = again(WalkLog(checked.time_step), absent, followed.walks.last, interrupt)
+        alone_there = again(WalkLog(checked.time_step), absent, followed.arrival, interrupt)
         if alone_there is None:
             return None
-        delay = followed.traffic.time_loss - alone_there.time_loss
+        delay = followed.time_loss - alone_there.time_loss
     differs = traffic.differ_from(followed.traffic)
     return Twin(walks.track, differs, delay, among_themselves=False)
 

@@ -70,7 +70,7 @@ class DelaySummary:
     ]
     traffic_delay: Annotated[
         float,
-        Quantity("s", "time loss of all background vehicles less that without the egos"),
+        Quantity("s", "time loss of background vehicles until the arrival, less that without egos"),
     ]
 
     def as_dict(self) -> dict[str, bool | int | float]:

@@ -113,11 +113,6 @@ class WalkLog:
         return frozenset(self._ids[i] for i in np.flatnonzero(self._near))
 
     @property
-    def last(self) -> int:
-        """The last control instant that was noted."""
-        return self._last
-
-    @property
     def track(self) -> WalkTrack:
         """Everything noted so far."""
         columns = [np.ascontiguousarray(column) for column in self._rows.filled.T]
