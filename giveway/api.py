@@ -20,6 +20,7 @@ from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.cosimulation.twin import Twin, twin_of
 from giveway.ego.vehicle import model_margin
 from giveway.errors import CrowdError, GivewayError, ResultsError
+from giveway.metrics import delays
 from giveway.processes.child import STDERR_FILE
 from giveway.processes.heartbeat import Phase
 from giveway.processes.interrupts import DeferredInterrupt
@@ -27,7 +28,7 @@ from giveway.recording.journal import Journal
 from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
 from giveway.results import law, mismatch, vehicle_contacts
-from giveway.results.effect import Effect
+from giveway.results.effect import Effect, who_gave_way
 from giveway.results.ego_result import EgoResult, results_of_egos
 from giveway.results.folder import (
     release_folder,
@@ -225,7 +226,7 @@ def simulate(
         heartbeat = recorder.journal.heartbeat
         make = partial(twin_of, checked, loop.followed, driven, heartbeat, interrupt, native_log)
         twin, error = _guarded(make)
-    return _with_twin(result, loop.followed, twin, error, perf_counter() - began - elapsed)
+    return _with_twin(result, loop.followed, twin, error, began + elapsed)
 
 
 def _guarded(call: Callable[[], Result]) -> tuple[Result | None, Exception | None]:
@@ -243,7 +244,7 @@ def _with_twin(
     followed: Followed,
     twin: Twin | None,
     error: Exception | None,
-    seconds: float,
+    since: float,
 ) -> RunResult:
     """The result with what the egos cost the people, or with why that is not known."""
     if error is not None:
@@ -253,13 +254,19 @@ def _with_twin(
         interrupted = replace(result, ending=Ending.INTERRUPTED)
         return interrupted if result.egos else result
     walks = followed.walks.track
+    yielded = {
+        ego.id: who_gave_way(walks, twin.walks, ego.track, ego.first, ego.shape, ego.body_radius)
+        for ego in result.egos
+    }
+    found = delays(walks, twin.walks)
     effect = Effect(
         run=walks,
         twin=twin.walks,
+        delays=found,
+        yielded=yielded,
         traffic_differs=twin.traffic_differs,
         traffic_delay=twin.traffic_delay,
-        among_themselves=twin.among_themselves,
-        seconds=seconds,
+        seconds=perf_counter() - since,
     )
     remarks = result.remarks
     if twin.traffic_differs:

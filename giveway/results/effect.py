@@ -1,20 +1,13 @@
 """What the egos of a run cost the people, from the run and its twin."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.metrics import (
-    Delays,
-    DelaySummary,
-    delays,
-    encroachment,
-    gave_way,
-    summarise_delays,
-)
+from giveway.metrics import Delays, DelaySummary, encroachment, gave_way, summarise_delays
 from giveway.records.tracks import CrowdTrack, EgoTrack
 from giveway.records.walks import WalkTrack
 
@@ -26,51 +19,54 @@ class Effect:
     Attributes:
         run: how people got on, until after the last ego's arrival.
         twin: the same where they did not feel the egos.
+        delays: what the egos together cost each person, in the order of the run's ids.
+        yielded: (n,) of each ego, by its id: who gave way to it, "yes", "no" or "".
         traffic_differs: whether lights or background vehicles did anything else in the twin.
         traffic_delay: [s] of the background vehicles; nan: not known.
-        among_themselves: the twin is the crowd on open ground, without SUMO.
-        seconds: of wall clock that following the run and going through the twin took.
+        seconds: of wall clock that following the run, its twin and the comparison took.
     """
 
     run: WalkTrack
     twin: WalkTrack
+    delays: Delays
+    yielded: Mapping[str, NDArray[np.str_]]
     traffic_differs: bool
     traffic_delay: float
-    among_themselves: bool
     seconds: float
 
-    @cached_property
-    def delays(self) -> Delays:
-        """What the egos together cost each person, in the order of the run's ids."""
-        return delays(self.run, self.twin)
-
-    def gave_way(
-        self, ego: EgoTrack, first: int, shape: VehicleShape, body_radius: float
-    ) -> NDArray[np.str_]:
-        """(n,) who gave way to an ego: "yes", "no" or "".
-
-        Args:
-            ego: its rows.
-            first: the control instant at which it departed.
-            shape: its body.
-            body_radius: of a pedestrian [m].
-        """
-        of_run = _first(self.run, ego, first, shape, body_radius)
-        of_twin = _first(self.twin, ego, first, shape, body_radius)
-        places = {name: i for i, name in enumerate(self.twin.ids)}
-        there = np.array([places.get(name, -1) for name in self.run.ids], dtype=np.int64)
-        twin = np.where(there >= 0, of_twin[there], "") if len(of_twin) else np.full(len(there), "")
-        return gave_way(of_run, twin, self.run.near)
-
-    def summary(self, yielded: NDArray[np.str_]) -> DelaySummary:
-        """The delays in one row.
-
-        Args:
-            yielded: as :meth:`gave_way` gives it.
-        """
+    def summary(self, ego: str) -> DelaySummary:
+        """The delays in one row, with those who gave way to the ego of this id."""
         return summarise_delays(
-            self.delays.delay, yielded, differs=self.traffic_differs, traffic=self.traffic_delay
+            self.delays.delay,
+            self.yielded[ego],
+            differs=self.traffic_differs,
+            traffic=self.traffic_delay,
         )
+
+
+def who_gave_way(
+    run: WalkTrack,
+    twin: WalkTrack,
+    ego: EgoTrack,
+    first: int,
+    shape: VehicleShape,
+    body_radius: float,
+) -> NDArray[np.str_]:
+    """(n,) who of the run's people gave way to an ego: "yes", "no" or "".
+
+    Args:
+        run: how people got on.
+        twin: the same where they did not feel the egos.
+        ego: its rows.
+        first: the control instant at which it departed.
+        shape: its body.
+        body_radius: of a pedestrian [m].
+    """
+    of_run = _first(run, ego, first, shape, body_radius)
+    places = {name: i for i, name in enumerate(twin.ids)}
+    there = np.array([places.get(name, -1) for name in run.ids], dtype=np.int64)
+    of_twin = np.append(_first(twin, ego, first, shape, body_radius), "")[there]
+    return gave_way(of_run, of_twin, run.near)
 
 
 def _first(

@@ -5,9 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.presets import parameters_of
@@ -72,16 +70,11 @@ class EgoResult:
         if self.effect is None:
             return table
         found = self.effect.delays
-        columns = found.delay, found.basis, found.detour, self._gave_way
+        columns = found.delay, found.basis, found.detour, self.effect.yielded[self.id]
         names = [column.name for column in DELAY_FIELDS]
         more = pd.DataFrame(dict(zip(names, columns, strict=True)), index=self.effect.run.ids)
         more = more.reindex(table["id"]).reset_index(drop=True)
         return table.assign(**{name: more[name] for name in names})
-
-    @cached_property
-    def _gave_way(self) -> NDArray[np.str_]:
-        assert self.effect is not None
-        return self.effect.gave_way(self.track, self.first, self.shape, self.body_radius)
 
     @cached_property
     def vehicle_contacts(self) -> tuple[VehicleContact, ...]:
@@ -127,7 +120,7 @@ class EgoResult:
         if self.ledger is not None:
             row |= self.ledger.summary.as_dict()
         if self.effect is not None:
-            row |= self.effect.summary(self._gave_way).as_dict()
+            row |= self.effect.summary(self.id).as_dict()
         return row
 
 
