@@ -11,7 +11,7 @@ from giveway.metrics.delays import (
     gave_way,
     summarise_delays,
 )
-from giveway.metrics.encroachment import encroachment, post_encroachment_time
+from giveway.metrics.encroachment import EGO, encroachment, post_encroachment_time
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS, pedestrian_metrics
 from giveway.metrics.summary import (
     SUMMARY_FIELDS,
@@ -26,6 +26,7 @@ __all__ = [
     "CRITICAL_TTC",
     "DELAY_FIELDS",
     "DELAY_SUMMARY_FIELDS",
+    "EGO",
     "FRONTAL",
     "NO_CONTACT",
     "PEDESTRIAN_FIELDS",

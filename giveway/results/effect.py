@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.metrics import Delays, DelaySummary, encroachment, gave_way, summarise_delays
+from giveway.metrics import EGO, Delays, DelaySummary, encroachment, gave_way, summarise_delays
 from giveway.records.tracks import CrowdTrack, EgoTrack
 from giveway.records.walks import WalkTrack
 
@@ -62,18 +62,29 @@ def who_gave_way(
         shape: its body.
         body_radius: of a pedestrian [m].
     """
-    of_run = _first(run, ego, first, shape, body_radius)
+    of_run = _first(run, run.near, ego, first, shape, body_radius)
     places = {name: i for i, name in enumerate(twin.ids)}
     there = np.array([places.get(name, -1) for name in run.ids], dtype=np.int64)
-    of_twin = np.append(_first(twin, ego, first, shape, body_radius), "")[there]
+    asked = np.zeros(len(twin.ids) + 1, dtype=np.bool_)
+    asked[there[of_run == EGO]] = True
+    of_twin = np.append(_first(twin, asked[:-1], ego, first, shape, body_radius), "")[there]
     return gave_way(of_run, of_twin, run.near)
 
 
 def _first(
-    walks: WalkTrack, ego: EgoTrack, first: int, shape: VehicleShape, body_radius: float
+    walks: WalkTrack,
+    asked: NDArray[np.bool_],
+    ego: EgoTrack,
+    first: int,
+    shape: VehicleShape,
+    body_radius: float,
 ) -> NDArray[np.str_]:
-    """(n,) who was first, people's walks after the ego's arrival counted."""
-    rows = walks.step >= first
+    """(n,) who was first, of the people ``asked`` (n,); what they do after its arrival counts."""
+    beside = shape.length + shape.width + body_radius
+    x, y = ego.front_x, ego.front_y
+    rows = (walks.step >= first) & asked[walks.pedestrian]
+    rows &= (walks.x >= x.min() - beside) & (walks.x <= x.max() + beside)
+    rows &= (walks.y >= y.min() - beside) & (walks.y <= y.max() + beside)
     track = CrowdTrack(
         walks.step[rows] - first,
         walks.pedestrian[rows],
