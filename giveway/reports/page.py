@@ -35,7 +35,7 @@ _MEANINGS = (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
 REPORT = "report.html"
 FIGURES = "figures"
 _FORMATS = (".png", ".svg")
-_NAMES = ("differences", "forest", "distributions", "tradeoff", "example")
+_NAMES = ("differences", "forest", "distributions", "tradeoff", "fronts", "example")
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,9 @@
 """The pictures of a study: what each one shows of the tables; ``giveway.figures`` draws it."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,6 +14,7 @@ from scipy import stats
 from giveway.figures.study_differences import DifferenceColumn, Differences, differences_figure
 from giveway.figures.study_distributions import DistributionColumn, distributions_figure
 from giveway.figures.study_forest import Estimate, ForestColumn, forest_figure
+from giveway.figures.study_fronts import FrontPoint, fronts_figure
 from giveway.figures.study_rows import Row, level_colours
 from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
 from giveway.reports.choice import deciding_metric
@@ -31,6 +33,7 @@ from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import SITUATIONS, metric
 
 ROWS_PER_PICTURE = 8
+PANELS_PER_PICTURE = 16
 FOREST = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
 SPREADS = {
     "time and comfort": ("completion_time", "longest_wait", "rms_jerk"),
@@ -68,6 +71,7 @@ def study_pictures(study: StudyFolder) -> Iterator[Picture]:
     yield from _forest(study)
     yield from _spreads(study)
     yield from _trade_off(study)
+    yield from _fronts(study)
 
 
 def _histograms(study: StudyFolder) -> Iterator[Picture]:
@@ -286,6 +290,58 @@ def _trade_off(study: StudyFolder) -> Iterator[Picture]:
             x_label=(f"Mean {time.label}", time.unit),
             y_label=(f"Mean {clearance.label}", clearance.unit),
         ),
+    )
+
+
+def _fronts(study: StudyFolder) -> Iterator[Picture]:
+    """What each level costs the ego, and what it costs the people."""
+    frame, compared = study.fronts, study.definition.comparison.factor
+    if frame.empty:
+        return
+    several = frame["ego"].nunique() > 1
+    panels: list[tuple[str, list[FrontPoint]]] = []
+    rows = frame.to_dict("records")
+    for context in contexts(study):
+        here = [row for row in rows if context_key(study, row) == context.key]
+        for ego in dict.fromkeys(str(row["ego"]) for row in here):
+            points = [_front_point(row, compared) for row in here if str(row["ego"]) == ego]
+            named = [level.label for level in context.levels.values()]
+            heading = named[0] if len(named) == 1 else context.short
+            panels.append((f"{heading} ({ego})" if several else heading, points))
+    percent = 100.0 * study.definition.comparison.confidence
+    for number, first in enumerate(range(0, len(panels), PANELS_PER_PICTURE), start=1):
+        part = panels[first : first + PANELS_PER_PICTURE]
+        yield Picture(
+            name="fronts" if number == 1 else f"fronts_{number}",
+            section="trade-off",
+            caption=(
+                "The ego's mean time to its goal against the mean delay of the people, whose "
+                f"twin does not feel it, with {percent:g} % intervals. Down and to the left is "
+                "better for both. Filled, and joined by the dashed line: no other level is better "
+                "on both sides. fronts.csv has the numbers."
+            ),
+            alt="; ".join(
+                f"{heading} {p.level}: {p.x:.2f} s, {p.y:.2f} s{', on the front' * p.front}"
+                for heading, points in part
+                for p in points
+            ),
+            figure=fronts_figure(
+                part,
+                level_colours(compared_labels(study), baseline_label(study)),
+                x_label=("Ego's mean time to its goal", "s"),
+                y_label=("People's mean delay", "s"),
+            ),
+        )
+
+
+def _front_point(row: Mapping[Any, Any], compared: str) -> FrontPoint:
+    return FrontPoint(
+        level_label(row[compared]),
+        float(row["ego_time"]),
+        float(row["people_delay"]),
+        (float(row["ego_time_low"]), float(row["ego_time_high"])),
+        (float(row["people_delay_low"]), float(row["people_delay_high"])),
+        bool(row["front"]),
     )
 
 

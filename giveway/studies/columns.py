@@ -63,6 +63,19 @@ LEVEL_COLUMNS = (
     Column("interval", "string", None, "how it was made: BCa, percentile, constant; empty: none"),
 )
 
+FRONT_COLUMNS = (
+    Column("ego", "string", None, "SUMO id of the ego"),
+    Column("runs", "integer", None, "runs of the cell with a result"),
+    Column("arrived", "integer", None, "of these, whose ego reached its goal"),
+    Column("ego_time", "number", "s", "mean time to the goal of those that arrived"),
+    Column("ego_time_low", "number", "s", "lower end of its interval; empty: too few runs"),
+    Column("ego_time_high", "number", "s", "upper end of its interval"),
+    Column("people_delay", "number", "s", "mean over the runs of the people's mean delay"),
+    Column("people_delay_low", "number", "s", "lower end of its interval; empty: too few runs"),
+    Column("people_delay_high", "number", "s", "upper end of its interval"),
+    Column("front", "boolean", None, "no other level of the context is better on both sides"),
+)
+
 PRECISION_COLUMNS = (
     *_COMPARED,
     _SITUATION,

@@ -11,6 +11,7 @@ from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.studies.columns import (
     COMPARISON_COLUMNS,
+    FRONT_COLUMNS,
     LEVEL_COLUMNS,
     PRECISION_COLUMNS,
     SITUATION_COLUMNS,
@@ -28,6 +29,7 @@ _RESERVED = frozenset(
         DELAY_SUMMARY_FIELDS,
         COMPARISON_COLUMNS,
         LEVEL_COLUMNS,
+        FRONT_COLUMNS,
         SITUATION_COLUMNS,
         PRECISION_COLUMNS,
         TABLE_2_COLUMNS,

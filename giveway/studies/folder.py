@@ -34,6 +34,7 @@ from giveway.studies.record import RunRecord, run_id
 from giveway.studies.statistics import (
     COMPARISON_COLUMNS,
     compare,
+    fronts,
     levels,
     situations,
 )
@@ -136,6 +137,11 @@ class StudyFolder:
     def levels(self) -> pd.DataFrame:
         """Every level's own means: one row per cell, ego and metric."""
         return levels(self.runs, self.design, self.definition.comparison)
+
+    @cached_property
+    def fronts(self) -> pd.DataFrame:
+        """The ego's side and the people's: one row per cell and ego; none without twins."""
+        return fronts(self.levels, self.design, self.definition.comparison)
 
     @cached_property
     def computing(self) -> pd.DataFrame:

@@ -10,7 +10,12 @@ import pandas as pd
 from giveway.records.columns import Column
 from giveway.results.folder import package_of
 from giveway.studies.atomic_files import write_atomically
-from giveway.studies.columns import COMPARISON_COLUMNS, LEVEL_COLUMNS, SITUATION_COLUMNS
+from giveway.studies.columns import (
+    COMPARISON_COLUMNS,
+    FRONT_COLUMNS,
+    LEVEL_COLUMNS,
+    SITUATION_COLUMNS,
+)
 from giveway.studies.contents import PACKAGE, SHA256
 from giveway.studies.folder import StudyFolder
 from giveway.studies.frames import (
@@ -28,19 +33,20 @@ TABLES = (
     "runs",
     "cells",
     "levels",
+    "fronts",
     "comparison",
     "situations",
     "execution",
     "computing",
     "failures",
 )
-_LONG = frozenset({"comparison", "levels", "situations"})  # these take some seconds
+_LONG = frozenset({"comparison", "levels", "fronts", "situations"})  # these take some seconds
 _COUNTS = (
     Column("runs", "integer", None, "runs of the cell that are there"),
     Column("failed", "integer", None, "of these without a result"),
 )
 _COUNTED = (*_COUNTS, *COMPUTING_COLUMNS, *COMPARISON_COLUMNS, *SITUATION_COLUMNS)
-_DESCRIBED: dict[str, tuple[Column, ...]] = {"levels": LEVEL_COLUMNS}
+_DESCRIBED: dict[str, tuple[Column, ...]] = {"levels": LEVEL_COLUMNS, "fronts": FRONT_COLUMNS}
 _TYPES: dict[str, Any] = {"b": "boolean", "i": "integer", "f": "number"}
 
 
@@ -55,6 +61,8 @@ def write_tables(study: StudyFolder, *, whole: bool) -> None:
         ResultsError: the disk is full or not writable.
     """
     names = [name for name in TABLES if whole or name not in _LONG]
+    if whole and study.fronts.empty:  # there are no twins
+        names.remove("fronts")
     columns = {name: _columns(study, name) for name in names}
     seals = {}
     for name in names:

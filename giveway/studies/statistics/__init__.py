@@ -5,12 +5,14 @@ docs/statistics.md says in words what is computed here.
 
 from giveway.studies.columns import (
     COMPARISON_COLUMNS,
+    FRONT_COLUMNS,
     LEVEL_COLUMNS,
     PRECISION_COLUMNS,
     SITUATION_COLUMNS,
     TABLE_2_COLUMNS,
 )
 from giveway.studies.statistics.comparing import compare
+from giveway.studies.statistics.fronts import fronts
 from giveway.studies.statistics.levels import levels
 from giveway.studies.statistics.metrics import METRICS, Metric, metric
 from giveway.studies.statistics.sequential import looks, precise_enough
@@ -19,6 +21,7 @@ from giveway.studies.statistics.yang2019 import PUBLISHED, table2
 
 __all__ = [
     "COMPARISON_COLUMNS",
+    "FRONT_COLUMNS",
     "LEVEL_COLUMNS",
     "METRICS",
     "PRECISION_COLUMNS",
@@ -28,6 +31,7 @@ __all__ = [
     "TABLE_2_COLUMNS",
     "Metric",
     "compare",
+    "fronts",
     "levels",
     "looks",
     "metric",
