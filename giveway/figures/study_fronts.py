@@ -75,7 +75,7 @@ def fronts_figure(
         for level in levels
     ]
     handles.append(Line2D([], [], color=GREY, linewidth=1.2, linestyle="--", label="Pareto front"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5))
+    figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 5))
     return figure
 
 
