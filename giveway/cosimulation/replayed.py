@@ -4,22 +4,17 @@ Two uses: the time after the last ego's arrival, and the twin of a run, in which
 did while people do not feel them. No controller and no vehicle FMU takes part.
 """
 
-from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from giveway.cosimulation.assembly import Driven, Parts
-from giveway.cosimulation.merging import Merging
+from giveway.cosimulation.meetings import Meetings
 from giveway.cosimulation.mirror import Mirror
-from giveway.cosimulation.priority import rooms_before
-from giveway.cosimulation.traffic import TrafficWatch
 from giveway.cosimulation.traffic_notes import TrafficNotes
 from giveway.cosimulation.walking import Walking
 from giveway.ego.ego import Ego
-from giveway.ego.merges import Behind
 from giveway.ego.recorded import RecordedVehicle
-from giveway.ego.right_of_way import Traffic
 from giveway.geometry.kernel import Array
 from giveway.processes.heartbeat import Heartbeat, Phase
 from giveway.processes.interrupts import DeferredInterrupt
@@ -73,8 +68,7 @@ class ReplayedLoop:
         self._read = self._k - 1 if self._k == 0 else self._k  # the step at which SUMO was read
         self._driven = driven
         self._egos: list[Ego] = []
-        self._watch = TrafficWatch(parts.sumo)
-        self._merging = Merging(parts.sumo.vehicles, parts.sumo.lanes)
+        self._meetings = Meetings(parts.sumo, parts.yielding)
 
     def run(self, last: int, interrupt: DeferredInterrupt, *, to_the_end: bool = False) -> bool:
         """Step up to the control step ``last``, or until nobody who counts is on the way.
@@ -119,13 +113,7 @@ class ReplayedLoop:
             parts.priority.update(crowd.crowd)
         self._mirror.read(self._egos, crowd.crowd.position)
         background = self._mirror.background
-        rooms = self._look_ahead()
-        merging: Sequence[Mapping[str, Behind]] = ()
-        if any(ego.way.merges is not None for ego in self._egos):
-            merging = self._merging.update(background, self._egos)
-        yielding = parts.yielding
-        if yielding is not None and (background.ids or yielding.limited):
-            yielding.update(background, crowd.crowd, self._egos, rooms, merging)
+        self._meetings.update(background, crowd.crowd, self._egos)
         self._notes.note(background)
 
     def _places(self) -> Array:
@@ -137,20 +125,6 @@ class ReplayedLoop:
         elif self._egos:
             return np.array([ego.pose[:2] for ego in self._egos])
         return self._fronts
-
-    def _look_ahead(self) -> dict[str, float]:
-        """As in the run: let egos take note of lights and traffic; who has to wait for one."""
-        sumo, rooms = self._parts.sumo, dict[str, float]()
-        traffic: Traffic = {}
-        if any(ego.way.visited for ego in self._egos):
-            traffic = self._watch.of(self._mirror.background, self._egos)
-        for ego in self._egos:
-            if ego.way.systems or traffic:
-                states = sumo.light_states(ego.way.systems)
-                ego.way.look(sumo.time, ego.front, ego.vehicle.speed, states, traffic)
-                for name, room in rooms_before(ego, states, traffic).items():
-                    rooms[name] = min(room, rooms.get(name, room))
-        return rooms
 
     def _see_arrivals(self) -> None:
         gone = [ego for ego in self._egos if ego.arrived]
