@@ -1,16 +1,18 @@
-"""The sha256 of every table of ten fixed runs: a change that only moves code changes none of them.
+"""The sha256 of each column of ten fixed runs: a change that only moves code changes none of them.
 
 Run: python benchmarks/fingerprints.py --write before.json
      python benchmarks/fingerprints.py --compare before.json [--only NAME]
 
 Each run is a process of its own, and only public names are used, so that two states of the
 repository can be compared: ``PYTHONPATH=OTHER_CHECKOUT python benchmarks/fingerprints.py ...``.
-``timing.csv`` is left out: it holds computing times.
+``timing.csv`` is left out: it holds computing times. A column that is new is named and is no
+difference.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import hashlib
 import json
 import subprocess
@@ -61,7 +63,7 @@ RUNS: dict[str, dict[str, Any]] = {
 
 
 def fingerprint(name: str) -> dict[str, str]:
-    """The sha256 of each table that one of :data:`RUNS` leaves, by its file's name."""
+    """The sha256 of each column that one of :data:`RUNS` leaves, by its file's name and its own."""
     import fmus
     import giveway
 
@@ -72,10 +74,18 @@ def fingerprint(name: str) -> dict[str, str]:
             settings["vehicle"]["fmu"] = str(_foreign(fmus.bundled_fmu("2.0"), folder))
         giveway.run(settings, results=folder / "run", pictures=False)
         return {
-            file.name: hashlib.sha256(file.read_bytes()).hexdigest()
+            f"{file.name} {column}": hashlib.sha256("\n".join(values).encode()).hexdigest()
             for file in sorted((folder / "run").glob("*.csv"))
             if file.name != "timing.csv"
+            for column, values in _columns(file).items()
         }
+
+
+def _columns(file: Path) -> dict[str, list[str]]:
+    """The columns of a table as it is written, by their names."""
+    with file.open(encoding="utf-8", newline="") as text:
+        names, *rows = csv.reader(text)
+    return {name: [row[i] for row in rows] for i, name in enumerate(names)}
 
 
 def _foreign(bundled: Path, folder: Path) -> Path:
@@ -98,7 +108,7 @@ def _in_a_process(name: str) -> dict[str, str]:
 
 
 def _differences(before: dict[str, str], now: dict[str, str]) -> list[str]:
-    return sorted(name for name in before.keys() | now.keys() if before.get(name) != now.get(name))
+    return sorted(name for name in before if before[name] != now.get(name))
 
 
 def main() -> None:
@@ -115,11 +125,13 @@ def main() -> None:
     found, differ = {}, 0
     for name in options.only or RUNS:
         found[name] = _in_a_process(name)
-        verdict = found[name].get("failed") or f"{len(found[name])} tables"
+        verdict = found[name].get("failed") or f"{len(found[name])} columns"
         if options.compare:
             different = _differences(before.get(name, {}), found[name])
             differ += bool(different)
             verdict = f"DIFFERS: {', '.join(different)}" if different else "the same bytes"
+            new = sorted(found[name].keys() - before.get(name, {}).keys() - {"failed"})
+            verdict += f"; new: {', '.join(new)}" if new else ""
             verdict += f" ({found[name]['failed']})" if "failed" in found[name] else ""
         print(f"{name:30} {verdict}", flush=True)
     if options.write:

@@ -119,10 +119,8 @@ class ReplayedLoop:
     def _places(self) -> Array:
         """(e, 2) [m] round which the zone lies."""
         if self._driven is not None:
-            time = self._start + self._k * self._parts.time_step
-            places = _on_the_road(self._driven, time)
-            self._fronts = places if len(places) else self._fronts
-        elif self._egos:
+            return _on_the_road(self._driven, self._start + self._k * self._parts.time_step)
+        if self._egos:
             return np.array([ego.pose[:2] for ego in self._egos])
         return self._fronts
 
@@ -132,7 +130,7 @@ class ReplayedLoop:
             self._mirror.drop(self._egos.index(ego))
             self._egos.remove(ego)
             self._parts.sumo.vehicles.dismiss(ego.id)
-        if gone:
+        if gone and not (self._egos or self._parts.departures.waiting):
             self._fronts = np.array([ego.pose[:2] for ego in gone])
 
     def _advance(self) -> None:

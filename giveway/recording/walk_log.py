@@ -18,6 +18,7 @@ from pedestrian_model import Crowd, remaining_distance
 REACH = 30.0
 """[m] from an ego's way: who comes no closer is not looked at."""
 _LOOKS = 0.5  # [s] between two looks at who comes close
+_SWAY = 0.1  # [m] who stands may sway by less, which is no way
 _COLUMNS = 8  # instant, pedestrian, x, y, vx, vy, remaining, walked
 
 
@@ -39,7 +40,7 @@ class WalkLog:
         self._arrivals: list[tuple[int, int]] = []
         self._ids: list[str] = []
         self._near = np.zeros(0, dtype=np.bool_)
-        self._memory = np.zeros((0, 4))  # x, y, walked [m], desired speed [m/s]; x nan: never seen
+        self._memory = np.zeros((0, 4))  # x, y, walked till there [m], desired speed [m/s]; or nan
         self._last = -1
 
     def add_way(self, way: Array) -> None:
@@ -154,15 +155,17 @@ def _fill(
     for i in range(len(present)):
         p, x, y = present[i], position[i, 0], position[i, 1]
         if np.isnan(memory[p, 0]):
-            memory[p, 2] = 0.0
-        else:
-            memory[p, 2] += np.hypot(x - memory[p, 0], y - memory[p, 1])
-        memory[p, 0], memory[p, 1], memory[p, 3] = x, y, desired_speed[i]
+            memory[p, 0], memory[p, 1], memory[p, 2] = x, y, 0.0
+        moved = np.hypot(x - memory[p, 0], y - memory[p, 1])
+        walked = memory[p, 2] + moved
+        memory[p, 3] = desired_speed[i]
+        if moved >= _SWAY:
+            memory[p, 0], memory[p, 1], memory[p, 2] = x, y, walked
         if near[p]:
             block[count, 0] = step
             block[count, 1] = p
             block[count, 2], block[count, 3] = x, y
             block[count, 4], block[count, 5] = velocity[i, 0], velocity[i, 1]
-            block[count, 6], block[count, 7] = remaining[i], memory[p, 2]
+            block[count, 6], block[count, 7] = remaining[i], walked
             count += 1
     return count

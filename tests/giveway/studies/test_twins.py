@@ -1,0 +1,116 @@
+"""Studies whose runs have twins: what they keep, however they are computed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from giveway.cosimulation import twin
+from giveway.studies.design import design
+from giveway.studies.rerun import rerun
+from giveway.studies.statistics.fronts import fronts, on_front
+from giveway.studies.study import StudyInterruptedError
+
+TEXT = """
+name = "twins"
+replications = 3
+[run]
+scenario = "shared_space"
+twin = true
+[factors]
+"crowd.pedestrians" = [6, 8]
+controller = ["pid-tuned", "pid-paper"]
+[comparison]
+minimum_pairs = 3
+resamples = 99
+"""
+TABLES = ("runs", "cells", "levels", "fronts", "comparison", "situations", "failures")
+
+
+@pytest.fixture(scope="module")
+def study(study_of, tmp_path_factory):
+    return study_of(TEXT, tmp_path_factory.mktemp("study") / "twins")
+
+
+def bytes_of(path):
+    return {name: (path / f"{name}.csv").read_bytes() for name in TABLES}
+
+
+def test_the_levels_are_the_means_of_the_runs_and_these_of_their_people(study):
+    runs, levels = study.runs, study.levels
+    for metric in ("people_delay", "mean_people_delay", "share_gave_way"):
+        for cell in study.design.cells:
+            own = runs.loc[runs["cell"] == cell.number, metric].to_numpy()
+            here = levels["metric"] == metric
+            for name, level in cell.levels.items():
+                here &= levels[name] == level.value
+            (row,) = levels[here].to_dict("records")
+            assert row["mean"] == pytest.approx(np.nanmean(own), abs=1e-5)
+            assert row["n"] == np.isfinite(own).sum()
+    assert (runs["people_delayed"] == runs["crowd.pedestrians"]).all()
+    mean = runs["people_delay"] / runs["people_delayed"]
+    np.testing.assert_allclose(runs["mean_people_delay"], mean, atol=1e-6)
+
+
+def test_what_the_twins_took_is_kept(study):
+    frame = study.execution
+    assert (frame["twin"] > 0.0).all()
+    assert (frame["twin"] < frame["seconds"]).all()
+    assert (study.computing["twin"] > 0.0).all()
+
+
+def test_an_interrupted_study_with_twins_goes_on_to_the_same_bytes(study, study_of, tmp_path):
+    def interrupt(progress):
+        if progress.made == 5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(StudyInterruptedError, match="5 of 12 runs are kept"):
+        study_of(TEXT, tmp_path / "half", interrupt)
+    twin._alone.clear()  # as in another process
+    whole = study_of(TEXT, tmp_path / "half", resume=True)
+    assert bytes_of(whole.path) == bytes_of(study.path)
+
+
+def test_two_processes_give_the_same_bytes(study, study_of, tmp_path):
+    assert bytes_of(study_of(TEXT, tmp_path / "two", jobs=2).path) == bytes_of(study.path)
+
+
+def test_a_run_made_again_has_the_studys_delays(study, tmp_path):
+    result = rerun(study, "c1-s2", None)
+    row = study.runs[study.runs["run"] == "c1-s2"].iloc[0]
+    assert result.summary["people_delay"] == pytest.approx(row["people_delay"], abs=1e-6)
+
+
+def test_a_study_without_twins_has_no_fronts(small_study):
+    assert small_study.fronts.empty
+    assert not (small_study.path / "fronts.csv").exists()
+    assert small_study.runs["people_delay"].isna().all()
+
+
+def test_cells_with_the_same_people_share_the_crowd_among_itself(study_of, tmp_path, monkeypatch):
+    made = []
+    build = twin.CrowdAlone
+
+    def counted(*arguments):
+        made.append(arguments)
+        return build(*arguments)
+
+    twin._alone.clear()
+    monkeypatch.setattr(twin, "CrowdAlone", counted)
+    study_of(TEXT, tmp_path / "shared")
+    assert len(made) == 2 * 3  # crowds and seeds; not controllers
+    assert len(twin._alone) <= twin._KEPT
+
+
+def test_the_front_is_who_nobody_beats_on_both_sides():
+    x, y = np.array([1.0, 2.0, 3.0, 2.0, 1.0]), np.array([5.0, 3.0, 4.0, 3.0, 6.0])
+    assert on_front(x, y).tolist() == [True, True, False, True, False]
+
+
+def test_who_did_not_always_arrive_is_on_no_front(study):
+    levels = study.levels.copy()
+    fast = (levels["controller"] == "pid-paper") & (levels["metric"] == "completion_time")
+    levels.loc[fast, ["n", "mean"]] = 2, 1.0
+    frame = fronts(levels, design(study.definition, "study.toml"), study.definition.comparison)
+    assert frame.loc[frame["controller"] == "pid-tuned", "front"].all()
+    assert not frame.loc[frame["controller"] == "pid-paper", "front"].any()
