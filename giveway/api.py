@@ -248,8 +248,8 @@ def _with_twin(
 ) -> RunResult:
     """The result with what the egos cost the people, or with why that is not known."""
     if error is not None:
-        manifest = result.manifest | {"error": f"in the twin: {error}"}
-        return replace(result, error=error, manifest=manifest)
+        error.args = (f"in the twin of the run, which is whole: {error}", *error.args[1:])
+        return replace(result, error=error, manifest=result.manifest | {"error": str(error)})
     if twin is None:
         interrupted = replace(result, ending=Ending.INTERRUPTED)
         return interrupted if result.egos else result

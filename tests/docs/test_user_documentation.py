@@ -9,7 +9,12 @@ import pytest
 
 from fmus import VehicleProfile, make_profile
 from giveway.config.layers import options
-from giveway.metrics import PEDESTRIAN_FIELDS, SUMMARY_FIELDS
+from giveway.metrics import (
+    DELAY_FIELDS,
+    DELAY_SUMMARY_FIELDS,
+    PEDESTRIAN_FIELDS,
+    SUMMARY_FIELDS,
+)
 from giveway.metrics.law import LAW_FIELDS
 from giveway.records.columns import (
     EGO_COLUMNS,
@@ -32,6 +37,8 @@ DOCS = Path(__file__).parents[2] / "docs"
         PREDICTION_COLUMNS,
         TIMING_COLUMNS,
         PEDESTRIAN_FIELDS,
+        DELAY_FIELDS,
+        DELAY_SUMMARY_FIELDS,
         SUMMARY_FIELDS,
         LAW_FIELDS,
         LEDGER_COLUMNS,

@@ -10,7 +10,17 @@ import numpy as np
 import pytest
 
 import giveway
+from giveway.api import run_checked, simulate
+from giveway.config.loading import as_layer, load
+from giveway.cosimulation.followed import Followed
 from giveway.cosimulation.mirror import Mirror
+from giveway.cosimulation.preflight import preflight
+from giveway.errors import SumoError
+from giveway.processes.heartbeat import Phase, Pulse
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.processes.supervisor import Verdict
+from giveway.records.progress import Ending
+from giveway.recovery import recover
 from pedestrian_model import Vehicles
 
 if TYPE_CHECKING:
@@ -124,3 +134,45 @@ def test_without_an_ego_there_is_no_twin(run_once):
     result = run_once(twin=True, **(OPEN | {"ego": {"none": True}, "time_limit": 1.0}))
     assert result.effect is None
     assert result.completed is False
+
+
+def test_a_twin_that_fails_or_dies_loses_no_row_of_its_run(
+    run_once, monkeypatch, tmp_path, refused
+):
+    def fail(*_: object) -> None:
+        raise SumoError("SUMO failed at 3.0 s")
+
+    journal = tmp_path / "journal"
+    journal.mkdir()
+    monkeypatch.setattr("giveway.api.twin_of", fail)
+    checked = preflight(*load([as_layer(OPEN | {"twin": True})]))
+    with refused(SumoError, "in the twin", "SUMO failed at 3.0 s") as caught:
+        run_checked(checked, results=tmp_path / "kept", pictures=False, journal=journal)
+    whole = run_once(twin=True, **OPEN)
+    partial = caught.value.result
+    assert partial.summary == {name: whole.summary[name] for name in partial.summary}
+    assert columns(tmp_path / "kept" / "pedestrians.csv")
+    pulse = Pulse(Phase.SUMO, 100, 5.0, 0, 0)
+    rescued = recover(journal, Verdict(139, True, False, "SIGSEGV", pulse, "", "")).result
+    assert rescued is not None
+    assert rescued.egos[0].ending is Ending.COMPLETED
+    assert rescued.ego.equals(whole.ego)
+    assert rescued.effect is None
+
+
+def test_a_user_who_ends_it_in_the_twin_keeps_the_run(monkeypatch):
+    class AfterTheRun(DeferredInterrupt):
+        requested = False
+
+    interrupt = AfterTheRun()
+    follow = Followed.follow
+
+    def ending(*arguments: object) -> bool:
+        interrupt.requested = True
+        return follow(*arguments)
+
+    monkeypatch.setattr(Followed, "follow", ending)
+    result = simulate(preflight(*load([as_layer(STREET | {"twin": True})])), interrupt=interrupt)
+    assert result.ending is Ending.INTERRUPTED
+    assert result.egos[0].ending is Ending.COMPLETED
+    assert result.effect is None
