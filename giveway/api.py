@@ -49,6 +49,8 @@ TRAFFIC_DIFFERS = (
     "delays of people are not the egos' alone"
 )
 
+NO_EGO = "twin: no ego was on the road, so that there is nothing to compare with"
+
 Result = TypeVar("Result")
 
 
@@ -251,8 +253,12 @@ def _with_twin(
         error.args = (f"in the twin of the run, which is whole: {error}", *error.args[1:])
         return replace(result, error=error, manifest=result.manifest | {"error": str(error)})
     if twin is None:
-        interrupted = replace(result, ending=Ending.INTERRUPTED)
-        return interrupted if result.egos else result
+        if result.egos:
+            return replace(result, ending=Ending.INTERRUPTED)
+        remarks = (*result.remarks, NO_EGO)
+        return replace(
+            result, remarks=remarks, manifest=result.manifest | {"remarks": list(remarks)}
+        )
     walks = followed.walks.track
     yielded = {
         ego.id: who_gave_way(walks, twin.walks, ego.track, ego.first, ego.shape, ego.body_radius)

@@ -69,7 +69,7 @@ def _tiny_run() -> None:
     hard = {"soft": False, "gap_choice": False}  # then nothing is planned, and the PID brakes
     for settings in (
         {"time_limit": 0.2, "crowd": {"pedestrians": 0}},
-        {"time_limit": 0.2, "crowd": people},
+        {"time_limit": 0.2, "crowd": people, "twin": True},
         {"time_limit": 0.2, "crowd": people, "planner": hard},
         {"time_limit": 0.2, "crowd": {"pedestrians": 0}, "controller": "mpc-paper"},
         {"time_limit": 0.2, "crowd": people, "controller": "mpc-paper"},

@@ -1,7 +1,6 @@
 """A crowd on open ground among itself: what it does where nobody else is, with or without SUMO."""
 
-from giveway.cosimulation.walking import Walking
-from giveway.crowd.roster import Roster
+from giveway.crowd.roster import Roster, Walking
 from giveway.processes.heartbeat import Heartbeat
 from giveway.recording.walk_log import WalkLog
 from pedestrian_model import OPEN_GROUND, Vehicles

@@ -83,12 +83,6 @@ class Parts:
             )
         return (*self.remarks, *remarks)
 
-    def leave(self, names: Sequence[str]) -> None:
-        """Let pedestrians who have arrived leave SUMO with its next step."""
-        ours = names if self.exchange is None else self.exchange.arrive(names)
-        self.sumo.remove_persons(ours)
-        self.roster.count("arrived", len(ours))
-
 
 def assemble(
     checked: CheckedRun,

@@ -9,7 +9,7 @@ from giveway.cosimulation.assembly import Parts
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.replayed import ReplayedLoop, Standing
 from giveway.cosimulation.traffic_notes import TrafficNotes
-from giveway.cosimulation.walking import Walking
+from giveway.crowd.roster import Walking
 from giveway.ego.ego import Ego
 from giveway.geometry.kernel import Array
 from giveway.processes.heartbeat import Heartbeat

@@ -26,9 +26,9 @@ from giveway.cosimulation.followed import Followed
 from giveway.cosimulation.meetings import Meetings
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.standstill import Standstill
-from giveway.cosimulation.walking import Walking
 from giveway.cosimulation.ways import LawRecords
 from giveway.crowd.reachable import spawn_remark, way_of
+from giveway.crowd.roster import Walking
 from giveway.ego.ego import Ego
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.geometry.kernel import Array
@@ -364,4 +364,6 @@ class Loop:
         parts = self._parts
         names = self._walking.advance(self._k, self._mirror.vehicles, parts.surroundings)
         if names:  # they leave SUMO with its next step
-            parts.leave(names)
+            ours = names if parts.exchange is None else parts.exchange.arrive(names)
+            parts.sumo.remove_persons(ours)
+            parts.roster.count("arrived", len(ours))

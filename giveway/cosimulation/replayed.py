@@ -12,7 +12,7 @@ from giveway.cosimulation.assembly import Driven, Parts
 from giveway.cosimulation.meetings import Meetings
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.traffic_notes import TrafficNotes
-from giveway.cosimulation.walking import Walking
+from giveway.crowd.roster import Walking
 from giveway.ego.ego import Ego
 from giveway.ego.recorded import RecordedVehicle
 from giveway.geometry.kernel import Array
@@ -141,7 +141,9 @@ class ReplayedLoop:
         self._heartbeat.beat(Phase.CROWD)
         names = self._walking.advance(self._k, mirror.others, parts.surroundings)
         if names:
-            parts.leave(names)
+            ours = names if parts.exchange is None else parts.exchange.arrive(names)
+            parts.sumo.remove_persons(ours)
+            parts.roster.count("arrived", len(ours))
         self._k += 1
         self._heartbeat.beat(Phase.SUMO)
         if self._k % parts.substeps:

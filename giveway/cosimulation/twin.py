@@ -25,8 +25,7 @@ from giveway.cosimulation.followed import Followed
 from giveway.cosimulation.preflight import CheckedRun
 from giveway.cosimulation.replayed import ReplayedLoop
 from giveway.cosimulation.traffic_notes import TrafficNotes
-from giveway.cosimulation.walking import Walking
-from giveway.crowd.roster import Roster
+from giveway.crowd.roster import Roster, Walking
 from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.walk_log import WalkLog

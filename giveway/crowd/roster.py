@@ -1,12 +1,17 @@
-"""The pedestrians that giveway moves: who they are, where they came from, where they went."""
+"""The pedestrians that giveway moves: who they are, where they came from, where they went, how."""
 
 import itertools
 from collections.abc import Iterable, Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pedestrian_model import Crowd
+from giveway.config import RunConfig
+from giveway.crowd.disturbance import disturbance_of
+from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles, arrived
+
+ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
 
 
 class Roster:
@@ -66,3 +71,63 @@ class Roster:
     def count(self, event: str, number: int = 1) -> None:
         """Note what became of pedestrians that left the crowd."""
         self._counts[event] += number
+
+
+class Log(Protocol):
+    """Notes how people get on."""
+
+    def note(self, step: int, ids: Sequence[str], present: NDArray[np.int64], crowd: Crowd) -> None:
+        """Note where those who are ``present`` are at a control instant."""
+
+    def arrive(self, step: int, pedestrians: NDArray[np.int64]) -> None:
+        """Note who reached the last way-point at a control instant."""
+
+
+class Walking:
+    """Steps a crowd.
+
+    Args:
+        config: the run's.
+        model: of the crowd.
+        roster: the crowd, and who is in it.
+        log: notes how people get on; None: nobody asks for it.
+    """
+
+    def __init__(
+        self, config: RunConfig, model: CrowdModel, roster: Roster, log: Log | None = None
+    ) -> None:
+        self._model = model
+        self._roster = roster
+        self._log = log
+        self._disturbance = disturbance_of(config, model)
+
+    def note(self, step: int) -> None:
+        """Note where everybody is at the control instant ``step``."""
+        if self._log is not None:
+            roster = self._roster
+            self._log.note(step, roster.ids, roster.present, roster.crowd)
+
+    def advance(self, step: int, vehicles: Vehicles, surroundings: Surroundings) -> list[str]:
+        """Step the crowd from the control instant ``step``; the names of those who have arrived.
+
+        Args:
+            step: the instant.
+            vehicles: that people feel.
+            surroundings: the walls and lights that they heed.
+        """
+        roster = self._roster
+        if not len(roster.present):
+            return []
+        crowd = roster.crowd
+        if self._disturbance is None:
+            self._model.advance(crowd, vehicles, surroundings)
+        else:
+            self._disturbance.advance(
+                crowd, vehicles, surroundings, roster.present, len(roster.ids)
+            )
+        there = arrived(roster.crowd, ARRIVAL_RADIUS)
+        if not np.count_nonzero(there):
+            return []
+        if self._log is not None:
+            self._log.arrive(step + 1, roster.present[there])
+        return roster.release(there)

@@ -40,7 +40,7 @@ def predicted_again(folder: Path) -> Iterator[Predicted]:
         again = Path(place) / "run"
         command = [sys.executable, "-m", "giveway", "run", "--config", str(folder / "config.toml")]
         command += ["--record-predictions", str(PERIOD), "--out", str(again)]
-        command += ["--no-pictures", "--quiet"]
+        command += ["--no-twin", "--no-pictures", "--quiet"]
         done = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, check=False, text=True
         )

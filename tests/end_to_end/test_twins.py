@@ -133,7 +133,8 @@ def test_an_ego_that_blocks_a_street_delays_its_traffic(run_once):
 def test_without_an_ego_there_is_no_twin(run_once):
     result = run_once(twin=True, **(OPEN | {"ego": {"none": True}, "time_limit": 1.0}))
     assert result.effect is None
-    assert result.completed is False
+    assert any("twin: no ego" in remark for remark in result.remarks)
+    assert result.manifest["remarks"] == list(result.remarks)
 
 
 def test_a_twin_that_fails_or_dies_loses_no_row_of_its_run(

@@ -35,7 +35,9 @@ def looked_for():
 for _ in range(2):
     precompile.compile_kernels_once(Console())
 before = looked_for()
-for settings in ({"seed": 4}, {"seed": 3, "controller": "pid"}, {"scenario": "street"}):
+for settings in (
+    {"seed": 4, "twin": True}, {"seed": 3, "controller": "pid"}, {"scenario": "street"}
+):
     giveway.run(settings).summary
 late = {key for key, count in looked_for().items() if count > before.get(key, 0)}
 assert not late, late

@@ -7,8 +7,7 @@ import pytest
 
 from giveway.config import RunConfig
 from giveway.cosimulation.alone import CrowdAlone
-from giveway.cosimulation.walking import Walking
-from giveway.crowd.roster import Roster
+from giveway.crowd.roster import Roster, Walking
 from giveway.metrics import delays
 from giveway.processes.heartbeat import Heartbeat
 from giveway.recording.walk_log import WalkLog
