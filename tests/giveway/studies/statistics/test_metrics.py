@@ -3,11 +3,14 @@
 import pytest
 
 from giveway.errors import ConfigError
-from giveway.metrics import SUMMARY_FIELDS
+from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
 from giveway.studies.statistics import METRICS, metric
 
-UNITS = {column.name: column.unit or "" for column in (*SUMMARY_FIELDS, *LAW_FIELDS)}
+UNITS = {
+    column.name: column.unit or ""
+    for column in (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
+}
 
 
 @pytest.mark.parametrize("each", METRICS, ids=lambda each: each.name)
