@@ -23,7 +23,8 @@ def test_what_is_left_out_says_nothing_about_a_controller() -> None:
     left = set(UNITS) - {each.name for each in METRICS}
     said = {"completed", "simulated_time", "travelled_distance", "maximum_speed"}
     said |= {"vehicle_contacts", "vehicle_contact_time"}  # SUMO drives those into it
-    said |= {"encounters"}  # how many people come is not up to it
+    said |= {"encounters", "people_delayed"}  # how many people come is not up to it
+    said |= {"twin_differs"}  # says how much the delays mean
     assert left == said | {"hard_brakes", "hard_brakes_without_cause"}  # of drives in traffic
 
 
