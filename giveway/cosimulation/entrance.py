@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from giveway.config import EgoRunConfig
 from giveway.config.option import LANE
+from giveway.config.regulation import RegulationConfig
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
 from giveway.cosimulation.ways import way_of
@@ -28,6 +29,8 @@ from giveway.sumo.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.sumo.vehicles import VehicleState
 
+_BEHIND = 0.5  # [m] more than d_safe is left behind a vehicle that stands
+_LEAST_GAP = 1.0  # [m] behind it
 _ON_THE_LINE = 0.01  # [m]
 _MERGE = 20.0  # [m] along which a vehicle beside its lane's centre line joins it
 
@@ -212,6 +215,7 @@ class Entrance:
         return Crossings(
             found,
             length=shape.length,
+            gap=_standing_gap(regulation),
             kerb_distance=regulation.kerb_distance,
             kerb_time=regulation.kerb_time,
         )
@@ -231,6 +235,7 @@ class Entrance:
             junctions,
             name=config.ego_id,
             length=shape.length,
+            gap=_standing_gap(regulation),
             fastest=float(regulation.reference_speed) if profile is None else profile.fastest,
             critical_gap=regulation.critical_gap,
             follow_up_gap=regulation.follow_up_gap,
@@ -307,3 +312,8 @@ def initial_speed(ego: WaitingEgo, lane_path: LanePath) -> float:
         return speed
     by_lane = ego.config.regulation.reference_speed == LANE
     return min(DEFAULT_SPEED, lane_path.limits[0].speed) if by_lane else DEFAULT_SPEED
+
+
+def _standing_gap(regulation: RegulationConfig) -> float:
+    """The gap [m] that an ego keeps behind a vehicle that stands: d_safe, and a little more."""
+    return max(_LEAST_GAP, regulation.safe_distance + _BEHIND)

@@ -148,6 +148,7 @@ class Crossings:
     Args:
         crossings: in the order of the path.
         length: of the ego's body [m].
+        gap: that it keeps behind a vehicle that stands [m].
         kerb_distance: [m] from the kerb, from which on somebody who heads for a crossing is about
             to enter it.
         kerb_time: [s] before they are there, from which on they are as well.
@@ -161,11 +162,12 @@ class Crossings:
         crossings: Sequence[PathCrossing],
         *,
         length: float,
+        gap: float,
         kerb_distance: float,
         kerb_time: float,
     ) -> None:
         self._crossings = tuple(crossings)
-        self._length = length
+        self._length, self._room = length, length + gap
         self._kerb_distance, self._kerb_time = kerb_distance, kerb_time
         self._next = 0
         self._waits_for: int | None = None  # a crossing, before the next one
@@ -196,7 +198,7 @@ class Crossings:
             if place.entry - front > _SIGHT:
                 break
             wanted = self._is_wanted(number, front, speed, crowd)
-            if wanted or leaves_no_room(leader, place.entry, place.exit, self._length):
+            if wanted or leaves_no_room(leader, place.entry, place.exit, self._room):
                 stop = self._stop_for(number, front, speed)
                 if stop < math.inf:
                     return stop

@@ -68,6 +68,7 @@ class RightOfWay:
         junctions: in the order of the path.
         name: of the ego, who is among the traffic.
         length: of the ego's body [m].
+        gap: that it keeps behind a vehicle that stands [m].
         fastest: speed [m/s] that the ego drives at most.
         critical_gap: [s]; None: the Highway Capacity Manual's.
         follow_up_gap: [s]; None: likewise.
@@ -83,13 +84,14 @@ class RightOfWay:
         *,
         name: str,
         length: float,
+        gap: float,
         fastest: float,
         critical_gap: float | None = None,
         follow_up_gap: float | None = None,
     ) -> None:
         self.junctions = tuple(junctions)
         self._name = name
-        self._length = length
+        self._length, self._room = length, length + gap
         self._fastest = fastest
         self._gap = critical_gap, follow_up_gap
         self._next = 0
@@ -155,7 +157,7 @@ class RightOfWay:
         for place in self.junctions[self._next :]:
             if place.entry < front:
                 continue
-            blocked = leaves_no_room(leader, place.entry, place.exit, self._length)
+            blocked = leaves_no_room(leader, place.entry, place.exit, self._room)
             if blocked and needed_braking(speed, place.entry - front) <= HARDEST:
                 stop = min(stop, max(place.entry - STOP_BEFORE, min(front, place.entry)))
             break

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 
 from giveway.ego.crossings import Crossings
+from giveway.ego.giving_way import at_rest
 from giveway.ego.leader import Leader
 from giveway.ego.lights import Lights
 from giveway.ego.merges import Merges
@@ -86,6 +87,7 @@ class WayAhead:
         place, cause = math.inf, ""
         if self._lights is not None:
             place, cause = self._lights.stop_at(front, speed), "light"
+            leader = at_rest(leader, place)
         if self.stops is not None:
             place, cause = min((place, cause), (self.stops.stop_at(front, speed), "stop"))
         if self._crossings is not None:

@@ -35,7 +35,7 @@ def crossings(zebra=True, light="", kerb_distance=1.5, kerb_time=0.0):
     path = EgoPath.through([(0.0, LANE), (60.0, LANE)])
     found = crossings_on(path, SHAPE, [crossing])
     near = {"kerb_distance": kerb_distance, "kerb_time": kerb_time}
-    watched = Crossings(found, length=SHAPE.length, **near)
+    watched = Crossings(found, length=SHAPE.length, gap=1.0, **near)
     if light:
         watched.update({"tls": light})
     return watched
@@ -200,7 +200,8 @@ def test_who_waits_before_two_crossings_for_the_second_one_stays_as_sure():
     path = EgoPath.through([(0.0, LANE), (60.0, LANE)])
     found = crossings_on(path, SHAPE, both)
     waiting, fresh = (
-        Crossings(found, length=SHAPE.length, kerb_distance=1.5, kerb_time=2.5) for _ in range(2)
+        Crossings(found, length=SHAPE.length, gap=1.0, kerb_distance=1.5, kerb_time=2.5)
+        for _ in range(2)
     )
     later = walker(SOUTHERN_KERB - 3.0 * 1.4, x=28.0)
     assert fresh.stop_at(LINE, 0.0, later) == math.inf

@@ -58,7 +58,7 @@ class Drive:
     """An ego that looks at a junction step by step."""
 
     def __init__(self, place: PathJunction, **options: Any) -> None:
-        self.keeps = RightOfWay([place], name="ego", length=5.0, fastest=8.0, **options)
+        self.keeps = RightOfWay([place], name="ego", length=5.0, gap=1.0, fastest=8.0, **options)
         self.time = 0.0
 
     def stop(
