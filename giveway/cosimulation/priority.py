@@ -3,24 +3,27 @@
 SUMO's drivers look for vehicles that approach a junction on a lane. An ego that is moved from
 outside is not reliably one of them (SUMO issues 6140, 6152, 10952), so that a car from a side road
 would drive into its way. Therefore those that have to give way to it, by the network's ``request``
-rows and the running light, stop at their line until it has gone.
+rows and the running light, stop at their line until it has gone; or where they are in the junction
+already, before their ways cross.
 """
 
 from collections.abc import Mapping
 
 from giveway.ego.ego import Ego
 from giveway.ego.gaps import travel_time
-from giveway.ego.giving_way import AFTER, BEFORE, HARDEST, USUAL_SPEED
+from giveway.ego.giving_way import AFTER, BEFORE, HARDEST, USUAL_SPEED, needed_braking
 from giveway.ego.junctions import PathJunction
 from giveway.ego.lights import RED
 from giveway.ego.right_of_way import SIGHT, Approach, Traffic, letter_of
+from giveway.geometry.conflict import Conflict
 
+_BEFORE_CONFLICT = 1.0  # [m] before the ego's way who is in the junction is to stand
 _PULL_AWAY = 2.0  # [m/s^2] of those that have to wait, if they did not
 _COMING, _LEAVING = 1.5, 1.0  # [m/s^2] of the ego
 
 
 def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[str, float]:
-    """The room [m] up to their lines of those that have to wait there for an ego, by their names.
+    """The room [m] that those have who have to wait for an ego, by their names.
 
     Args:
         ego: on the road.
@@ -37,21 +40,30 @@ def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[
         if not inside and (ego.way.stop <= place.entry or letter in RED):
             continue  # it waits itself
         for other in traffic.get(place.movement.junction, ()):
-            if other.name == ego.id or other.distance <= 0.0:
+            where = place.conflicts.get(other.number)
+            if other.name == ego.id or where is None or (inside and ego.way.stop <= where.enter):
                 continue
-            needed = other.speed**2 / (2.0 * other.distance)
-            if needed <= HARDEST and _gives_way(place, other, inside, states, ego):
-                found[other.name] = min(other.distance, found.get(other.name, other.distance))
+            room = other.distance
+            if room <= 0.0:  # it is in the junction
+                room += where.other_enter - _BEFORE_CONFLICT
+            if room <= 0.0 or needed_braking(other.speed, room) > HARDEST:
+                continue
+            if _gives_way(place, where, other, inside, states, ego):
+                found[other.name] = min(room, found.get(other.name, room))
     return found
 
 
 def _gives_way(
-    place: PathJunction, other: Approach, inside: bool, states: Mapping[str, str], ego: Ego
+    place: PathJunction,
+    where: Conflict,
+    other: Approach,
+    inside: bool,
+    states: Mapping[str, str],
+    ego: Ego,
 ) -> bool:
     """Whether somebody has to let the ego go first, and the two would meet."""
-    where = place.conflicts.get(other.number)
     movement = place.movements[other.number]
-    if where is None or ego.front - ego.shape.length > where.leave:
+    if ego.front - ego.shape.length > where.leave:
         return False
     its = letter_of(movement, states)
     named = place.movement.number in movement.yields_to

@@ -59,6 +59,10 @@ def test_who_would_meet_it_waits() -> None:
     assert rooms(ego(40.0, 8.0), other()) == {"car": 6.0}
 
 
+def test_who_is_in_the_junction_waits_before_their_ways_cross() -> None:
+    assert rooms(ego(40.0, 8.0), other(-1.0)) == {"car": 2.0}
+
+
 @pytest.mark.parametrize(
     ("which", "car"),
     [
@@ -67,7 +71,9 @@ def test_who_would_meet_it_waits() -> None:
         (ego(40.0, 8.0, stop=49.0), other()),  # it waits itself
         (ego(40.0, 8.0, its=()), other()),  # the car need not let it go first
         (ego(40.0, 8.0), other(2.0, 6.0)),  # the car cannot stop any more
-        (ego(40.0, 8.0), other(-1.0)),  # the car is in the junction
+        (ego(40.0, 8.0), other(-3.5)),  # the car is in its way already
+        (ego(40.0, 8.0), other(-1.0, 5.0)),  # or cannot stop before it is
+        (ego(52.0, 0.5, stop=54.0), other()),  # it waits itself, inside the junction
         (ego(40.0, 8.0), other(40.0, 3.0)),  # the car comes long after it
         (ego(5.0, 3.0), other(3.0, 6.0)),  # the car is away long before it
     ],
