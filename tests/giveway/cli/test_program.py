@@ -48,7 +48,7 @@ main(["studies"])
     ],
 )
 def test_what_ends_a_command_is_one_line(type_here, monkeypatch, raised, code, line):
-    def end(*_):
+    def end(*_, **__):
         raise raised
 
     monkeypatch.setattr(COMMAND, end)
