@@ -10,7 +10,7 @@ from controller.errors import (
     SolverMissingError,
     SolverSetupError,
 )
-from controller.foresight import Foresight, Manoeuvre, Prospect
+from controller.foresight import Foresight, Manoeuvre, Prospect, Trials, Verdict
 from controller.least_squares import Outcome
 from controller.model import LongitudinalModel
 from controller.mpc import Mpc
@@ -21,6 +21,8 @@ from controller.planning import (
     Planner,
     PlannerParameters,
     PlanningController,
+    add_cost_of_others,
+    own_cost,
 )
 from controller.protocol import Controller, Decision, Observation, PathAhead, People
 from controller.safety import SafeForce, SafetyLayer, SafetyParameters
@@ -60,6 +62,10 @@ __all__ = [
     "SolverSetupError",
     "SpeedController",
     "SpeedReference",
+    "Trials",
     "TunedPid",
     "TunedPidParameters",
+    "Verdict",
+    "add_cost_of_others",
+    "own_cost",
 ]

@@ -15,8 +15,9 @@ class ExactSolver:
 
     A solve starts from the active set of the solve before, made exact, or from an exact solve. The
     solver then only has to confirm that start. Its answer is refined to rounding, and counts only
-    if the optimality conditions hold by our own arithmetic. A fresh instance, or one after
-    :meth:`reset`, gives the same bytes for the same sequence of problems.
+    if the optimality conditions hold by our own arithmetic. A problem that always has a solution
+    is left to the solver only where the exact methods do not end at such an optimum. A fresh
+    instance, or one after :meth:`reset`, gives the same bytes for the same sequence of problems.
 
     Args:
         problem: to be solved; its arrays are changed in place between solves.
@@ -52,7 +53,16 @@ class ExactSolver:
         self._multipliers[:] = 0.0
 
     def solve(self) -> tuple[Outcome, int]:
-        """The outcome for the problem as it is now, and the solver's iterations."""
+        """The outcome for the problem as it is now, and the iterations.
+
+        The solver's, or the corrections of the active set where the solver was not needed.
+        """
+        if self._box is None:
+            corrections = solve_verified(
+                *self._bounds, self._problem.target, self._multipliers, self.solution
+            )
+            if corrections >= 0:
+                return Outcome.SOLVED, corrections
         if not self._start():
             return Outcome.CERTIFIED, 0
         outcome, iterations = self._backend.solve(self.solution, self._multipliers)
@@ -88,6 +98,30 @@ class ExactSolver:
         if self._box is None:
             return False
         return certifies_infeasibility(*self._bounds, *self._box, self._multipliers)
+
+
+@kernel
+def solve_verified(
+    rows: Array,
+    lower: Array,
+    upper: Array,
+    target: Array,
+    multipliers: Array,
+    solution: Array,
+) -> int:
+    """Minimise |V - target|^2 exactly from the multipliers of a similar problem.
+
+    Returns:
+        The corrections or iterations, or -1 unless the optimality conditions hold.
+    """
+    corrections = refine(rows, lower, upper, target, multipliers, solution)
+    if corrections >= 0:
+        return corrections
+    iterations = solve_exactly(rows, lower, upper, target, multipliers, solution)
+    if iterations < 0 or refine(rows, lower, upper, target, multipliers, solution) < 0:
+        multipliers[:] = 0.0
+        return -1
+    return iterations
 
 
 @kernel

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -30,6 +30,32 @@ class Manoeuvre:
         return cls(np.zeros(horizon + 1), np.zeros(horizon + 1), np.zeros(horizon + 1))
 
 
+class Trials(NamedTuple):
+    """Manoeuvres that are compared: a row for each, the last of them what was planned before.
+
+    Attributes:
+        distance: (k, N + 1) [m] driven from now on.
+        speed: (k, N + 1) [m/s].
+        acceleration: (k, N + 1) [m/s^2].
+        handicap: (k,) [s] that each pays in addition to what it costs.
+    """
+
+    distance: Array
+    speed: Array
+    acceleration: Array
+    handicap: Array
+
+    @classmethod
+    def empty(cls, count: int, horizon: int, handicap: Array) -> Self:
+        """Room for ``count`` manoeuvres of N steps."""
+        distance, speed, acceleration = np.zeros((3, count, horizon + 1))
+        return cls(distance, speed, acceleration, handicap)
+
+    def of(self, k: int) -> tuple[Array, Array, Array]:
+        """Distance, speed and acceleration of one of them."""
+        return self.distance[k], self.speed[k], self.acceleration[k]
+
+
 class Prospect(NamedTuple):
     """What a manoeuvre would lead to: arrays over steps 1 ... N, overwritten by the next one.
 
@@ -53,3 +79,45 @@ class Foresight(Protocol):
 
     def prefer(self) -> None:
         """The latest manoeuvre is the best so far: remember what it would lead to."""
+
+
+class Verdict(NamedTuple):
+    """What a race between manoeuvres came to.
+
+    Attributes:
+        best: the row of the cheapest; -1: no cost is a number.
+        cost: of it [s], its handicap included.
+        missing: the longest stopping distance that it lacks [m].
+        clear: nobody is in the way of the manoeuvre that was asked for, which then is the best.
+        prospect: what it would lead to; overwritten by the next race.
+    """
+
+    best: int
+    cost: float
+    missing: float
+    clear: bool
+    prospect: Prospect
+
+
+class RacingForesight(Foresight, Protocol):
+    """A foresight that compares manoeuvres itself, and looks no farther than it takes."""
+
+    def race(
+        self,
+        trials: Trials,
+        entrants: list[int],
+        known: bool,
+        lead: bool,
+        allowed: Array,
+        weights: tuple[Any, ...],
+    ) -> Verdict:
+        """The cheapest of some manoeuvres: the same as by asking for the prospect of each.
+
+        Args:
+            trials: all manoeuvres.
+            entrants: the rows of those that are compared. Of equal ones the first is the best.
+            known: the first of them is the best of the race before, and the crowd is the same.
+            lead: ask first whether anybody is in the way of the first one.
+            allowed: (N,) [m] that may be driven until steps 1 ... N.
+            weights: the numbers of the cost.
+        """

@@ -12,7 +12,7 @@ from pedestrian_model.errors import (
 from pedestrian_model.influence import vehicle_influence
 from pedestrian_model.model import LONGEST_STEP, CrowdModel, arrived, require_steady
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
-from pedestrian_model.prediction import Predictor
+from pedestrian_model.prediction import Predictor, start, tread
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
 from pedestrian_model.targets import remaining_distance, targets
 from pedestrian_model.vehicles import Vehicles
@@ -39,6 +39,8 @@ __all__ = [
     "arrived",
     "remaining_distance",
     "require_steady",
+    "start",
     "targets",
+    "tread",
     "vehicle_influence",
 ]

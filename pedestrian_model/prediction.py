@@ -54,7 +54,8 @@ class Predictor:
         self.cell_list_from = int(cell_list_from)
         self._substeps = substeps(self.time_step)
         self._dt = self.time_step / self._substeps
-        self._constants = pack(parameters, detour=detour, creep=creep)
+        constants = pack(parameters, detour=detour, creep=creep)
+        self.law = (constants, self._dt, self._substeps, self.cell_list_from)
         self._workspace = Workspace()
         self._capacity = -1
         self._reserve(0)
@@ -92,8 +93,6 @@ class Predictor:
             DivergenceError: if a pedestrian's state is or becomes not finite.
             SurroundingsError: if a way-point's signal is not one of the surroundings.
         """
-        if crowd.signals > surroundings.closed.shape[0]:
-            raise unknown_signal(crowd, surroundings)
         shape, flags = vehicles_trajectory.shape, vehicles_trajectory.flags
         if len(shape) != 3 or shape[0] != self.horizon or shape[2] != 7:
             raise VehicleError(
@@ -101,24 +100,71 @@ class Predictor:
             )
         if not flags.c_contiguous or vehicles_trajectory.dtype != np.float64:
             raise VehicleError("vehicles_trajectory is expected to be C-contiguous float64")
+        bad = _predict(self.arrays(crowd, surroundings), vehicles_trajectory, *self.law, self._out)
+        if bad != FINE:
+            raise self.divergence(crowd, bad)
+        return self._out
+
+    def arrays(self, crowd: Crowd, surroundings: Surroundings) -> Arrays:
+        """What :func:`tread` takes; the last three hold the state of whoever calls it.
+
+        Raises:
+            SurroundingsError: if a way-point's signal is not one of the surroundings.
+        """
+        if crowd.signals > surroundings.closed.shape[0]:
+            raise unknown_signal(crowd, surroundings)
         if crowd.position.shape[0] != self._out.shape[1]:
             self._reserve(crowd.position.shape[0])
-        bad = _predict(
-            (*crowd.state, *crowd.wishes, *surroundings.arrays, *self._workspace.arrays),
-            vehicles_trajectory,
-            self._constants,
-            self._dt,
-            self._substeps,
-            self.cell_list_from,
-            self._state,
-            self._out,
+        scratch = self._workspace.arrays
+        return (*crowd.state, *crowd.wishes, *surroundings.arrays, *scratch, *self._state)
+
+    @staticmethod
+    def divergence(crowd: Crowd, bad: int) -> DivergenceError:
+        """The error that says whose state a step has made infinite."""
+        return DivergenceError(
+            f"pedestrian {bad}: the predicted state is not finite; check its present position "
+            f"{crowd.position[bad]} m, velocity {crowd.velocity[bad]} m/s and the vehicles"
         )
-        if bad != FINE:
-            raise DivergenceError(
-                f"pedestrian {bad}: the predicted state is not finite; check its present position "
-                f"{crowd.position[bad]} m, velocity {crowd.velocity[bad]} m/s and the vehicles"
-            )
-        return self._out
+
+
+@kernel
+def tread(
+    arrays: Arrays,
+    vehicles: NDArray[np.float64],
+    constants: NDArray[Any],
+    dt: float,
+    substeps: int,
+    cell_list_from: int,
+) -> int:
+    """One step of a prediction, in place: the last three of the arrays are the state.
+
+    For those who predict step by step; the numbers are a predictor's ``law``.
+
+    Args:
+        arrays: those of :meth:`Predictor.arrays`.
+        vehicles: (m, 7) at the step's begin.
+        constants: of the model.
+        dt: [s] of a sub-step.
+        substeps: of the step.
+        cell_list_from: the crowd size from which neighbours are found by a cell list.
+
+    Returns:
+        ``FINE``, or the index of a pedestrian whose state is not finite.
+    """
+    _, scene, scratch = parts(arrays[:-3])
+    ahead = State(*arrays[-3:])
+    return march(ahead, scene, vehicles, scratch, constants, dt, substeps, cell_list_from)
+
+
+@kernel
+def start(arrays: Arrays) -> None:
+    """Set the state that :func:`tread` changes to the present one."""
+    position, velocity, waypoint_index = arrays[:3]
+    x, v, index = arrays[-3:]
+    for i in range(position.shape[0]):
+        x[i, 0], x[i, 1] = position[i, 0], position[i, 1]
+        v[i, 0], v[i, 1] = velocity[i, 0], velocity[i, 1]
+        index[i] = waypoint_index[i]
 
 
 @kernel
@@ -129,25 +175,18 @@ def _predict(
     dt: float,
     substeps: int,
     cell_list_from: int,
-    own: Arrays,
     out: NDArray[np.float64],
 ) -> int:
     """Fill ``out`` (N, n, 2) with the positions of the next N steps; the state stays as it is.
 
-    As the kernel of ``CrowdModel.advance``, with ``vehicles`` (N, m, 7), and in ``own`` other State
-    arrays to fill.
+    As :func:`tread`, with ``vehicles`` (N, m, 7).
     """
-    state, scene, scratch = parts(arrays)
-    ahead = State(*own)
-    n, x, v = state.position.shape[0], ahead.position, ahead.velocity
-    for i in range(n):
-        x[i, 0], x[i, 1] = state.position[i, 0], state.position[i, 1]
-        v[i, 0], v[i, 1] = state.velocity[i, 0], state.velocity[i, 1]
-        ahead.waypoint_index[i] = state.waypoint_index[i]
+    start(arrays)
+    x = arrays[-3]
     for k in range(out.shape[0]):
-        insane = march(ahead, scene, vehicles[k], scratch, constants, dt, substeps, cell_list_from)
+        insane = tread(arrays, vehicles[k], constants, dt, substeps, cell_list_from)
         if insane != FINE:
             return insane
-        for i in range(n):
+        for i in range(out.shape[1]):
             out[k, i, 0], out[k, i, 1] = x[i, 0], x[i, 1]
     return FINE

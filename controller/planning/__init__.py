@@ -1,6 +1,15 @@
 """The planning MPC: a search over manoeuvres, and a QP that smooths the one chosen."""
 
+from controller.planning.costs import add_cost_of_others, own_cost
 from controller.planning.parameters import ManoeuvreParameters, PlannerParameters
 from controller.planning.planner import Plan, Planner, PlanningController
 
-__all__ = ["ManoeuvreParameters", "Plan", "Planner", "PlannerParameters", "PlanningController"]
+__all__ = [
+    "ManoeuvreParameters",
+    "Plan",
+    "Planner",
+    "PlannerParameters",
+    "PlanningController",
+    "add_cost_of_others",
+    "own_cost",
+]

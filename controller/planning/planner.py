@@ -15,8 +15,9 @@ from controller.exact_solver import ExactSolver
 from controller.foresight import Foresight, Manoeuvre
 from controller.least_squares import Outcome
 from controller.model import LongitudinalModel
+from controller.planning.costs import corridor
 from controller.planning.parameters import PlannerParameters
-from controller.planning.search import Search, copy, corridor
+from controller.planning.search import Search, copy
 from controller.planning.smoothing import SmoothingProblem, unfold
 from controller.protocol import Decision, Observation
 from controller.tuned_pid import TunedPid

@@ -8,18 +8,17 @@ crowd would move under it.
 """
 
 from math import inf
-from typing import Any
 
 import numpy as np
 
-from controller._jit import Array, kernel
-from controller.foresight import Foresight, Manoeuvre
+from controller._jit import Array
+from controller.foresight import Foresight, Manoeuvre, Prospect, Trials
 from controller.model import LongitudinalModel
+from controller.planning.costs import cost, stopping_need
+from controller.planning.motions import aim, shift
 from controller.planning.parameters import PlannerParameters, Weights
 
-_EASING = 0.4  # [s] in which an acceleration is taken back before standstill or the wanted speed
-_SLOWING = 3.0  # [m/s^2] with which a speed above the wanted one is given up: as adaptive cruise
-# control does at most (ISO 15622: 3.5 m/s^2 at speed); obstacles have harder manoeuvres
+_DRIVE_ON = 0  # its place among the trials; what was planned is the last
 _WORSE = 1e-6  # [m] by which a smoothed plan may come closer than the manoeuvre it follows
 
 
@@ -43,7 +42,7 @@ class Search:
         gap: (N,) [m] what it would lead to, as in :class:`Prospect`.
         conflicts: (N,) persons, likewise.
         calm: (N,) [m/s], likewise.
-        tried: manoeuvres that the crowd was predicted under.
+        tried: manoeuvres that were compared.
     """
 
     def __init__(self, model: LongitudinalModel, parameters: PlannerParameters) -> None:
@@ -54,7 +53,16 @@ class Search:
         self._kinds = [
             (a, share * v_r) for a, share in zip(m.accelerations, m.slowest, strict=True)
         ]
-        self._last, self._trial, self.best = (Manoeuvre.empty(N) for _ in range(3))
+        self._names = [
+            "drive on" if a > 0.0 else f"{a:+g} m/s^2 to {least:g} m/s" for a, least in self._kinds
+        ]
+        self._names.append("as planned")
+        self._last, self.best = Manoeuvre.empty(N), Manoeuvre.empty(N)
+        count = len(self._names)
+        handicap = np.full(count, m.persistence)
+        self._as_planned = count - 1
+        handicap[self._as_planned] = 0.0
+        self._trials = Trials.empty(count, N, handicap)
         self.gap, self.conflicts, self.calm = np.full(N, inf), np.zeros(N), np.full(N, inf)
         self._free, self._nobody = np.full(N, inf), np.zeros(N)
         self.reset()
@@ -88,33 +96,28 @@ class Search:
         changes slowly: besides the plan, driving on and one of the others are tried by turns, so
         that the search stays as quick as the loop.
         """
-        persistence = self._manoeuvres.persistence
         kinds = self._kinds
-        others = [(a, least) for a, least in kinds[1:] if a >= 0.0 or speed > least]
-        self._lowest, self._missing, self.tried = inf, inf, 0
-        name = ""
+        others = [k for k, (a, least) in enumerate(kinds) if k and (a >= 0.0 or speed > least)]
+        self._begin()
         self._turn += 1
         drive_on = not self._planned or self._drives_on or self._turn % 2 == 1
         if drive_on:
-            self._aim(speed, before, *kinds[0], fastest)
-            name = "drive on"
-            if self._try(allowed, foresight, persistence) <= 0.0:
-                self._drives_on = True
-                return "clear"
+            self._aim(_DRIVE_ON, speed, before, fastest)
         if self._planned:
             self._shift(speed)
-            self._try(allowed, foresight, 0.0)
-            if self._is_best:
-                name = "as planned"
+        first = ([_DRIVE_ON] if drive_on else []) + ([self._as_planned] if self._planned else [])
+        if self._compare(first, drive_on, allowed, foresight):
+            self._drives_on = True
+            return "clear"
         if self._planned and self._missing <= 0.0:
             others = [] if self._turn % 2 else [others[self._turn // 2 % len(others)]]
         elif not drive_on:
-            others = [kinds[0], *others]
-        for wanted, least in others:
-            self._aim(speed, before, wanted, least, fastest)
-            self._try(allowed, foresight, persistence)
-            if self._is_best:
-                name = "drive on" if wanted > 0.0 else f"{wanted:+g} m/s^2 to {least:g} m/s"
+            others = [_DRIVE_ON, *others]
+        if others:
+            for kind in others:
+                self._aim(kind, speed, before, fastest)
+            self._compare(others, False, allowed, foresight)
+        name = self._names[self._best]
         self._drives_on = name == "drive on"
         return name
 
@@ -127,54 +130,83 @@ class Search:
         foresight: Foresight | None,
     ) -> str:
         """Without a search: the crowd answers to the last plan, the plan keeps d_safe."""
-        self._lowest, self._missing, self.tried = inf, inf, 0
+        self._begin()
         if self._planned:
             self._shift(speed)
         else:
-            self._aim(speed, before, 0.0, 0.0, fastest)
-        disturbed = self._try(allowed, foresight, 0.0)
-        return "clear" if disturbed <= 0.0 else "as planned"
+            aim(speed, before, 0.0, 0.0, fastest, *self._limits, *self._trials.of(self._as_planned))
+        clear = self._compare([self._as_planned], True, allowed, foresight)
+        return "clear" if clear else "as planned"
 
-    def _aim(
-        self, speed: float, before: float, wanted: float, slowest: float, fastest: float
-    ) -> None:
-        trial, jerk = self._trial, self._manoeuvres.jerk
-        dt = self._time_step
-        to = (trial.distance, trial.speed, trial.acceleration)
-        aim(speed, before, wanted, slowest, fastest, jerk, dt, *to)
+    @property
+    def _limits(self) -> tuple[float, float]:
+        return self._manoeuvres.jerk, self._time_step
+
+    def _begin(self) -> None:
+        """Forget the comparisons of the step before."""
+        self._lowest, self._missing, self.tried, self._best = inf, inf, 0, _DRIVE_ON
+
+    def _aim(self, kind: int, speed: float, before: float, fastest: float) -> None:
+        goal = (*self._kinds[kind], fastest)
+        aim(speed, before, *goal, *self._limits, *self._trials.of(kind))
 
     def _shift(self, speed: float) -> None:
-        trial, b = self._trial, self._manoeuvres.deceleration
-        copy(self._last, trial)
-        to = (trial.distance, trial.speed, trial.acceleration)
-        shift(speed, self._holds, b, self._time_step, *to)
+        trial, b = self._trials.of(self._as_planned), self._manoeuvres.deceleration
+        trial[0][:], trial[1][:] = self._last.distance, self._last.speed
+        shift(speed, self._holds, b, self._time_step, *trial)
 
-    def _try(self, allowed: Array, foresight: Foresight | None, handicap: float) -> float:
-        """Judge the trial, and keep it if it is the best; what others cost it [s]."""
-        trial = self._trial
-        gap, conflicts, calm = self._free, self._nobody, self._free
-        if foresight is not None:
-            gap, conflicts, calm = foresight.prospect(trial)
-            self.tried += 1
-        whole, disturbed, missing = cost(
-            trial.distance,
-            trial.speed,
-            trial.acceleration,
-            gap,
-            conflicts,
-            calm,
-            allowed,
-            self._time_step,
-            self.weights,
-        )
-        self._is_best = whole + handicap < self._lowest
-        if self._is_best:
-            self._lowest, self._missing = whole + handicap, missing
-            copy(trial, self.best)
-            self.gap[:], self.conflicts[:], self.calm[:] = gap, conflicts, calm
+    def _compare(
+        self, trials: list[int], lead: bool, allowed: Array, foresight: Foresight | None
+    ) -> bool:
+        """Compare some more of the trials with the best so far; the cheapest becomes the best.
+
+        Args:
+            trials: which ones; of equal ones the first counts.
+            lead: ask first whether anybody is in the way of the first one.
+            allowed: (N,) [m] that may be driven.
+            foresight: of the crowd, or None.
+
+        Returns:
+            Whether it was asked for and nobody is; then that one is the best.
+        """
+        self.tried += len(trials)
+        race = getattr(foresight, "race", None)
+        if race is None:
+            return self._one_by_one(trials, lead, allowed, foresight)
+        known = self.tried > len(trials)
+        entrants = [self._best, *trials] if known else trials
+        verdict = race(self._trials, entrants, known, lead, allowed, self.weights)
+        if verdict.best >= 0 and not (known and verdict.best == self._best):
+            self._best, self._lowest, self._missing = verdict.best, verdict.cost, verdict.missing
+            self._take(verdict.best, verdict.prospect)
+        return lead and bool(verdict.clear)
+
+    def _one_by_one(
+        self, trials: list[int], lead: bool, allowed: Array, foresight: Foresight | None
+    ) -> bool:
+        """Judge each of the trials to its end, whatever model people are believed to walk by."""
+        for trial in trials:
+            manoeuvre = self._trials.of(trial)
+            prospect = Prospect(self._free, self._nobody, self._free)
             if foresight is not None:
-                foresight.prefer()
-        return disturbed
+                prospect = foresight.prospect(Manoeuvre(*manoeuvre))
+            whole, disturbed, missing = cost(
+                *manoeuvre, *prospect, allowed, self._time_step, self.weights
+            )
+            whole += self._trials.handicap[trial]
+            if whole < self._lowest:
+                self._best, self._lowest, self._missing = trial, whole, missing
+                self._take(trial, prospect)
+                if foresight is not None:
+                    foresight.prefer()
+            if lead and trial == trials[0] and disturbed <= 0.0:
+                return True
+        return False
+
+    def _take(self, trial: int, prospect: Prospect) -> None:
+        """Keep the best manoeuvre and what it would lead to."""
+        copy(Manoeuvre(*self._trials.of(trial)), self.best)
+        self.gap[:], self.conflicts[:], self.calm[:] = prospect
 
     def comes_closer(self, plan: Manoeuvre, allowed: Array) -> bool:
         """Whether a plan lacks more stopping distance to anybody than the manoeuvre does."""
@@ -196,166 +228,3 @@ class Search:
         v = plan.speed[-1]
         gap = self.gap[-1] + self.best.distance[-1] - plan.distance[-1]
         return bool(gap - self._time_step * v >= stopping_need(v, self._weights))
-
-
-@kernel
-def aim(
-    speed: float,
-    before: float,
-    wanted: float,
-    slowest: float,
-    fastest: float,
-    jerk: float,
-    time_step: float,
-    distance: Array,
-    speeds: Array,
-    accelerations: Array,
-) -> None:
-    """Fill a manoeuvre that goes over to the acceleration ``wanted``, up to rest or ``fastest``.
-
-    Args:
-        speed: now [m/s].
-        before: the acceleration before [m/s^2].
-        wanted: [m/s^2].
-        slowest: [m/s] where braking ends.
-        fastest: [m/s] not exceeded by driving on.
-        jerk: [m/s^3] of changes.
-        time_step: [s].
-        distance: (N + 1,) [m] receives the manoeuvre.
-        speeds: (N + 1,) [m/s] likewise.
-        accelerations: (N + 1,) [m/s^2] likewise.
-    """
-    s, v, a = 0.0, speed, before
-    most = jerk * time_step
-    for i in range(len(speeds)):
-        distance[i], speeds[i] = s, v
-        if wanted > 0.0 or v > fastest:
-            goal = min(wanted, max((fastest - v) / _EASING, -_SLOWING))
-        else:
-            goal = max(wanted, min(0.0, (slowest - v) / _EASING))
-        a += min(max(goal - a, -most), most)
-        after = max(v + time_step * a, 0.0)
-        if after > fastest:
-            after = max(fastest, min(after, v))
-        accelerations[i] = (after - v) / time_step
-        s += time_step * v
-        v = after
-
-
-@kernel
-def shift(
-    speed: float,
-    holds: bool,
-    deceleration: float,
-    time_step: float,
-    distance: Array,
-    speeds: Array,
-    accelerations: Array,
-) -> None:
-    """Move a plan on by one step, in place: what it had planned for then is now.
-
-    Args:
-        speed: now [m/s]; where it differs from what was planned, it counts.
-        holds: the last speed is kept beyond the former horizon; else it is braked.
-        deceleration: b [m/s^2] of that.
-        time_step: [s].
-        distance: (N + 1,) [m] of the plan.
-        speeds: (N + 1,) [m/s].
-        accelerations: (N + 1,) [m/s^2].
-    """
-    N = len(speeds) - 1
-    for i in range(N):
-        speeds[i] = speeds[i + 1]
-    if not holds:
-        speeds[N] = max(0.0, speeds[N] - deceleration * time_step)
-    speeds[0] = speed
-    distance[0] = 0.0
-    for i in range(N):
-        distance[i + 1] = distance[i] + time_step * speeds[i]
-        accelerations[i] = (speeds[i + 1] - speeds[i]) / time_step
-    accelerations[N] = 0.0
-
-
-@kernel
-def stopping_need(speed: float, w: Weights) -> float:
-    """The distance [m] to somebody in front from which a comfortable stop is possible."""
-    need = w.minimum_distance + w.headway * speed
-    if w.terminal:
-        need += speed * speed / (2.0 * w.deceleration)
-    return need
-
-
-@kernel
-def cost(
-    distance: Array,
-    speeds: Array,
-    accelerations: Array,
-    gap: Array,
-    conflicts: Array,
-    calm: Array,
-    allowed: Array,
-    time_step: float,
-    weights: tuple[Any, ...],
-) -> tuple[float, float, float]:
-    """What a manoeuvre costs [s].
-
-    Args:
-        distance: (N + 1,) [m] of the manoeuvre.
-        speeds: (N + 1,) [m/s].
-        accelerations: (N + 1,) [m/s^2].
-        gap: (N,) [m] to the closest person in front at steps 1 ... N.
-        conflicts: (N,) persons.
-        calm: (N,) [m/s].
-        allowed: (N,) [m] that may be driven until then: vehicles, lights.
-        time_step: [s].
-        weights: the numbers of :class:`Weights`.
-
-    Returns:
-        The whole cost; the part of it that other people and vehicles cause; the longest missing
-        stopping distance [m].
-    """
-    w, N = Weights(*weights), len(gap)
-    own, others, missing = 0.0, 0.0, 0.0
-    for i in range(N):
-        v = speeds[i + 1]
-        share = v / w.reference_speed
-        own += w.time * max(0.0, 1.0 - share) + w.acceleration * accelerations[i] ** 2
-        others += w.conflict * conflicts[i]
-        others += w.threat * max(0.0, v - calm[i]) / w.reference_speed
-        if gap[i] < w.safe_distance:
-            others += w.nearness * (1.0 - max(gap[i], 0.0) / w.safe_distance) * share
-            lacking = stopping_need(v, w) - gap[i]
-            if lacking > 0.0 and v > 0.0:
-                others += w.closeness * lacking * share
-                missing = max(missing, lacking)
-        beyond = distance[i + 1] - allowed[i]
-        if beyond > 0.0:
-            others += w.closeness * beyond
-            missing = max(missing, beyond)
-    own = time_step * own + w.final * max(0.0, 1.0 - speeds[N] / w.reference_speed)
-    return own + time_step * others, time_step * others, missing
-
-
-@kernel
-def corridor(
-    distance: Array,
-    speeds: Array,
-    gap: Array,
-    allowed: Array,
-    chosen: bool,
-    weights: tuple[Any, ...],
-    room: Array,
-) -> None:
-    """Fill ``room`` (N,) [m]: how far a plan may have driven at steps 1 ... N.
-
-    Behind everybody who is in front of the manoeuvre then: with the stopping distance of its own
-    speed where it was chosen by what it leads to, and never less than itself; else with d_safe.
-    """
-    w = Weights(*weights)
-    for i in range(len(gap)):
-        station = distance[i + 1] + gap[i]
-        if chosen:
-            room[i] = max(station - stopping_need(speeds[i + 1], w), distance[i + 1])
-        else:
-            room[i] = station - w.safe_distance
-        room[i] = min(room[i], allowed[i])

@@ -1,33 +1,19 @@
 """What a manoeuvre would lead to: the crowd predicted under it, as seen from the ego."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from controller import Manoeuvre, Prospect
-from giveway.ego.corridor import closest_in_front, fill_poses
-from giveway.ego.threats import Alarm, conflicts_and_calm
+from controller import Manoeuvre, Prospect, Trials, Verdict
+from giveway.ego.corridor import fill_poses
+from giveway.ego.prospects import View, assess
+from giveway.ego.race import Lanes, run_race
+from giveway.ego.threats import Alarm
 from giveway.geometry.bodies import VehicleShape
-from giveway.geometry.kernel import Array, kernel
-from giveway.geometry.passage import window
-from giveway.geometry.path import EgoPath, body_pose, segment_at
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath
 from giveway.metrics.conflicts import CRITICAL_TTC
 from pedestrian_model import Crowd, Predictor, Surroundings
-
-PASSED = 0.3  # [m] behind the front bumper pedestrians still count as in front, being squeezed by
-_EVERY = 2  # steps from one search for conflicts to the next
-
-
-class View(NamedTuple):
-    """The ego's body and how it looks ahead, as the kernel takes it."""
-
-    length: float  # of the body [m]
-    width: float  # [m]
-    half_width: float  # of the corridor [m]
-    growth: float  # of it with the look-ahead, on each side [m/s]
-    conflict_time: float  # time to collision of a conflict [s]
-    time_step: float  # [s]
-
 
 class CrowdForesight:
     """Predicts the crowd under one manoeuvre after the other.
@@ -88,6 +74,10 @@ class CrowdForesight:
         self._best = np.empty((N, 0, 2))
         self._poses = np.empty((N, 0, 7))
         self._copied, self._stale, self._preferred = False, True, False
+        self._winner: Array | None = None
+        self._lanes: Lanes | None = None
+        # Under one speed for all there is one prediction for all: there is nothing to save.
+        self.race = self._race if planned_speed else None
 
     def look(
         self,
@@ -111,10 +101,13 @@ class CrowdForesight:
         self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front, self._now = poses, row, front, speed
         self._copied, self._stale, self._preferred = False, True, False
+        self._winner = None
 
     @property
     def best(self) -> Array | None:
         """(N, n, 2) [m] positions at steps 1 ... N under the preferred manoeuvre, if any was."""
+        if self._winner is not None:
+            return self._winner
         return self._best if self._preferred else None
 
     def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
@@ -142,6 +135,49 @@ class CrowdForesight:
             calm,
         )
         return self._prospect
+
+    def _race(
+        self,
+        trials: Trials,
+        entrants: list[int],
+        known: bool,
+        lead: bool,
+        allowed: Array,
+        weights: tuple[Any, ...],
+    ) -> Verdict:
+        """The cheapest of some manoeuvres, see :class:`controller.foresight.RacingForesight`.
+
+        Raises:
+            DivergenceError: a predicted state is not finite.
+        """
+        if not self._copied:
+            self._copy()
+        path, n = self._path, len(self._pedestrians)
+        lanes = self._lanes
+        if lanes is None or lanes.people < n or lanes.count < len(trials.handicap):
+            lanes = self._lanes = Lanes(len(trials.handicap), len(self._poses), n)
+        best = run_race(
+            (path.vertices, path.stations, path.headings),
+            self._predictor.arrays(self._pedestrians, self._surroundings),
+            self._predictor.law,
+            self._poses,
+            self._row,
+            self._front,
+            self._view,
+            self._alarm,
+            tuple(trials),
+            lanes.arrays,
+            lanes.order(entrants),
+            known,
+            lead,
+            allowed,
+            weights,
+        )
+        if lanes.bad >= 0:
+            raise self._predictor.divergence(self._pedestrians, lanes.bad)
+        if best >= 0:
+            self._winner = lanes.positions(best, n)
+        return lanes.verdict(best, entrants[0])
 
     def prefer(self) -> None:
         """Keep the positions under the latest manoeuvre as those of the preferred one."""
@@ -176,60 +212,3 @@ class CrowdForesight:
             self._poses = np.empty_like(self._given)
         self._poses[:] = self._given
         self._copied = True
-
-
-@kernel
-def assess(
-    vertices: Array,
-    stations: Array,
-    headings: Array,
-    predicted: Array,
-    front: float,
-    distance: Array,
-    speeds: Array,
-    view: tuple[float, ...],
-    alarm: tuple[Any, ...],
-    gap: Array,
-    conflicts: Array,
-    calm: Array,
-) -> None:
-    """Fill gaps in front, persons on a collision course, and calm speeds at steps 1 ... N.
-
-    Conflicts and calm speeds are found at every second step and held in between. ``view`` and
-    ``alarm`` are the numbers of a :class:`View` and an :class:`Alarm`.
-    """
-    N = predicted.shape[0]
-    v, limits = View(*view), Alarm(*alarm)
-    length, time_step = v.length, v.time_step
-    first, last = window(stations, front, PASSED + length)
-    conflicts[0], calm[0] = 0.0, np.inf
-    for i in range(N):
-        at = front + distance[i + 1]
-        wide = v.half_width + v.growth * (i + 1) * time_step
-        closest, _ = closest_in_front(
-            vertices, stations, first, last, predicted[i], at - PASSED, wide, 0.0
-        )
-        gap[i] = closest - at
-        if i % _EVERY == 0 and i + 1 < N:
-            x, y, heading = body_pose(vertices, stations, headings, at, length)
-            stop = at + speeds[i + 1] * (time_step + speeds[i + 1] / (2.0 * limits.braking))
-            braking_heading = heading
-            if segment_at(stations, at - length) != segment_at(stations, stop) and stop > at:
-                x_s, y_s, _ = body_pose(vertices, stations, headings, stop, 0.0)
-                braking_heading = np.arctan2(y_s - y, x_s - x)
-            conflicts[i], calm[i] = conflicts_and_calm(
-                predicted[i],
-                predicted[i + 1],
-                x,
-                y,
-                heading,
-                braking_heading,
-                speeds[i + 1],
-                length / 2.0,
-                v.width / 2.0,
-                v.conflict_time,
-                time_step,
-                limits,
-            )
-        elif i > 0:
-            conflicts[i], calm[i] = conflicts[i - 1], calm[i - 1]

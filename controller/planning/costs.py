@@ -1,0 +1,134 @@
+"""What a manoeuvre costs, and the corridor that it leaves to a plan."""
+
+from typing import Any
+
+from controller._jit import Array, kernel
+from controller.planning.parameters import Weights
+
+
+@kernel
+def stopping_need(speed: float, w: Weights) -> float:
+    """The distance [m] to somebody in front from which a comfortable stop is possible."""
+    need = w.minimum_distance + w.headway * speed
+    if w.terminal:
+        need += speed * speed / (2.0 * w.deceleration)
+    return need
+
+
+@kernel
+def cost(
+    distance: Array,
+    speeds: Array,
+    accelerations: Array,
+    gap: Array,
+    conflicts: Array,
+    calm: Array,
+    allowed: Array,
+    time_step: float,
+    weights: tuple[Any, ...],
+) -> tuple[float, float, float]:
+    """What a manoeuvre costs [s].
+
+    Args:
+        distance: (N + 1,) [m] of the manoeuvre.
+        speeds: (N + 1,) [m/s].
+        accelerations: (N + 1,) [m/s^2].
+        gap: (N,) [m] to the closest person in front at steps 1 ... N.
+        conflicts: (N,) persons.
+        calm: (N,) [m/s].
+        allowed: (N,) [m] that may be driven until then: vehicles, lights.
+        time_step: [s].
+        weights: the numbers of :class:`Weights`.
+
+    Returns:
+        The whole cost; the part of it that other people and vehicles cause; the longest missing
+        stopping distance [m].
+    """
+    own = own_cost(speeds, accelerations, time_step, weights)
+    others, missing = 0.0, 0.0
+    for i in range(len(gap)):
+        beyond = distance[i + 1] - allowed[i]
+        others, missing = add_cost_of_others(
+            others, missing, speeds[i + 1], gap[i], conflicts[i], calm[i], beyond, weights
+        )
+    return own + time_step * others, time_step * others, missing
+
+
+@kernel
+def own_cost(
+    speeds: Array, accelerations: Array, time_step: float, weights: tuple[Any, ...]
+) -> float:
+    """The part of a manoeuvre's cost [s] that is its own, whoever is about: time and comfort."""
+    w, N = Weights(*weights), len(speeds) - 1
+    own = 0.0
+    for i in range(N):
+        share = speeds[i + 1] / w.reference_speed
+        own += w.time * max(0.0, 1.0 - share) + w.acceleration * accelerations[i] ** 2
+    return time_step * own + w.final * max(0.0, 1.0 - speeds[N] / w.reference_speed)
+
+
+@kernel
+def add_cost_of_others(
+    others: float,
+    missing: float,
+    speed: float,
+    gap: float,
+    conflicts: float,
+    calm: float,
+    beyond: float,
+    weights: tuple[Any, ...],
+) -> tuple[float, float]:
+    """What people and vehicles cost at one step, added to the steps before; it never falls.
+
+    Args:
+        others: the sum so far.
+        missing: the longest missing stopping distance so far [m].
+        speed: of the manoeuvre there [m/s].
+        gap: to the closest person in front [m].
+        conflicts: persons.
+        calm: [m/s].
+        beyond: [m] farther than may be driven.
+        weights: the numbers of :class:`Weights`.
+
+    Returns:
+        The sum and the longest missing stopping distance with this step.
+    """
+    w = Weights(*weights)
+    share = speed / w.reference_speed
+    others += w.conflict * conflicts
+    others += w.threat * max(0.0, speed - calm) / w.reference_speed
+    if gap < w.safe_distance:
+        others += w.nearness * (1.0 - max(gap, 0.0) / w.safe_distance) * share
+        lacking = stopping_need(speed, w) - gap
+        if lacking > 0.0 and speed > 0.0:
+            others += w.closeness * lacking * share
+            missing = max(missing, lacking)
+    if beyond > 0.0:
+        others += w.closeness * beyond
+        missing = max(missing, beyond)
+    return others, missing
+
+
+@kernel
+def corridor(
+    distance: Array,
+    speeds: Array,
+    gap: Array,
+    allowed: Array,
+    chosen: bool,
+    weights: tuple[Any, ...],
+    room: Array,
+) -> None:
+    """Fill ``room`` (N,) [m]: how far a plan may have driven at steps 1 ... N.
+
+    Behind everybody who is in front of the manoeuvre then: with the stopping distance of its own
+    speed where it was chosen by what it leads to, and never less than itself; else with d_safe.
+    """
+    w = Weights(*weights)
+    for i in range(len(gap)):
+        station = distance[i + 1] + gap[i]
+        if chosen:
+            room[i] = max(station - stopping_need(speeds[i + 1], w), distance[i + 1])
+        else:
+            room[i] = station - w.safe_distance
+        room[i] = min(room[i], allowed[i])

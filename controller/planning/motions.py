@@ -1,0 +1,85 @@
+"""How a manoeuvre comes about: an acceleration gone over to, or the last plan moved on."""
+
+from controller._jit import Array, kernel
+
+_EASING = 0.4  # [s] in which an acceleration is taken back before standstill or the wanted speed
+_SLOWING = 3.0  # [m/s^2] with which a speed above the wanted one is given up: as adaptive cruise
+# control does at most (ISO 15622: 3.5 m/s^2 at speed); obstacles have harder manoeuvres
+
+
+@kernel
+def aim(
+    speed: float,
+    before: float,
+    wanted: float,
+    slowest: float,
+    fastest: float,
+    jerk: float,
+    time_step: float,
+    distance: Array,
+    speeds: Array,
+    accelerations: Array,
+) -> None:
+    """Fill a manoeuvre that goes over to the acceleration ``wanted``, up to rest or ``fastest``.
+
+    Args:
+        speed: now [m/s].
+        before: the acceleration before [m/s^2].
+        wanted: [m/s^2].
+        slowest: [m/s] where braking ends.
+        fastest: [m/s] not exceeded by driving on.
+        jerk: [m/s^3] of changes.
+        time_step: [s].
+        distance: (N + 1,) [m] receives the manoeuvre.
+        speeds: (N + 1,) [m/s] likewise.
+        accelerations: (N + 1,) [m/s^2] likewise.
+    """
+    s, v, a = 0.0, speed, before
+    most = jerk * time_step
+    for i in range(len(speeds)):
+        distance[i], speeds[i] = s, v
+        if wanted > 0.0 or v > fastest:
+            goal = min(wanted, max((fastest - v) / _EASING, -_SLOWING))
+        else:
+            goal = max(wanted, min(0.0, (slowest - v) / _EASING))
+        a += min(max(goal - a, -most), most)
+        after = max(v + time_step * a, 0.0)
+        if after > fastest:
+            after = max(fastest, min(after, v))
+        accelerations[i] = (after - v) / time_step
+        s += time_step * v
+        v = after
+
+
+@kernel
+def shift(
+    speed: float,
+    holds: bool,
+    deceleration: float,
+    time_step: float,
+    distance: Array,
+    speeds: Array,
+    accelerations: Array,
+) -> None:
+    """Move a plan on by one step, in place: what it had planned for then is now.
+
+    Args:
+        speed: now [m/s]; where it differs from what was planned, it counts.
+        holds: the last speed is kept beyond the former horizon; else it is braked.
+        deceleration: b [m/s^2] of that.
+        time_step: [s].
+        distance: (N + 1,) [m] of the plan.
+        speeds: (N + 1,) [m/s].
+        accelerations: (N + 1,) [m/s^2].
+    """
+    N = len(speeds) - 1
+    for i in range(N):
+        speeds[i] = speeds[i + 1]
+    if not holds:
+        speeds[N] = max(0.0, speeds[N] - deceleration * time_step)
+    speeds[0] = speed
+    distance[0] = 0.0
+    for i in range(N):
+        distance[i + 1] = distance[i] + time_step * speeds[i]
+        accelerations[i] = (speeds[i + 1] - speeds[i]) / time_step
+    accelerations[N] = 0.0
