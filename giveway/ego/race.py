@@ -38,7 +38,7 @@ class Lanes:
         self._state = np.empty(count * horizon * people * 4)
         self._index = np.empty(count * horizon * people, dtype=np.int64)
         self._prospects = np.zeros((3, count, horizon))  # gap, conflicts, calm
-        self._sums = np.zeros((3, count))  # own cost, of others, missing distance
+        self._sums = np.zeros((4, count))  # own cost, of others, missing distance, the whole
         self._steps = np.zeros((2, count), dtype=np.int64)  # predicted, assessed
         self._alike = np.zeros((count, count), dtype=np.int64)  # steps before they part
         self._entrants = np.zeros(count + 1, dtype=np.int64)
@@ -71,12 +71,12 @@ class Lanes:
 
     def verdict(self, best: int, first: int) -> Verdict:
         """How the race ended."""
-        own, others, missing = self._sums
+        _, others, missing, whole = self._sums
         done = self._steps[1, first] == self._horizon
         prospect = Prospect(*self._prospects[:, best])
         return Verdict(
             int(best),
-            float(own[best] + others[best]),
+            float(whole[best]),
             float(missing[best]),
             bool(done and others[first] <= 0.0),
             prospect,
@@ -138,15 +138,16 @@ def run_race(
         best, least = -1, np.inf
         if ahead:
             best = first
-            if steps[1, first] == N and time_step * sums[1, first] <= 0.0:
-                break
-            if steps[1, first] == N or time_step * sums[1, first] > 0.0:
+            if time_step * sums[1, first] > 0.0:
                 ahead = False
                 continue
+            if steps[1, first] == N:
+                sums[3, first] = sums[0, first] + handicap[first]
+                break
         else:
             for e in range(len(entrants)):
                 k = entrants[e]
-                bound = sums[0, k] + time_step * sums[1, k] + handicap[k]
+                bound = sums[3, k] = sums[0, k] + time_step * sums[1, k] + handicap[k]
                 if bound < least:
                     best, least = k, bound
             if best < 0 or steps[1, best] == N:

@@ -10,6 +10,7 @@ from giveway.geometry.kernel import Array, kernel
 _SLOW = 0.2  # [m/s] the ego is no danger (Yang & Özgüner 2019: a standing vehicle is an obstacle)
 _HALVINGS = 5  # of the interval in which the calm speed is looked for
 _WHOLE = 1e-6  # of a step: so much longer a stop takes no step more
+_ROUNDING = 1e-6  # [m] farther off than could matter: nothing that is left out is a near miss
 _SPARE = 0.05  # [m] kept beyond what the safety layer needs: predictions are a little off
 
 
@@ -60,11 +61,17 @@ def conflicts_and_calm(
         w_x = (there[j, 0] - here[j, 0]) / time_step
         w_y = (there[j, 1] - here[j, 1]) / time_step
         w_x, w_y = to_frame(w_x, w_y, c, s)
-        begin, end = contact_interval(
-            x + half_length, y, w_x - speed, w_y, half_length, half_width, alarm.radius
+        # Who cannot come beside the body, before it or behind it in that time needs no more thought.
+        apart = max(
+            abs(y) - half_width - abs(w_y) * conflict_time,
+            abs(x + half_length) - half_length - abs(w_x - speed) * conflict_time,
         )
-        if end >= 0.0 and begin < conflict_time:
-            conflicts += 1.0
+        if apart <= alarm.radius + _ROUNDING:
+            begin, end = contact_interval(
+                x + half_length, y, w_x - speed, w_y, half_length, half_width, alarm.radius
+            )
+            if end >= 0.0 and begin < conflict_time:
+                conflicts += 1.0
         if not alarm.heeded:
             continue
         if turn != 0.0:
@@ -116,6 +123,14 @@ def is_threat(
         alarm.radius + alarm.clearance, np.sqrt(alarm.radius * alarm.radius + within * within)
     )
     clear += _SPARE
+    # The longest reach, the last instant and the whole way of the front at once: too generous.
+    last = stop * time_step
+    most = clear + 0.5 * alarm.walking_acceleration * last * last + _ROUNDING
+    farthest = speed * (last + time_step) + 0.5 * alarm.braking * time_step * last
+    if max(x - farthest, -x) - abs(w_x) * last > most:
+        return False
+    if abs(y) - half_width - abs(w_y) * last > most:
+        return False
     for i in range(stop + 1):
         t = i * time_step
         braked = min(max(0.0, t - time_step), speed / alarm.braking)
