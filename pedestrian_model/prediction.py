@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pedestrian_model._constants import pack
-from pedestrian_model._jit import kernel
-from pedestrian_model._rows import Arrays, Workspace
-from pedestrian_model._step import FINE, State, march, parts
+from pedestrian_model._jit import inlined, kernel
+from pedestrian_model._rows import Arrays, Scratch, Workspace
+from pedestrian_model._step import FINE, Scene, State, march, parts
 from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import DivergenceError, ParameterError, VehicleError
 from pedestrian_model.model import CELL_LIST_FROM, require_steady, substeps, unknown_signal
@@ -106,7 +106,7 @@ class Predictor:
         return self._out
 
     def arrays(self, crowd: Crowd, surroundings: Surroundings) -> Arrays:
-        """What :func:`tread` takes; the last three hold the state of whoever calls it.
+        """What :func:`start` takes; the last three are memory for the state ahead.
 
         Raises:
             SurroundingsError: if a way-point's signal is not one of the surroundings.
@@ -127,44 +127,23 @@ class Predictor:
         )
 
 
-@kernel
-def tread(
-    arrays: Arrays,
-    vehicles: NDArray[np.float64],
-    constants: NDArray[Any],
-    dt: float,
-    substeps: int,
-    cell_list_from: int,
-) -> int:
-    """One step of a prediction, in place: the last three of the arrays are the state.
+@inlined
+def start(arrays: Arrays) -> tuple[State, Scene, Scratch]:
+    """The present state, ready for :func:`march` to be changed, with what the crowd walks among.
 
-    For those who predict step by step; the numbers are a predictor's ``law``.
+    Inlined, for compiled functions that predict step by step: handing so many arrays from one to
+    the next costs as much as the forces of ten people.
 
     Args:
         arrays: those of :meth:`Predictor.arrays`.
-        vehicles: (m, 7) at the step's begin.
-        constants: of the model.
-        dt: [s] of a sub-step.
-        substeps: of the step.
-        cell_list_from: the crowd size from which neighbours are found by a cell list.
-
-    Returns:
-        ``FINE``, or the index of a pedestrian whose state is not finite.
     """
-    _, scene, scratch = parts(arrays[:-3])
+    state, scene, scratch = parts(arrays[:-3])
     ahead = State(*arrays[-3:])
-    return march(ahead, scene, vehicles, scratch, constants, dt, substeps, cell_list_from)
-
-
-@kernel
-def start(arrays: Arrays) -> None:
-    """Set the state that :func:`tread` changes to the present one."""
-    position, velocity, waypoint_index = arrays[:3]
-    x, v, index = arrays[-3:]
-    for i in range(position.shape[0]):
-        x[i, 0], x[i, 1] = position[i, 0], position[i, 1]
-        v[i, 0], v[i, 1] = velocity[i, 0], velocity[i, 1]
-        index[i] = waypoint_index[i]
+    for i in range(state.position.shape[0]):
+        ahead.position[i, 0], ahead.position[i, 1] = state.position[i, 0], state.position[i, 1]
+        ahead.velocity[i, 0], ahead.velocity[i, 1] = state.velocity[i, 0], state.velocity[i, 1]
+        ahead.waypoint_index[i] = state.waypoint_index[i]
+    return ahead, scene, scratch
 
 
 @kernel
@@ -179,12 +158,12 @@ def _predict(
 ) -> int:
     """Fill ``out`` (N, n, 2) with the positions of the next N steps; the state stays as it is.
 
-    As :func:`tread`, with ``vehicles`` (N, m, 7).
+    As :func:`march`, with ``vehicles`` (N, m, 7).
     """
-    start(arrays)
-    x = arrays[-3]
+    ahead, scene, scratch = start(arrays)
+    x = ahead.position
     for k in range(out.shape[0]):
-        insane = tread(arrays, vehicles[k], constants, dt, substeps, cell_list_from)
+        insane = march(ahead, scene, vehicles[k], scratch, constants, dt, substeps, cell_list_from)
         if insane != FINE:
             return insane
         for i in range(out.shape[1]):

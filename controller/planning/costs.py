@@ -64,7 +64,8 @@ def own_cost(
     for i in range(N):
         share = speeds[i + 1] / w.reference_speed
         own += w.time * max(0.0, 1.0 - share) + w.acceleration * accelerations[i] ** 2
-    return time_step * own + w.final * max(0.0, 1.0 - speeds[N] / w.reference_speed)
+    total: float = time_step * own + w.final * max(0.0, 1.0 - speeds[N] / w.reference_speed)
+    return total
 
 
 @kernel

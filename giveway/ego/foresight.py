@@ -15,6 +15,7 @@ from giveway.geometry.path import EgoPath
 from giveway.metrics.conflicts import CRITICAL_TTC
 from pedestrian_model import Crowd, Predictor, Surroundings
 
+
 class CrowdForesight:
     """Predicts the crowd under one manoeuvre after the other.
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from giveway.ego.corridor import closest_in_front
 from giveway.ego.threats import Alarm, conflicts_and_calm
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inlined, kernel
 from giveway.geometry.passage import window
 from giveway.geometry.path import body_pose, segment_at
 
@@ -63,7 +63,7 @@ def assess(
         )
 
 
-@kernel
+@inlined
 def assess_step(
     vertices: Array,
     stations: Array,

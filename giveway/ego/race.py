@@ -1,4 +1,4 @@
-"""A race between manoeuvres, rolled out in one compiled call: the cheapest at every instant goes on.
+"""A race between manoeuvres in one compiled call: the cheapest so far is rolled out by a step.
 
 A manoeuvre's cost never falls along its way, so that one whose cost so far exceeds another's whole
 cost need not be looked at any farther: branch and bound, best first. Manoeuvres that begin alike
@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from controller import Prospect, Verdict, add_cost_of_others, own_cost
 from giveway.ego.corridor import set_pose
 from giveway.ego.prospects import View, assess_step
-from giveway.geometry.kernel import Array, kernel
-from pedestrian_model import start, tread
+from giveway.geometry.kernel import Array, inlined, kernel
+from pedestrian_model import march, start
 
 Arrays = tuple[NDArray[Any], ...]
 
@@ -105,8 +105,8 @@ def run_race(
 
     Args:
         path: vertices, stations and headings of the ego's.
-        people: what :func:`pedestrian_model.tread` takes.
-        law: the numbers that it takes.
+        people: what :func:`pedestrian_model.start` takes.
+        law: the numbers of the model.
         poses: (N, m, 7) of all vehicles; the ego's row is changed.
         row: the ego's.
         front: its front bumper's station [m].
@@ -121,9 +121,10 @@ def run_race(
         weights: of the cost.
     """
     distance, speed, acceleration, handicap = trials
-    prospects, sums, steps, alike, bad = memory[2:]
+    sums, steps, alike, bad = memory[3:]
     N, time_step = poses.shape[0], View(*view).time_step
     begun = 1 if known else 0
+    ahead, scene, scratch = start(people)
     bad[0] = _FINE
     if not known:
         steps[:] = -1
@@ -133,13 +134,13 @@ def run_race(
         sums[0, k] = own_cost(speed[k], acceleration[k], time_step, weights)
         sums[1, k], sums[2, k] = 0.0, 0.0
     first = entrants[0]
-    ahead = lead
+    leads = lead
     while True:
         best, least = -1, np.inf
-        if ahead:
+        if leads:
             best = first
             if time_step * sums[1, first] > 0.0:
-                ahead = False
+                leads = False
                 continue
             if steps[1, first] == N:
                 sums[3, first] = sums[0, first] + handicap[first]
@@ -156,6 +157,9 @@ def run_race(
             best,
             path,
             people,
+            ahead,
+            scene,
+            scratch,
             law,
             poses,
             row,
@@ -192,11 +196,14 @@ def enter(
         alike[k, other] = alike[other, k] = same
 
 
-@kernel
+@inlined
 def advance(
     k: int,
     path: Arrays,
     people: Arrays,
+    ahead: Any,
+    scene: Any,
+    scratch: Any,
     law: tuple[Any, ...],
     poses: Array,
     row: int,
@@ -212,7 +219,7 @@ def advance(
     """Roll manoeuvre k out by one step; -1, or a pedestrian whose state is not finite."""
     vertices, stations, headings = path
     state, index, prospects, sums, steps, alike, _ = memory
-    x, v, at = people[-3:]
+    x, v, at = ahead
     N, n = poses.shape[0], x.shape[0]
     i = steps[0, k]
     here = (k * N + i) * n
@@ -238,7 +245,7 @@ def advance(
         set_pose(
             vertices, stations, headings, station, speed[k, i], View(*view).length, poses[i, row]
         )
-        bad = tread(people, poses[i], *law)
+        bad = march(ahead, scene, poses[i], scratch, *law)
         if bad != _FINE:
             return bad
         for j in range(n):

@@ -61,7 +61,7 @@ def conflicts_and_calm(
         w_x = (there[j, 0] - here[j, 0]) / time_step
         w_y = (there[j, 1] - here[j, 1]) / time_step
         w_x, w_y = to_frame(w_x, w_y, c, s)
-        # Who cannot come beside the body, before it or behind it in that time needs no more thought.
+        # Who cannot come beside, before or behind the body in that time needs no more thought.
         apart = max(
             abs(y) - half_width - abs(w_y) * conflict_time,
             abs(x + half_length) - half_length - abs(w_x - speed) * conflict_time,

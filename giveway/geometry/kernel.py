@@ -17,3 +17,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def kernel(function: Function) -> Function:
     """Compile ``function`` at its first call; without fastmath bytes do not depend on the CPU."""
     return cast("Function", njit(cache=True, error_model="numpy")(function))
+
+
+def inlined(function: Function) -> Function:
+    """Compile ``function`` into its callers: each array that is handed over costs a count of it."""
+    compiled = njit(cache=True, error_model="numpy", forceinline=True)(function)
+    return cast("Function", compiled)

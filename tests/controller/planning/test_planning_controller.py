@@ -26,8 +26,9 @@ from controller import (
     TunedPidParameters,
 )
 from controller.defaults import STANDSTILL
+from controller.planning.costs import stopping_need
+from controller.planning.motions import aim
 from controller.planning.parameters import Weights
-from controller.planning.search import aim, stopping_need
 
 MODEL = LongitudinalModel()
 N, DT, V_R = 60, MODEL.time_step, 4.0

@@ -8,8 +8,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from controller import ControllerError, Manoeuvre, ManoeuvreParameters, PlannerParameters
+from controller.planning.costs import corridor, cost, stopping_need
+from controller.planning.motions import aim, shift
 from controller.planning.parameters import Weights
-from controller.planning.search import aim, copy, corridor, cost, shift, stopping_need
+from controller.planning.search import copy
 
 DT = 0.05
 FREE = np.inf

@@ -9,7 +9,8 @@ import pytest
 import shapely
 
 from controller import LongitudinalModel, Manoeuvre, SafetyLayer, SafetyParameters
-from giveway.ego.foresight import PASSED, CrowdForesight, View, assess
+from giveway.ego.foresight import CrowdForesight
+from giveway.ego.prospects import PASSED, View, assess
 from giveway.ego.safety import FrontPoses
 from giveway.ego.threats import Alarm, is_threat
 from giveway.geometry.bodies import VehicleShape
