@@ -23,6 +23,8 @@ _SHOWN = (
     ("Smallest gap in front", "minimum_gap", "m"),
     ("Smallest clearance", "minimum_clearance", "m"),
     ("Pedestrians touched", "overlaps", ""),
+    ("of these, the ego moved into", "frontal_contacts", ""),
+    ("Pedestrians in conflict with the ego", "conflicts", ""),
     ("Background vehicles touched", "vehicle_contacts", ""),
     ("Smallest time to collision", "minimum_ttc", "s"),
     ("while the ego moved", "minimum_ttc_moving", "s"),

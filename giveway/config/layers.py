@@ -73,8 +73,8 @@ class Option:
 def options(model: type[Section] = RunConfig, prefix: Location = ()) -> Iterator[Option]:
     """Every leaf option of the configuration, in declaration order."""
     for name, field in model.model_fields.items():
-        if name == "egos":
-            continue  # a list of tables, which has no flag
+        if name in {"egos", "measure"}:
+            continue  # lists of tables, which have no flag
         annotation = field.annotation
         if isinstance(annotation, type) and issubclass(annotation, Section):
             yield from options(annotation, (*prefix, name))
@@ -206,4 +206,9 @@ def dump_toml(config: RunConfig) -> str:
         for ego in config.egos:
             tables.append(tomlkit.item(ego))
         document.add("egos", tables)
+    if config.measure:
+        tables = tomlkit.aot()
+        for measure in config.measure:
+            tables.append(tomlkit.item(measure.settings()))
+        document.add("measure", tables)
     return with_schema(tomlkit.dumps(document), RUN)

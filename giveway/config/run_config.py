@@ -19,6 +19,7 @@ from giveway.config.controller_sections import (
     TunedPidConfig,
 )
 from giveway.config.crowd import CrowdConfig
+from giveway.config.measures import MeasureConfig, read_measures
 from giveway.config.option import Section, expectation, option
 from giveway.config.regulation import RegulationConfig
 from giveway.config.sections import (
@@ -125,6 +126,9 @@ class RunConfig(Section):
     record: RecordConfig = RecordConfig()
     egos: tuple[dict[str, Any], ...] = Field(
         (), description="one table per ego; what it leaves out is as in the run's own tables"
+    )
+    measure: Annotated[tuple[MeasureConfig, ...], BeforeValidator(read_measures)] = Field(
+        (), description="lines and areas on which the people are measured"
     )
 
     @model_validator(mode="after")

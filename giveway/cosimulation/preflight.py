@@ -9,6 +9,7 @@ from giveway.config.presets import require_steady_preset
 from giveway.crowd.zone import Zone
 from giveway.ego.vehicle import require_vehicles
 from giveway.errors import ConfigError
+from giveway.measures import require_pedpy
 from giveway.scenario_files import ScenarioFiles, read_scenario
 from sumo_scenarios import Scenario
 
@@ -44,6 +45,8 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
         ConfigError: the zone is none, two egos have the same id, or people would tremble.
         VehicleError: a vehicle FMU cannot be read, or its profile does not fit.
     """
+    if config.measure:
+        require_pedpy()
     files = read_scenario(scenario.config_file)
     files.require_inputs()
     zone = Zone(config.crowd.zone, config.crowd.zone_margin)

@@ -12,7 +12,8 @@ from giveway.metrics.delays import (
     summarise_delays,
 )
 from giveway.metrics.encroachment import EGO, encroachment, post_encroachment_time
-from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS, pedestrian_metrics
+from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS, pedestrian_metrics, walks_without_ego
+from giveway.metrics.severity import SEVERITIES, SEVERITY_FIELDS, severities
 from giveway.metrics.summary import (
     SUMMARY_FIELDS,
     Summary,
@@ -30,6 +31,8 @@ __all__ = [
     "FRONTAL",
     "NO_CONTACT",
     "PEDESTRIAN_FIELDS",
+    "SEVERITIES",
+    "SEVERITY_FIELDS",
     "SIDE",
     "STOP_SPEED",
     "SUMMARY_FIELDS",
@@ -47,8 +50,10 @@ __all__ = [
     "pedestrian_metrics",
     "post_encroachment_time",
     "proximity",
+    "severities",
     "summarise",
     "summarise_delays",
     "vehicle_contacts",
     "waiting_times",
+    "walks_without_ego",
 ]

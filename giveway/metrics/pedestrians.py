@@ -84,20 +84,11 @@ def pedestrian_metrics(
     groups = PedestrianGroups(crowd)
     time = ego.time[crowd.step]
     missed = encroachment(ego, crowd, shape, body_radius)
-    lasting, change = _changes(ego, crowd, groups)
     closest, soonest = groups.first_minimum(clear), groups.first_minimum(ttc)
     minimum_ttc = groups.at(ttc, soonest)
     on_course = np.isfinite(minimum_ttc)
-    first_seen, last_seen = groups.at(time, groups.first), groups.at(time, groups.last)
-    path = groups.total(groups.walked(crowd))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        mean_speed = np.where(last_seen > first_seen, path / (last_seen - first_seen), np.nan)
     columns = {
-        "id": list(crowd.ids),
-        "first_seen": first_seen,
-        "last_seen": last_seen,
-        "path_length": path,
-        "mean_speed": mean_speed,
+        **_walks(crowd, groups, time),
         "minimum_clearance": groups.at(clear, closest),
         "time_of_minimum_clearance": groups.at(time, closest),
         "overlap_time": groups.total(np.where(clear < 0.0, durations(ego)[crowd.step], 0.0)),
@@ -106,15 +97,43 @@ def pedestrian_metrics(
         "time_of_minimum_ttc": np.where(on_course, groups.at(time, soonest), np.nan),
         "post_encroachment_time": missed.time,
         "maximum_drac": -groups.at(-drac, groups.first_minimum(-drac)),
-        "slow_time": groups.total(np.where(np.hypot(crowd.vx, crowd.vy) < SLOW, lasting, 0.0)),
-        "peak_acceleration": -groups.at(-change, groups.first_minimum(-change)),
         "passed_first": missed.first,
     }
     return pd.DataFrame(columns, columns=[column.name for column in PEDESTRIAN_FIELDS])
 
 
+def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> pd.DataFrame:
+    """How every pedestrian walked where there was no ego: the columns that need none.
+
+    Args:
+        time: (T,) [s] the control instants.
+        crowd: the crowd's track.
+    """
+    return pd.DataFrame(_walks(crowd, PedestrianGroups(crowd), time[crowd.step]))
+
+
+def _walks(
+    crowd: CrowdTrack, groups: PedestrianGroups, time: NDArray[np.float64]
+) -> dict[str, object]:
+    """The columns of how everybody walked; ``time`` (R,) [s] is that of the records."""
+    first_seen, last_seen = groups.at(time, groups.first), groups.at(time, groups.last)
+    path = groups.total(groups.walked(crowd))
+    lasting, change = _changes(crowd, groups, time)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean_speed = np.where(last_seen > first_seen, path / (last_seen - first_seen), np.nan)
+    return {
+        "id": list(crowd.ids),
+        "first_seen": first_seen,
+        "last_seen": last_seen,
+        "path_length": path,
+        "mean_speed": mean_speed,
+        "slow_time": groups.total(np.where(np.hypot(crowd.vx, crowd.vy) < SLOW, lasting, 0.0)),
+        "peak_acceleration": -groups.at(-change, groups.first_minimum(-change)),
+    }
+
+
 def _changes(
-    ego: EgoTrack, crowd: CrowdTrack, groups: PedestrianGroups
+    crowd: CrowdTrack, groups: PedestrianGroups, time: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Each record's duration (R,) [s], and the acceleration (R,) [m/s^2] that led to it.
 
@@ -122,9 +141,9 @@ def _changes(
     where that, or the one before, is not on record.
     """
     order = groups.order
-    step, time = crowd.step[order], ego.time[crowd.step[order]]
+    step = crowd.step[order]
     follows = (np.diff(groups.pedestrian) == 0) & (np.diff(step) == 1)
-    period = np.where(follows, np.diff(time), 0.0)
+    period = np.where(follows, np.diff(time[order]), 0.0)
     speeding = np.hypot(np.diff(crowd.vx[order]), np.diff(crowd.vy[order]))
     lasting, change = np.zeros(step.size), np.zeros(step.size)
     lasting[order[:-1]] = period

@@ -15,6 +15,7 @@ from giveway.metrics import (
     VehicleContact,
     conflicts,
     pedestrian_metrics,
+    severities,
     summarise,
     vehicle_contacts,
 )
@@ -75,6 +76,12 @@ class EgoResult:
         more = pd.DataFrame(dict(zip(names, columns, strict=True)), index=self.effect.run.ids)
         more = more.reindex(table["id"]).reset_index(drop=True)
         return table.assign(**{name: more[name] for name in names})
+
+    @cached_property
+    def conflicts(self) -> pd.DataFrame:
+        """One row per pedestrian: how severe its conflict was, when, how fast and where."""
+        body = self.shape, self.body_radius, self.config.record.stop_speed
+        return severities(self.track, self.crowd, *body, self.pedestrians)
 
     @cached_property
     def vehicle_contacts(self) -> tuple[VehicleContact, ...]:

@@ -15,6 +15,7 @@ TABLES = (
     "ledger",
     "people",
     "signals",
+    "measures",
 )
 """All tables that a run can have; its ``schemas`` say which of them it has."""
 FILES = frozenset(

@@ -11,11 +11,14 @@ from giveway.config.layers import dump_toml
 from giveway.config.presets import parameters_of
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
+from giveway.measures import MEASURE_COLUMNS, measure_table
 from giveway.metrics import (
     DELAY_FIELDS,
     DELAY_SUMMARY_FIELDS,
     PEDESTRIAN_FIELDS,
+    SEVERITY_FIELDS,
     SUMMARY_FIELDS,
+    walks_without_ego,
 )
 from giveway.metrics.law import LAW_FIELDS
 from giveway.records.columns import (
@@ -138,8 +141,14 @@ class RunResult:
     @cached_property
     def pedestrians(self) -> pd.DataFrame:
         """One row per ego and pedestrian: closest approach, TTC, PET; delay, if there is a twin."""
-        tables = [table.assign(ego=ego.id) for ego in self.egos for table in [ego.pedestrians]]
-        return _stacked(tables, [column.name for column in self.schemas["pedestrians"]])
+        names = [column.name for column in self.schemas["pedestrians"]]
+        tables = [
+            pd.concat([ego.pedestrians, ego.conflicts], axis=1).assign(ego=ego.id)
+            for ego in self.egos
+        ]
+        if not self.egos and self.crowd_track.ids:
+            tables = [walks_without_ego(self.time, self.crowd_track).reindex(columns=names)]
+        return _stacked(tables, names)
 
     @cached_property
     def predictions(self) -> pd.DataFrame:
@@ -164,6 +173,11 @@ class RunResult:
     def people(self) -> pd.DataFrame:
         """Where people mean to walk, and how fast."""
         return people_table(self.time, self.people_track, self.crowd_track.ids)
+
+    @cached_property
+    def measures(self) -> pd.DataFrame:
+        """Density, speed and flow on each ``[[measure]]``, interval by interval, by PedPy."""
+        return measure_table(self.config.measure, self.time, self.crowd_track)
 
     @cached_property
     def timing(self) -> pd.DataFrame:
@@ -224,6 +238,8 @@ class RunResult:
             pedestrians = (*pedestrians, *DELAY_FIELDS)
         if len(self.signal_track.time):
             optional |= {"signals": SIGNAL_COLUMNS}
+        if self.config.measure:
+            optional |= {"measures": MEASURE_COLUMNS}
         return {
             "ego": EGO_COLUMNS,
             "trajectories": TRAJECTORY_COLUMNS,
@@ -237,6 +253,7 @@ class RunResult:
 PEDESTRIAN_TABLE = (
     Column("ego", "string", None, "SUMO id of the ego that the row is about"),
     *PEDESTRIAN_FIELDS,
+    *SEVERITY_FIELDS,
 )
 
 

@@ -1,0 +1,54 @@
+"""Levels of service of walkways: how comfortable a density or a flow is, A (free) to F (jammed)."""
+
+from dataclasses import dataclass
+from math import inf
+
+
+@dataclass(frozen=True)
+class LevelsOfService:
+    """The limits between the levels A to F of one source.
+
+    Attributes:
+        source: where they stand.
+        space: [m^2 per person] above which it is A, B, C, D, E.
+        flow: [persons per minute and metre of width] up to which it is A, B, C, D, E.
+    """
+
+    source: str
+    space: tuple[float, float, float, float, float]
+    flow: tuple[float, float, float, float, float]
+
+
+FRUIN = LevelsOfService(
+    # 35, 25, 15, 10 and 5 square feet; 7, 10, 15, 20 and 25 persons per minute and foot
+    "Fruin 1971, Pedestrian Planning and Design: walkways",
+    (3.25, 2.32, 1.39, 0.93, 0.46),
+    (23.0, 33.0, 49.0, 66.0, 82.0),
+)
+HCM = LevelsOfService(
+    # 60, 40, 24, 15 and 8 square feet
+    "Highway Capacity Manual 2000, exhibit 18-3: average flow on walkways",
+    (5.6, 3.7, 2.2, 1.4, 0.75),
+    (16.0, 23.0, 33.0, 49.0, 75.0),
+)
+_LETTERS = "ABCDEF"
+
+
+def level_of_service(
+    levels: LevelsOfService, *, density: float | None = None, specific_flow: float | None = None
+) -> str:
+    """The letter of a density, or of a flow.
+
+    A flow alone does not tell a free walkway from a jammed one: F by flow is demand beyond
+    capacity. Where the density is known, that decides.
+
+    Args:
+        levels: Fruin's or the manual's.
+        density: [1/m^2] of people.
+        specific_flow: [1/(m s)] over a line.
+    """
+    if density is not None:
+        space = 1.0 / density if density > 0.0 else inf
+        return _LETTERS[sum(space <= limit for limit in levels.space)]
+    per_minute = 60.0 * (specific_flow or 0.0)
+    return _LETTERS[sum(per_minute > limit for limit in levels.flow)]

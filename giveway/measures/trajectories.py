@@ -1,0 +1,42 @@
+"""A crowd's records as PedPy takes them."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from giveway.metrics.groups import PedestrianGroups
+from giveway.records.tracks import CrowdTrack
+
+
+def walks(crowd: CrowdTrack) -> pd.DataFrame:
+    """One row per record: id, frame (control instant), x, y [m].
+
+    Who was out of our hands for a while has another id after that: nobody jumps over a line.
+    """
+    groups = PedestrianGroups(crowd)
+    order = groups.order
+    frame = crowd.step[order]
+    new = (np.diff(groups.pedestrian) != 0) | (np.diff(frame) != 1)
+    number = np.concatenate([[0], np.cumsum(new)]) if len(order) else np.empty(0, dtype=np.int64)
+    data = {"id": number, "frame": frame, "x": crowd.x[order], "y": crowd.y[order]}
+    table = pd.DataFrame(data)
+    lasting = table.groupby("id")["frame"].transform("size") > 1  # of one record nobody knows more
+    return table[lasting].reset_index(drop=True)
+
+
+def trajectory_data(table: pd.DataFrame, time_step: float) -> Any:
+    """PedPy's own of ``walks``."""
+    from pedpy import TrajectoryData
+
+    return TrajectoryData(data=table, frame_rate=1.0 / time_step)
+
+
+def surroundings(table: pd.DataFrame, places: NDArray[np.float64], beyond: float) -> Any:
+    """A walkable area that holds all of ``table`` and ``places`` (k, 2) [m]."""
+    from pedpy import WalkableArea
+
+    points = np.concatenate([table[["x", "y"]].to_numpy(), places])
+    (x_0, y_0), (x_1, y_1) = points.min(axis=0) - beyond, points.max(axis=0) + beyond
+    return WalkableArea([(x_0, y_0), (x_1, y_0), (x_1, y_1), (x_0, y_1)])

@@ -1,0 +1,120 @@
+"""How severe each pedestrian's conflict with the ego was, when and where.
+
+Times before a collision order conflicts, and a speed says what one would have meant; no single
+number does both (Laureshyn, Svensson & Hydén 2010), so class and speed stand in columns of their
+own.
+"""
+
+from typing import Annotated
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from giveway.geometry.bodies import VehicleShape
+from giveway.metrics.conflicts import CRITICAL_TTC, proximity
+from giveway.metrics.contacts import FRONTAL
+from giveway.metrics.groups import PedestrianGroups
+from giveway.records.columns import Quantity, columns_of
+from giveway.records.tracks import CrowdTrack, EgoTrack
+
+SERIOUS_TTC = 1.0
+"""[s] Below it a conflict is serious: the highest of the three classes of Sayed, Brown & Navin
+(1994) and Sayed & Zein (1999); from it to ``CRITICAL_TTC`` it is of their middle one."""
+
+CRITICAL_PET = 1.0
+"""[s] At most so much is critical whatever the TTC: DOCTOR, the Dutch technique of observing
+conflicts (Kraay, van der Horst & Oppe 1986)."""
+
+SEVERITIES = ("slight", "serious", "collision")
+"""From the mildest to the worst: TTC of 1.0 to 1.5 s or PET of at most 1.0 s; TTC below 1.0 s; the
+ego moved into the pedestrian."""
+
+
+class SeverityRow:
+    """The columns of a pedestrian's conflict; empty where it had none."""
+
+    severity: Annotated[
+        str,
+        Quantity(
+            None,
+            "of its conflict with the moving ego. slight: TTC below 1.5 s or PET up to 1 s; "
+            "serious: TTC below 1 s; collision: frontal contact; empty: no conflict",
+        ),
+    ]
+    conflict_time: Annotated[float, Quantity("s", "when the conflict was closest to a collision")]
+    conflict_ttc: Annotated[
+        float, Quantity("s", "smallest time to collision while the ego moved; empty: PET alone")
+    ]
+    conflict_speed: Annotated[
+        float, Quantity("m/s", "speed of ego and pedestrian relative to each other then")
+    ]
+    conflict_x: Annotated[float, Quantity("m", "network x of the pedestrian then")]
+    conflict_y: Annotated[float, Quantity("m", "network y of the pedestrian then")]
+
+
+SEVERITY_FIELDS = columns_of(SeverityRow)
+
+
+def severities(
+    ego: EgoTrack,
+    crowd: CrowdTrack,
+    shape: VehicleShape,
+    body_radius: float,
+    stop_speed: float,
+    per_pedestrian: pd.DataFrame,
+) -> pd.DataFrame:
+    """Class, instant, relative speed and place of each pedestrian's conflict.
+
+    A conflict is closest to a collision where the time to collision with the moving ego is
+    smallest; one by PET alone, where the clearance was.
+
+    Args:
+        ego: the ego's track, T instants.
+        crowd: the crowd's track, R records of n pedestrians.
+        shape: the ego's rectangle.
+        body_radius: radius of a pedestrian [m].
+        stop_speed: the ego moves above it [m/s].
+        per_pedestrian: the table of ``pedestrian_metrics``.
+
+    Returns:
+        n rows in the order of ``crowd.ids``, columns as in ``SEVERITY_FIELDS``.
+    """
+    clear, ttc, _ = proximity(ego, crowd, shape, body_radius)
+    groups = PedestrianGroups(crowd)
+    moving = np.where(ego.speed[crowd.step] > stop_speed, ttc, np.inf)
+    soonest = groups.first_minimum(moving)
+    smallest = groups.at(moving, soonest)
+    by_time = smallest < CRITICAL_TTC
+    present = np.flatnonzero(groups.present)
+    place = np.where(by_time[present], soonest, groups.first_minimum(clear))
+    classes = _classes(smallest, per_pedestrian)
+    some = classes != ""
+
+    def then(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.where(some, groups.at(values, place), np.nan)
+
+    step = crowd.step
+    away_x = ego.speed[step] * np.cos(ego.heading[step]) - crowd.vx
+    away_y = ego.speed[step] * np.sin(ego.heading[step]) - crowd.vy
+    columns = {
+        "severity": classes,
+        "conflict_time": then(ego.time[step]),
+        "conflict_ttc": np.where(some & by_time, smallest, np.nan),
+        "conflict_speed": then(np.hypot(away_x, away_y)),
+        "conflict_x": then(crowd.x),
+        "conflict_y": then(crowd.y),
+    }
+    return pd.DataFrame(columns, columns=[column.name for column in SEVERITY_FIELDS])
+
+
+def _classes(ttc: NDArray[np.float64], per_pedestrian: pd.DataFrame) -> NDArray[np.object_]:
+    """(n,) the class of each pedestrian's conflict, empty where there was none."""
+    pet = per_pedestrian["post_encroachment_time"].to_numpy(dtype=np.float64)
+    frontal = (per_pedestrian["contact"] == FRONTAL).to_numpy(dtype=np.bool_)
+    slight, serious, collision = SEVERITIES
+    found = np.full(len(pet), "", dtype=object)
+    found[(ttc < CRITICAL_TTC) | ((pet > 0.0) & (pet <= CRITICAL_PET))] = slight
+    found[ttc < SERIOUS_TTC] = serious
+    found[frontal] = collision
+    return found
