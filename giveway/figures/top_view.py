@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
+from giveway.figures.conflict_points import Conflict, mark_conflicts
 from giveway.figures.style import BLACK, GREY, LIGHT_GREY, VERMILION, keep_panels, styled
 from giveway.figures.view import Box
 from giveway.geometry.bodies import VehicleShape
@@ -45,6 +46,7 @@ def top_view_figure(
     times: Sequence[float] | None = None,
     background: BackgroundTrack | None = None,
     road: Road | None = None,
+    conflicts: Sequence[Conflict] = (),
     title: str = "",
 ) -> Figure:
     """Whole trajectories coloured by time, and the scene at some instants, all to scale.
@@ -59,6 +61,7 @@ def top_view_figure(
         background: other vehicles, drawn in the snapshots; from their latest instant on they are
             taken to drive straight on.
         road: areas and lines to draw underneath.
+        conflicts: marked among the trajectories.
         title: of the whole figure.
 
     Raises:
@@ -82,6 +85,7 @@ def top_view_figure(
     _draw_road(overview, road)
     lines = _draw_pedestrian_trajectories(overview, ego.time, crowd, colours)
     _draw_ego_trajectory(overview, ego, colours)
+    mark_conflicts(overview, conflicts)
     for k in steps:
         colour = lines.cmap(colours(ego.time[k]))
         overview.add_patch(Polygon(corners[k], fill=False, edgecolor=colour, linewidth=1.4))

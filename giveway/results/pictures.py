@@ -14,6 +14,7 @@ from giveway.figures import (
     state_figure,
     top_view_figure,
 )
+from giveway.figures.conflict_points import Conflict
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.results.ego_result import EgoResult
@@ -67,8 +68,16 @@ def top_view_picture(result: RunResult, ego: EgoResult) -> Figure:
         ego.body_radius,
         background=result.background_track,
         road=result.road,
+        conflicts=_conflicts(ego),
         title=_title(result, ego),
     )
+
+
+def _conflicts(ego: EgoResult) -> list[Conflict]:
+    """Severity and place of each of an ego's conflicts."""
+    found = ego.conflicts[ego.conflicts["severity"] != ""]
+    columns = ("severity", "conflict_x", "conflict_y")
+    return list(zip(*(found[name] for name in columns), strict=True))
 
 
 def crowd_picture(result: RunResult) -> Figure:
