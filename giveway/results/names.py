@@ -27,6 +27,7 @@ FILES = frozenset(
         "datapackage.json",
         SCENE_FILE,
         "replay.html",
+        "density.png",
         "sumo.log",
         *(f"{name}{mark}.png" for name in ("state", "top_view") for mark in MARKS),
         SUMO_FOLDER,

@@ -15,8 +15,10 @@ from giveway.figures import (
     top_view_figure,
 )
 from giveway.figures.conflict_points import Conflict
+from giveway.figures.density import density_figure
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
+from giveway.measures import density_map
 from giveway.results.ego_result import EgoResult
 from giveway.results.names import MARKS
 from giveway.results.run_result import RunResult
@@ -45,6 +47,8 @@ def _write_pictures(result: RunResult, folder: Path) -> None:
     for ego, mark in zip(result.egos, MARKS, strict=False):
         save_figure(state_picture(result, ego), folder / f"state{mark}.png")
         save_figure(top_view_picture(result, ego), folder / f"top_view{mark}.png")
+    if result.config.measure and len(result.crowd_track.x) > 1:
+        save_figure(density_picture(result), folder / "density.png")
     if not result.egos and result.crowd_track.x.size:
         save_figure(crowd_picture(result), folder / "top_view.png")
 
@@ -78,6 +82,17 @@ def _conflicts(ego: EgoResult) -> list[Conflict]:
     found = ego.conflicts[ego.conflicts["severity"] != ""]
     columns = ("severity", "conflict_x", "conflict_y")
     return list(zip(*(found[name] for name in columns), strict=True))
+
+
+def density_picture(result: RunResult) -> Figure:
+    """Mean density of the people over the run, and where the conflicts were."""
+    people = len(result.crowd_track.ids)
+    return density_figure(
+        density_map(result.crowd_track, len(result.time)),
+        result.config.measure,
+        conflicts=[conflict for ego in result.egos for conflict in _conflicts(ego)],
+        title=f"{result.scenario.name}, {people} pedestrians, seed {result.config.seed}",
+    )
 
 
 def crowd_picture(result: RunResult) -> Figure:
