@@ -31,6 +31,9 @@ from giveway.results import law, mismatch, vehicle_contacts
 from giveway.results.effect import Effect, who_gave_way
 from giveway.results.ego_result import EgoResult, results_of_egos
 from giveway.results.folder import (
+    ARGUMENTS,
+    FLAGS,
+    Wording,
     release_folder,
     require_parquet,
     sumo_folder,
@@ -70,8 +73,8 @@ def run(
 
     Args:
         config: the options that differ from the scenario's settings and the defaults, as a
-            ``RunConfig`` or as nested dictionaries with the keys of the TOML file; or the name of
-            a scenario, or a .toml file.
+            ``RunConfig`` or as a dictionary with the keys of the TOML file, by tables or dotted
+            (``{"crowd.pedestrians": 30}``); or the name of a scenario, or a .toml file.
         results: a folder to write tables, summary, manifest and pictures to; None writes nothing.
         force: replace the results that are there.
         parquet: also write the tables as Parquet.
@@ -88,6 +91,7 @@ def run(
     return run_checked(
         preflight(*load([as_layer(config)])),
         results=results,
+        wording=ARGUMENTS,
         force=force,
         parquet=parquet,
         pictures=pictures,
@@ -104,6 +108,7 @@ def run_checked(
     pictures: bool = True,
     watcher: Watcher | None = None,
     journal: Path | None = None,
+    wording: Wording = FLAGS,
 ) -> RunResult:
     """As :func:`run`, after the preflight.
 
@@ -115,12 +120,15 @@ def run_checked(
         pictures: as for :func:`run`.
         watcher: as for :func:`run`.
         journal: an empty folder for the rows, to be read should this process die.
+        wording: of the caller, for messages.
     """
     folder = None if results is None else Path(results)
     if parquet:
         require_parquet()
     with ExitStack() as stack:
-        taken = folder is not None and stack.enter_context(taken_folder(folder, force=force))
+        taken = folder is not None and stack.enter_context(
+            taken_folder(folder, force=force, wording=wording)
+        )
         rows = Journal(journal)
         where = None if folder is None else str(folder.absolute())
         wanted = {"results": where, "taken": taken, "parquet": parquet, "pictures": pictures}

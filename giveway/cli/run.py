@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ from rich.console import Console
 from giveway.cli.exit import INTERRUPTED, fail
 from giveway.cli.printing import escape, print_json
 from giveway.cli.progress import run_progress
-from giveway.config.layers import Layer, read_toml
+from giveway.config.layers import Layer, dump_toml, read_toml
 from giveway.config.loading import load
 from giveway.errors import GivewayError
 from giveway.records.progress import Ending
@@ -67,14 +68,14 @@ def run_command(
     """
     console = Console(quiet=outputs.quiet or outputs.as_json)
     effective, found = load(layers_of(scenario, config, settings))
-    folder = outputs.folder or default_folder(effective, found.name)
-    check_folder(folder, force=outputs.force)
     if outputs.parquet:
         require_parquet()
     from giveway.cosimulation.preflight import preflight
     from giveway.precompile import compile_kernels_once
 
     checked = preflight(effective, found)
+    folder = outputs.folder or default_folder(effective, found.name)
+    check_folder(folder, force=outputs.force)
     compile_kernels_once(console)
     from giveway.api import run_checked
 
@@ -115,13 +116,37 @@ def interrupted(result: RunResult, folder: Path) -> int:
 
 
 def default_folder(config: RunConfig, scenario: str) -> Path:
-    """``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with ids of egos taken over."""
+    """``results/<scenario>_<controller>_<persons>ped_seed<seed>``, with ids of egos taken over.
+
+    Where anything else differs from the scenario's settings and the defaults, six digits of a hash
+    over the whole configuration follow, so that different runs have different folders.
+    """
     egos = config.each_ego()
     controllers = "_".join(dict.fromkeys(ego.controller for ego in egos)) or "no_ego"
     taken = "".join(f"_{name}" for ego in egos for name in ego.ego.take_over)
     safe = "".join(letter if letter.isalnum() or letter in "._-" else "-" for letter in taken)
     pedestrians = f"{config.crowd.pedestrians}ped"
-    return Path("results") / f"{scenario}_{controllers}{safe[:60]}_{pedestrians}_seed{config.seed}"
+    name = f"{scenario}_{controllers}{safe[:60]}_{pedestrians}_seed{config.seed}"
+    if not _is_told_by_name(config):
+        name += f"_{sha256(dump_toml(config).encode()).hexdigest()[:6]}"
+    return Path("results") / name
+
+
+def _is_told_by_name(config: RunConfig) -> bool:
+    """Whether the run is its scenario's own but for what the folder's name tells."""
+    ego = {key: value for key in ("take_over", "none") if (value := getattr(config.ego, key))}
+    told = {
+        "scenario": config.scenario,
+        "controller": config.controller,
+        "seed": config.seed,
+        "crowd": {"pedestrians": config.crowd.pedestrians},
+        "ego": ego,
+    }
+    try:
+        plain, _ = load([Layer("", told)])
+    except GivewayError:
+        return False
+    return dump_toml(plain) == dump_toml(config)
 
 
 def show(console: Console, result: RunResult, folder: Path) -> None:

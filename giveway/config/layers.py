@@ -128,6 +128,17 @@ def merge(layers: Sequence[Layer]) -> dict[str, Any]:
     return merged
 
 
+def undotted(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings as tables: ``{"crowd.preset": p}`` is ``{"crowd": {"preset": p}}``."""
+    tables: dict[str, Any] = {}
+    for name, value in settings.items():
+        nested: Any = value
+        for key in reversed(str(name).split(".")):
+            nested = {key: nested}
+        _merge_into(tables, nested)
+    return tables
+
+
 def _merge_into(target: dict[str, Any], values: Mapping[str, Any]) -> None:
     for key, value in values.items():
         if isinstance(value, Mapping) and isinstance(target.get(key), dict):

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from fmus import FmuError, read_profile
-from giveway.config.layers import Layer, build_config, merge, read_toml
+from giveway.config.layers import Layer, build_config, merge, read_toml, undotted
 from giveway.config.presets import parameters_of
 from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError, ScenarioError, VehicleError
@@ -183,7 +183,7 @@ def as_layer(config: RunConfig | dict[str, Any] | str | Path) -> Layer:
     if isinstance(config, RunConfig):
         return Layer("RunConfig", config.model_dump(exclude_unset=True))
     if isinstance(config, dict):
-        return Layer("configuration", config)
+        return Layer("configuration", undotted(config))
     msg = (  # type: ignore[unreachable]  # callers without a type checker
         f"configuration = {config!r}: expected a RunConfig, a dictionary with the keys of the TOML "
         "file, a scenario's name or a .toml file"

@@ -125,10 +125,11 @@ class RunConfig(Section):
     sumo: SumoConfig = SumoConfig()
     record: RecordConfig = RecordConfig()
     egos: tuple[dict[str, Any], ...] = Field(
-        (), description="one table per ego; what it leaves out is as in the run's own tables"
+        default=(),
+        description="one table per ego; what it leaves out is as in the run's own tables",
     )
     measure: Annotated[tuple[MeasureConfig, ...], BeforeValidator(read_measures)] = Field(
-        (), description="lines and areas on which the people are measured"
+        default=(), description="lines and areas on which the people are measured"
     )
 
     @model_validator(mode="after")

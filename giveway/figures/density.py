@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from giveway.config.measures import MeasureConfig
 from giveway.figures.conflict_points import Conflict, mark_conflicts
-from giveway.figures.style import SKY_BLUE, styled
+from giveway.figures.style import SKY_BLUE, NotebookFigure, styled
 from giveway.measures import DensityMap
 
 
@@ -28,7 +28,9 @@ def density_figure(
     """
     aspect = (found.top - found.bottom) / (found.right - found.left)
     height = min(max(7.5 * aspect, 4.0), 9.0)
-    figure = Figure(layout="constrained", figsize=(max(height / aspect, 4.0) + 1.6, height + 0.8))
+    figure = NotebookFigure(
+        layout="constrained", figsize=(max(height / aspect, 4.0) + 1.6, height + 0.8)
+    )
     axes = figure.subplots()
     extent = (found.left, found.right, found.bottom, found.top)
     image = axes.imshow(found.density, extent=extent, cmap="magma_r", interpolation="nearest")

@@ -23,6 +23,7 @@ from giveway.figures.style import (
     PURPLE,
     SKY_BLUE,
     VERMILION,
+    NotebookFigure,
     quiet_grid,
     styled,
 )
@@ -61,7 +62,7 @@ def state_figure(
     columns = [("", runs)] if isinstance(runs, EgoTrack) else list(runs)
     if not columns or any(not ego.time.size for _, ego in columns):
         raise ValueError("state figure: a run has no instants; pass tracks of at least one")
-    figure = Figure(figsize=(4.2 + 3.8 * len(columns), 6.2), layout="constrained")
+    figure = NotebookFigure(figsize=(4.2 + 3.8 * len(columns), 6.2), layout="constrained")
     grid = figure.subplots(3, len(columns), sharex=True, sharey="row", squeeze=False)
     for column, (label, ego) in enumerate(columns):
         speed, gap, force = grid[:, column]

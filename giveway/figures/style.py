@@ -7,6 +7,7 @@ differs in lightness as well, for print in black and white.
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from functools import wraps
+from io import BytesIO
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
@@ -68,6 +69,16 @@ def styled(draw: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
             return draw(*args, **kwargs)
 
     return wrapper
+
+
+class NotebookFigure(Figure):
+    """A figure that notebooks show, whatever backend matplotlib has there."""
+
+    def _repr_png_(self) -> bytes:
+        picture = BytesIO()
+        with house_style():
+            self.savefig(picture, format="png", dpi=120)
+        return picture.getvalue()
 
 
 def save_figure(figure: Figure, path: Path, dpi: float = 150) -> None:

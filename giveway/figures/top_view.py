@@ -14,7 +14,15 @@ from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from giveway.figures.conflict_points import Conflict, mark_conflicts
-from giveway.figures.style import BLACK, GREY, LIGHT_GREY, VERMILION, keep_panels, styled
+from giveway.figures.style import (
+    BLACK,
+    GREY,
+    LIGHT_GREY,
+    VERMILION,
+    NotebookFigure,
+    keep_panels,
+    styled,
+)
 from giveway.figures.view import Box
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.groups import PedestrianGroups
@@ -126,7 +134,9 @@ def crowd_view_figure(
         raise ValueError("crowd view: nobody was recorded; pass a track of at least one record")
     whole = Box.around(np.column_stack((crowd.x, crowd.y)), SURROUNDINGS).less_slender()
     height = min(max(7.5 * whole.aspect, 4.0), 9.0)
-    figure = Figure(layout="constrained", figsize=(height / whole.aspect + 1.6, height + 0.8))
+    figure = NotebookFigure(
+        layout="constrained", figsize=(height / whole.aspect + 1.6, height + 0.8)
+    )
     axes = figure.subplots()
     _draw_road(axes, [line for line in road or () if whole.touches(line)])
     lines = _draw_pedestrian_trajectories(axes, time, crowd, _colours(time))
@@ -182,7 +192,7 @@ def _arrange(whole: Box, parts: Sequence[Box]) -> tuple[Figure, Axes, list[Axes]
     rows = -(-count // columns)
     snapshots_width = 6.6 if side_by_side else 9.5  # [in]
     snapshots_height = rows * (snapshots_width / max(columns, 2) * part.aspect + 0.3) + 0.4
-    figure = Figure(layout="constrained")
+    figure = NotebookFigure(layout="constrained")
     if side_by_side:
         height = min(max(snapshots_height, 4.5), 9.0)
         overview_width = max(height / whole.aspect + 1.0, 3.8)

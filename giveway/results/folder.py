@@ -5,7 +5,7 @@ import shutil
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -16,14 +16,30 @@ from giveway.records.columns import Column
 from giveway.records.scene import SCENE_FILE
 from giveway.results.json_text import DECIMALS, json_text
 from giveway.results.names import FILES, SUMO_FOLDER
-from giveway.results.run_result import RunResult
+from giveway.results.run_tables import RunTables
 from giveway.results.scene import scene_of
 
 _RUNNING = '{"ending": "running"}\n'
 
 
+class Wording(NamedTuple):
+    """How a caller asks for what a message advises."""
+
+    force: str
+    folder: str
+
+
+FLAGS = Wording("--force", "--out")
+ARGUMENTS = Wording("force=True", "results=")
+
+
 def check_folder(
-    folder: Path, *, force: bool, ours: Collection[str] = FILES, writer: str = "giveway"
+    folder: Path,
+    *,
+    force: bool,
+    ours: Collection[str] = FILES,
+    writer: str = "giveway",
+    wording: Wording = FLAGS,
 ) -> None:
     """Make sure that the results may go to ``folder``; nothing is changed.
 
@@ -32,6 +48,7 @@ def check_folder(
         force: whether former results may be replaced.
         ours: the names of the files that may be there.
         writer: the program that writes them, for messages.
+        wording: of the caller, likewise.
 
     Raises:
         ResultsError: it exists and ``force`` is not given, it is a file, or it holds files that
@@ -45,24 +62,26 @@ def check_folder(
     except NotADirectoryError:
         raise ResultsError(
             f"{folder}: is a file, or below one; expected a folder for the results, name another "
-            "with --out"
+            f"with {wording.folder}"
         ) from None
     except OSError as error:
-        raise _unusable(folder, error) from error
+        raise _unusable(folder, error, wording) from error
     foreign = [name for name in present if name not in ours]
     if foreign:
         raise ResultsError(
             f"{folder}: holds '{foreign[0]}', which {writer} did not write; "
-            "name another folder with --out"
+            f"name another folder with {wording.folder}"
         )
     if not force and is_marked_only(folder):
         raise ResultsError(
             f"{folder}: another run is writing there, or was killed ('giveway recover' lists the "
-            "rows of killed runs); name another folder with --out, or replace it with --force"
+            f"rows of killed runs); name another folder with {wording.folder}, or replace it with "
+            f"{wording.force}"
         )
     if present and not force:
         raise ResultsError(
-            f"{folder}: results exist; replace them with --force or name another with --out"
+            f"{folder}: results exist; replace them with {wording.force} or name another with "
+            f"{wording.folder}"
         )
 
 
@@ -78,7 +97,7 @@ def is_marked_only(folder: Path) -> bool:
 
 
 @contextlib.contextmanager
-def taken_folder(folder: Path, *, force: bool) -> Iterator[bool]:
+def taken_folder(folder: Path, *, force: bool, wording: Wording = FLAGS) -> Iterator[bool]:
     """Have ``folder`` for one run; former results stay until the new ones are written.
 
     Returns:
@@ -89,7 +108,7 @@ def taken_folder(folder: Path, *, force: bool) -> Iterator[bool]:
     """
     with contextlib.ExitStack() as stack:
         try:
-            check_folder(folder, force=force)
+            check_folder(folder, force=force, wording=wording)
             folder.mkdir(parents=True, exist_ok=True)
             stack.enter_context(locked(folder))
             empty = not any(folder.iterdir())
@@ -98,16 +117,16 @@ def taken_folder(folder: Path, *, force: bool) -> Iterator[bool]:
                     marker.write(_RUNNING)
         except (FileExistsError, FolderInUseError):
             raise ResultsError(
-                f"{folder}: another run is writing there; name another folder with --out"
+                f"{folder}: another run is writing there; name another folder with {wording.folder}"
             ) from None
         except OSError as error:
-            raise _unusable(folder, error) from error
+            raise _unusable(folder, error, wording) from error
         yield empty
 
 
-def _unusable(folder: Path, error: OSError) -> ResultsError:
+def _unusable(folder: Path, error: OSError, wording: Wording) -> ResultsError:
     return ResultsError(
-        f"{folder}: cannot be written ({error.strerror}); name another folder with --out"
+        f"{folder}: cannot be written ({error.strerror}); name another folder with {wording.folder}"
     )
 
 
@@ -119,7 +138,7 @@ def release_folder(folder: Path) -> None:
         folder.rmdir()
 
 
-def write_results(result: RunResult, folder: Path, *, parquet: bool = False) -> None:
+def write_results(result: RunTables, folder: Path, *, parquet: bool = False) -> None:
     """Write everything but the pictures into ``folder``.
 
     Raises:
@@ -161,7 +180,7 @@ def _leave_incomplete(torn: Path, manifest: dict[str, Any]) -> None:
         _json(manifest)(torn.with_name("manifest.json"))
 
 
-def _summary(result: RunResult) -> dict[str, Any]:
+def _summary(result: RunTables) -> dict[str, Any]:
     """The first ego's row, the other egos' rows, and the computing times."""
     rows = [_plain(row) for row in result.summary_table.to_dict("records")]
     more = {"egos": rows} if len(rows) > 1 else {}
@@ -212,7 +231,7 @@ def require_parquet() -> None:
         ) from error
 
 
-def data_package(result: RunResult) -> dict[str, Any]:
+def data_package(result: RunTables) -> dict[str, Any]:
     """The Frictionless description of a run's CSV files."""
     name = f"giveway-{result.scenario.name}-{result.config.seed}"
     title = f"giveway run of {result.scenario.name}, seed {result.config.seed}"

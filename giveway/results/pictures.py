@@ -21,13 +21,13 @@ from giveway.geometry.kernel import Array
 from giveway.measures import density_map
 from giveway.results.ego_result import EgoResult
 from giveway.results.names import MARKS
-from giveway.results.run_result import RunResult
+from giveway.results.run_tables import RunTables
 from pedestrian_model import VciParameters, Vehicles, vehicle_influence
 
 _CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
 
 
-def write_pictures(result: RunResult, folder: Path) -> None:
+def write_pictures(result: RunTables, folder: Path) -> None:
     """Write the pictures of every ego; without one, the trajectories alone.
 
     The first ego's are ``state.png`` and ``top_view.png``, the second one's ``state_2.png`` ...
@@ -43,7 +43,7 @@ def write_pictures(result: RunResult, folder: Path) -> None:
         ) from error
 
 
-def _write_pictures(result: RunResult, folder: Path) -> None:
+def _write_pictures(result: RunTables, folder: Path) -> None:
     for ego, mark in zip(result.egos, MARKS, strict=False):
         save_figure(state_picture(result, ego), folder / f"state{mark}.png")
         save_figure(top_view_picture(result, ego), folder / f"top_view{mark}.png")
@@ -53,7 +53,7 @@ def _write_pictures(result: RunResult, folder: Path) -> None:
         save_figure(crowd_picture(result), folder / "top_view.png")
 
 
-def state_picture(result: RunResult, ego: EgoResult) -> Figure:
+def state_picture(result: RunTables, ego: EgoResult) -> Figure:
     """Speed, force and gap over time, MPC and PID phases marked (the paper's state figure)."""
     return state_figure(
         ego.track,
@@ -63,7 +63,7 @@ def state_picture(result: RunResult, ego: EgoResult) -> Figure:
     )
 
 
-def top_view_picture(result: RunResult, ego: EgoResult) -> Figure:
+def top_view_picture(result: RunTables, ego: EgoResult) -> Figure:
     """Trajectories and snapshots from above (the paper's screenshots figure)."""
     return top_view_figure(
         ego.track,
@@ -84,7 +84,7 @@ def _conflicts(ego: EgoResult) -> list[Conflict]:
     return list(zip(*(found[name] for name in columns), strict=True))
 
 
-def density_picture(result: RunResult) -> Figure:
+def density_picture(result: RunTables) -> Figure:
     """Mean density of the people over the run, and where the conflicts were."""
     people = len(result.crowd_track.ids)
     return density_figure(
@@ -95,7 +95,7 @@ def density_picture(result: RunResult) -> Figure:
     )
 
 
-def crowd_picture(result: RunResult) -> Figure:
+def crowd_picture(result: RunTables) -> Figure:
     """The trajectories of a run without an ego."""
     people = len(result.crowd_track.ids)
     return crowd_view_figure(
@@ -106,7 +106,7 @@ def crowd_picture(result: RunResult) -> Figure:
     )
 
 
-def _title(result: RunResult, ego: EgoResult) -> str:
+def _title(result: RunTables, ego: EgoResult) -> str:
     who = "" if ego.id == "ego" else f"ego {ego.id}, "
     return (
         f"{result.scenario.name}, {who}{ego.config.controller.upper()}, "

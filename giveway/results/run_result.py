@@ -1,267 +1,41 @@
-"""What a run leaves behind: tracks, tables, summaries."""
+"""What ``giveway.run`` returns: tables, and how they show themselves."""
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING
 
-import pandas as pd
+from giveway.results.notebook import Picture, Replay, html_table, one_line, plotted, replayed
+from giveway.results.run_tables import RunTables
 
-from giveway.config import RunConfig
-from giveway.config.layers import dump_toml
-from giveway.config.presets import parameters_of
-from giveway.geometry.bodies import VehicleShape
-from giveway.geometry.kernel import Array
-from giveway.measures import MEASURE_COLUMNS, measure_table
-from giveway.metrics import (
-    DELAY_FIELDS,
-    DELAY_SUMMARY_FIELDS,
-    PEDESTRIAN_FIELDS,
-    SEVERITY_FIELDS,
-    SUMMARY_FIELDS,
-    walks_without_ego,
-)
-from giveway.metrics.law import LAW_FIELDS
-from giveway.records.columns import (
-    EGO_COLUMNS,
-    LEDGER_COLUMNS,
-    PEOPLE_COLUMNS,
-    PREDICTION_COLUMNS,
-    SIGNAL_COLUMNS,
-    SUMMARY_HEAD,
-    TIMING_COLUMNS,
-    TRAJECTORY_COLUMNS,
-    Column,
-)
-from giveway.records.progress import Ending
-from giveway.records.tracks import (
-    BackgroundTrack,
-    CrowdTrack,
-    EgoTrack,
-    PeopleTrack,
-    SignalTrack,
-    Timings,
-)
-from giveway.results.effect import Effect
-from giveway.results.ego_result import EgoResult
-from giveway.results.law import (
-    ledger_table,
-    people_table,
-    signal_table,
-)
-from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
-from sumo_scenarios import Scenario
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
-class RunResult:
-    """Everything that a run left behind; the frames hold the columns of docs/results.md.
+@dataclass(frozen=True, repr=False)
+class RunResult(RunTables):
+    """Everything that a run left behind, at a prompt or in a notebook."""
 
-    Attributes:
-        config: the configuration in effect.
-        scenario: the scenario's files.
-        ending: why the run ended.
-        error: what ended it, if it failed.
-        time: (T,) [s] the control instants.
-        egos: the egos that were on the road, in the order of their departure.
-        crowd_track, background_track: the rows as arrays, in SI units.
-        signal_track: the changes of the traffic lights that govern something on an ego's way.
-        people_track: where people mean to walk, if the law of the road has a say on an ego's way.
-        elapsed: wall clock of the loop [s].
-        manifest: versions, hashes, seeds, the pedestrians' ledger.
-        sumo_messages: what SUMO printed.
-        road: outlines (k, 2) [m] of the network's lanes, crossings and walkingareas.
-        remarks: what differs from the scenario, or from what the user may expect.
-        effect: the people beside those of the run's twin; None: there is no twin.
-    """
+    def plot(self, kind: Picture = "top_view", ego: int = 0) -> "Figure":
+        """A picture of the run: from above, or speed, force and gap over time.
 
-    config: RunConfig
-    scenario: Scenario
-    ending: Ending
-    error: Exception | None
-    time: Array
-    egos: tuple[EgoResult, ...]
-    crowd_track: CrowdTrack
-    background_track: BackgroundTrack
-    signal_track: SignalTrack
-    people_track: PeopleTrack
-    timings: Timings
-    elapsed: float
-    manifest: dict[str, Any]
-    sumo_messages: str
-    road: tuple[Array, ...]
-    remarks: tuple[str, ...]
-    effect: Effect | None = None
-
-    @property
-    def completed(self) -> bool:
-        """Whether every ego has driven its distance."""
-        return self.ending is Ending.COMPLETED
-
-    @property
-    def config_text(self) -> str:
-        """The effective configuration as TOML."""
-        return dump_toml(self.config)
-
-    @property
-    def ego_track(self) -> EgoTrack:
-        """The first ego's rows.
+        Args:
+            kind: ``"top_view"`` or ``"state"``.
+            ego: which one's, counted from 0.
 
         Raises:
-            LookupError: no ego was on the road.
+            ResultsError: there is no such picture, or no such ego.
         """
-        if not self.egos:
-            raise LookupError(
-                "this run had no ego on the road; look at crowd_track and background_track"
-            )
-        return self.egos[0].track
+        return plotted(self, kind, ego)
 
-    @property
-    def shape(self) -> VehicleShape:
-        """The first ego's body."""
-        return self.egos[0].shape if self.egos else VehicleShape()
+    def replay(self) -> Replay:
+        """The page that plays the run: displayed by notebooks, saved by ``replay().save(path)``.
 
-    @property
-    def body_radius(self) -> float:
-        """The pedestrians' body radius [m]."""
-        return float(parameters_of(self.config.crowd.preset).body_radius)
+        Raises:
+            ResultsError: the run has no rows, or the disk for temporary files is full.
+        """
+        return replayed(self)
 
-    @cached_property
-    def ego(self) -> pd.DataFrame:
-        """One row per control instant and ego."""
-        names = [column.name for column in EGO_COLUMNS]
-        tables = [ego_table(ego.track, ego.id) for ego in self.egos]
-        return _stacked(tables, names, by="time")
+    def __repr__(self) -> str:
+        return one_line(self)
 
-    @cached_property
-    def trajectories(self) -> pd.DataFrame:
-        """Everybody's position and velocity, SUMO's FCD names."""
-        egos = [(ego.id, ego.track) for ego in self.egos]
-        return trajectory_table(self.time, egos, self.crowd_track, self.background_track)
-
-    @cached_property
-    def pedestrians(self) -> pd.DataFrame:
-        """One row per ego and pedestrian: closest approach, TTC, PET; delay, if there is a twin."""
-        names = [column.name for column in self.schemas["pedestrians"]]
-        tables = [
-            pd.concat([ego.pedestrians, ego.conflicts], axis=1).assign(ego=ego.id)
-            for ego in self.egos
-        ]
-        if not self.egos and self.crowd_track.ids:
-            tables = [walks_without_ego(self.time, self.crowd_track).reindex(columns=names)]
-        return _stacked(tables, names)
-
-    @cached_property
-    def predictions(self) -> pd.DataFrame:
-        """One row per control instant, ego, pedestrian and look-ahead, if it was asked for."""
-        names = [column.name for column in PREDICTION_COLUMNS]
-        ids = self.crowd_track.ids
-        tables = [prediction_table(ego.predictions, ego.id, ids) for ego in self.egos]
-        return _stacked(tables, names, by="time")
-
-    @cached_property
-    def ledger(self) -> pd.DataFrame:
-        """One row per encounter and violation of the law of the road."""
-        judged = [(ego.id, ego.ledger) for ego in self.egos if ego.ledger is not None]
-        return ledger_table([(name, event) for name, found in judged for event in found.events])
-
-    @cached_property
-    def signals(self) -> pd.DataFrame:
-        """The changes of the traffic lights on the egos' ways."""
-        return signal_table(self.signal_track)
-
-    @cached_property
-    def people(self) -> pd.DataFrame:
-        """Where people mean to walk, and how fast."""
-        return people_table(self.time, self.people_track, self.crowd_track.ids)
-
-    @cached_property
-    def measures(self) -> pd.DataFrame:
-        """Density, speed and flow on each ``[[measure]]``, interval by interval, by PedPy."""
-        return measure_table(self.config.measure, self.time, self.crowd_track)
-
-    @cached_property
-    def timing(self) -> pd.DataFrame:
-        """Computing times per control step; the only table that differs between equal runs."""
-        return timing_table(self.time, self.timings)
-
-    @property
-    def head(self) -> dict[str, Any]:
-        """The run's settings and ending: the first columns of the summary."""
-        return {
-            "scenario": self.scenario.name,
-            "controller": self.config.controller,
-            "pedestrians": len(self.crowd_track.ids),
-            "seed": self.config.seed,
-            "ending": str(self.ending),
-        }
-
-    @cached_property
-    def summary(self) -> dict[str, Any]:
-        """The run in one row, that of its first ego; without an ego, the head alone."""
-        return self.head | (self._row(self.egos[0]) if self.egos else {})
-
-    def _row(self, ego: EgoResult) -> dict[str, Any]:
-        head = {"controller": ego.config.controller, "ending": str(ego.ending), "ego": ego.id}
-        return self.head | head | ego.summary
-
-    @property
-    def summary_table(self) -> pd.DataFrame:
-        """One row per ego."""
-        names = [column.name for column in self.schemas["summary"]]
-        return pd.DataFrame([self._row(ego) for ego in self.egos], columns=names)
-
-    @property
-    def timing_summary(self) -> dict[str, Any]:
-        """Wall clock, real-time factor and each part's share of the loop."""
-        simulated = float(self.time[-1] - self.time[0]) if len(self.time) else 0.0
-        whole = self.timings.total("total")
-        shares = {name: self.timings.total(name) / whole for name in Timings.NAMES[:-1] if whole}
-        return {
-            "wall_clock": self.elapsed,
-            "real_time_factor": simulated / self.elapsed if self.elapsed else None,
-            "shares": shares,
-        } | ({} if self.effect is None else {"twin": self.effect.seconds})
-
-    @property
-    def schemas(self) -> dict[str, tuple[Column, ...]]:
-        """The columns of each CSV file."""
-        predicted = self.config.record.predictions is not None
-        optional: dict[str, tuple[Column, ...]]
-        optional = {"predictions": PREDICTION_COLUMNS} if predicted else {}
-        summary: tuple[Column, ...] = (*SUMMARY_HEAD, *SUMMARY_FIELDS)
-        if any(ego.law is not None for ego in self.egos):
-            summary = (*summary, *LAW_FIELDS)
-            optional |= {"ledger": LEDGER_COLUMNS, "people": PEOPLE_COLUMNS}
-        pedestrians = PEDESTRIAN_TABLE
-        if self.effect is not None:
-            summary = (*summary, *DELAY_SUMMARY_FIELDS)
-            pedestrians = (*pedestrians, *DELAY_FIELDS)
-        if len(self.signal_track.time):
-            optional |= {"signals": SIGNAL_COLUMNS}
-        if self.config.measure:
-            optional |= {"measures": MEASURE_COLUMNS}
-        return {
-            "ego": EGO_COLUMNS,
-            "trajectories": TRAJECTORY_COLUMNS,
-            "pedestrians": pedestrians,
-            "summary": summary,
-            "timing": TIMING_COLUMNS,
-            **optional,
-        }
-
-
-PEDESTRIAN_TABLE = (
-    Column("ego", "string", None, "SUMO id of the ego that the row is about"),
-    *PEDESTRIAN_FIELDS,
-    *SEVERITY_FIELDS,
-)
-
-
-def _stacked(tables: list[pd.DataFrame], names: list[str], by: str | None = None) -> pd.DataFrame:
-    """The tables one below the other, with the columns ``names``, perhaps ordered."""
-    if not tables:
-        return pd.DataFrame(columns=names)
-    table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
-    if by is not None and len(tables) > 1:
-        table = table.sort_values(by, kind="stable", ignore_index=True)
-    return table[names]
+    def _repr_html_(self) -> str:
+        return html_table(self)

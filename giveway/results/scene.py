@@ -4,13 +4,13 @@ import numpy as np
 
 from giveway.geometry.kernel import Array
 from giveway.records.scene import Scene
-from giveway.results.run_result import RunResult
+from giveway.results.run_tables import RunTables
 
 _AROUND = 60.0  # [m] of road kept beyond the places where somebody was
 _DECIMALS = 2  # centimetres
 
 
-def scene_of(result: RunResult) -> Scene:
+def scene_of(result: RunTables) -> Scene:
     """The part of a run's surroundings that a replay shows."""
     background = result.background_track
     _, first = np.unique(background.id, return_index=True)
@@ -35,7 +35,7 @@ def _rounded(outline: Array) -> list[list[float]]:
     return points
 
 
-def _extent(result: RunResult) -> tuple[Array, Array]:
+def _extent(result: RunTables) -> tuple[Array, Array]:
     """The corners of the area in which anybody was, with some room around it."""
     tracks = [(result.crowd_track.x, result.crowd_track.y)]
     tracks += [(result.background_track.x, result.background_track.y)]

@@ -55,6 +55,26 @@ def test_the_readmes_run(type_outside: Type, tmp_path: Path) -> None:
     assert not done.stderr
 
 
+def test_runs_that_differ_have_folders_that_differ(type_here: Type, tmp_path: Path) -> None:
+    short = ("--time-limit", 1, "--no-pictures", "--quiet")
+    wanted = ([*short], [*short, "--ego-initial-speed", 2], [*short, "--two-sided"])
+    for words in wanted:
+        done = type_here("run", "shared_space", "--pedestrians", 2, *words)
+        assert done.returncode == 0, done.stderr
+    names = sorted(path.name for path in (tmp_path / "results").iterdir())
+    assert len(names) == 3
+    assert all(re.fullmatch(r"shared_space_mpc_2ped_seed1_[0-9a-f]{6}", name) for name in names)
+
+
+def test_a_missing_vehicle_is_said_before_results_that_exist(
+    refused: Callable[..., str], tmp_path: Path
+) -> None:
+    (tmp_path / "there").mkdir()
+    (tmp_path / "there" / "ego.csv").touch()
+    line = refused("run", "shared_space", "--vehicle", "no.fmu", "--out", "there", code=1)
+    assert "no.fmu: no such file" in line
+
+
 def test_flags_override_the_file_and_the_file_the_scenario(type_here: Type, tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text("seed = 7\n[crowd]\npedestrians = 5\n")
     done = type_here("config", "shared_space", "--config", "study.toml", "--seed", 8)

@@ -308,3 +308,10 @@ def test_a_file_name_that_is_too_long_is_one_line(settings: dict, tmp_path: Path
     with pytest.raises(GivewayError) as refused:
         giveway.run(file)
     assert "\n" not in str(refused.value)
+
+
+def test_settings_from_python_may_be_dotted() -> None:
+    dotted, _ = load([as_layer({"crowd.pedestrians": 7, "crowd": {"two_sided": True}, "seed": 3})])
+    assert (dotted.crowd.pedestrians, dotted.crowd.two_sided, dotted.seed) == (7, True, 3)
+    with pytest.raises(ConfigError, match=r"\[crowd\] pedestrains: unknown key; did you mean"):
+        load([as_layer({"crowd.pedestrains": 7})])

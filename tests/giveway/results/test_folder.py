@@ -95,9 +95,14 @@ def test_the_manifests_command_gives_the_same_bytes_in_another_process(
 
 def test_existing_results_are_kept_unless_forced(folder: Path) -> None:
     before = (folder / "ego.csv").read_bytes()
-    with pytest.raises(ResultsError, match="--force"):
+    with pytest.raises(ResultsError, match="force=True"):
         giveway.run(CONFIG | {"seed": 5}, results=folder)
     assert (folder / "ego.csv").read_bytes() == before
+
+
+def test_python_is_told_its_own_words(folder: Path) -> None:
+    with pytest.raises(ResultsError, match="replace them with force=True or name another with res"):
+        giveway.run(CONFIG, results=folder)
 
 
 def test_force_replaces_and_never_mixes(tmp_path: Path) -> None:
@@ -117,7 +122,7 @@ def test_a_folder_with_somebody_elses_files_is_never_emptied(tmp_path: Path) -> 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX device files")
 def test_an_unwritable_place_is_refused_before_the_run() -> None:
-    with pytest.raises(ResultsError, match="--out"):
+    with pytest.raises(ResultsError, match="results="):
         giveway.run(CONFIG, results="/proc/giveway")
 
 
