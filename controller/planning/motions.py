@@ -1,8 +1,12 @@
 """How a manoeuvre comes about: an acceleration gone over to, or the last plan moved on."""
 
+import numpy as np
+
 from controller._jit import Array, kernel
 
 _EASING = 0.4  # [s] in which an acceleration is taken back before standstill or the wanted speed
+_COMFORT = 1.5  # [m/s^2] of a stop that nobody forces
+_CREEPING = 0.6  # [s] the last of the way, so that the stop has no jolt
 _SLOWING = 3.0  # [m/s^2] with which a speed above the wanted one is given up: as adaptive cruise
 # control does at most (ISO 15622: 3.5 m/s^2 at speed); obstacles have harder manoeuvres
 
@@ -46,6 +50,48 @@ def aim(
         after = max(v + time_step * a, 0.0)
         if after > fastest:
             after = max(fastest, min(after, v))
+        accelerations[i] = (after - v) / time_step
+        s += time_step * v
+        v = after
+
+
+@kernel
+def approach(
+    speed: float,
+    before: float,
+    wanted: float,
+    end: float,
+    fastest: float,
+    jerk: float,
+    time_step: float,
+    distance: Array,
+    speeds: Array,
+    accelerations: Array,
+) -> None:
+    """Fill a manoeuvre that drives up to where the way ends, and stops there in comfort.
+
+    Args:
+        speed: now [m/s].
+        before: the acceleration before [m/s^2].
+        wanted: [m/s^2] of speeding up, at most.
+        end: the distance [m] to where it is to stand.
+        fastest: [m/s] not exceeded.
+        jerk: [m/s^3] of changes.
+        time_step: [s].
+        distance: (N + 1,) [m] receives the manoeuvre.
+        speeds: (N + 1,) [m/s] likewise.
+        accelerations: (N + 1,) [m/s^2] likewise.
+    """
+    s, v, a = 0.0, speed, before
+    most = jerk * time_step
+    for i in range(len(speeds)):
+        distance[i], speeds[i] = s, v
+        # Until an acceleration has been eased off the car drives on: so much less is left to brake.
+        left = max(end - s - 0.75 * (_EASING + 2.0 * max(a, 0.0) / jerk) * v, 0.0)
+        aimed_at = min(fastest, np.sqrt(2.0 * _COMFORT * left), left / _CREEPING)
+        goal = min(max((aimed_at - v) / _EASING, -_SLOWING), wanted)
+        a += min(max(goal - a, -most), most)
+        after = max(v + time_step * a, 0.0)
         accelerations[i] = (after - v) / time_step
         s += time_step * v
         v = after

@@ -15,7 +15,7 @@ from controller._jit import Array
 from controller.foresight import Foresight, Manoeuvre, Prospect, Trials
 from controller.model import LongitudinalModel
 from controller.planning.costs import cost, stopping_need
-from controller.planning.motions import aim, shift
+from controller.planning.motions import aim, approach, shift
 from controller.planning.parameters import PlannerParameters, Weights
 
 _DRIVE_ON = 0  # its place among the trials; what was planned is the last
@@ -56,11 +56,11 @@ class Search:
         self._names = [
             "drive on" if a > 0.0 else f"{a:+g} m/s^2 to {least:g} m/s" for a, least in self._kinds
         ]
-        self._names.append("as planned")
+        self._names += ["up to the end", "as planned"]
         self._last, self.best = Manoeuvre.empty(N), Manoeuvre.empty(N)
         count = len(self._names)
         handicap = np.full(count, m.persistence)
-        self._as_planned = count - 1
+        self._up_to_end, self._as_planned = count - 2, count - 1
         handicap[self._as_planned] = 0.0
         self._trials = Trials.empty(count, N, handicap)
         self.gap, self.conflicts, self.calm = np.full(N, inf), np.zeros(N), np.full(N, inf)
@@ -92,6 +92,8 @@ class Search:
     ) -> str:
         """Search: driving on, what was planned, and the others in turn or all at once.
 
+        Where the way ends within the horizon, driving up to there is among the first.
+
         All are tried where the best so far comes too close to somebody. Else, what is best
         changes slowly: besides the plan, driving on and one of the others are tried by turns, so
         that the search stays as quick as the loop.
@@ -105,7 +107,14 @@ class Search:
             self._aim(_DRIVE_ON, speed, before, fastest)
         if self._planned:
             self._shift(speed)
-        first = ([_DRIVE_ON] if drive_on else []) + ([self._as_planned] if self._planned else [])
+        ends = allowed[-1] < fastest * self._time_step * len(allowed)
+        if ends:
+            self._approach(speed, before, fastest, float(allowed[-1]))
+        first = [
+            *([_DRIVE_ON] if drive_on else []),
+            *([self._as_planned] if self._planned else []),
+            *([self._up_to_end] if ends else []),
+        ]
         if self._compare(first, drive_on, allowed, foresight):
             self._drives_on = True
             return "clear"
@@ -149,6 +158,10 @@ class Search:
     def _aim(self, kind: int, speed: float, before: float, fastest: float) -> None:
         goal = (*self._kinds[kind], fastest)
         aim(speed, before, *goal, *self._limits, *self._trials.of(kind))
+
+    def _approach(self, speed: float, before: float, fastest: float, end: float) -> None:
+        goal = self._kinds[_DRIVE_ON][0], end, fastest
+        approach(speed, before, *goal, *self._limits, *self._trials.of(self._up_to_end))
 
     def _shift(self, speed: float) -> None:
         trial, b = self._trials.of(self._as_planned), self._manoeuvres.deceleration

@@ -113,3 +113,21 @@ def test_it_drives_up_to_who_stays_and_past_who_leaves(bystanders, speed):
 def test_without_the_terminal_condition_a_plan_may_end_too_fast():
     weights = Weights.of(PlannerParameters(terminal=False), ManoeuvreParameters())
     assert stopping_need(V_R, weights) < V_R**2 / (2.0 * 8.0) + 1.0  # full braking is not enough
+
+
+@pytest.mark.parametrize("room", [2.0, 4.2, 9.0])
+def test_it_drives_up_to_where_the_way_ends(room):
+    """To the waiting place inside a junction at green, say: it does not wait where it stands."""
+    controller = PlanningController(
+        Planner(MODEL, PlannerParameters()), TunedPid(TunedPidParameters(), MODEL)
+    )
+    x, v, hardest = 0.0, 0.0, 0.0
+    end = np.full(N, room + Observation(x, v, np.inf, FREE).safe_distance)
+    for _ in range(STEPS):
+        seen = Observation(x, v, np.inf, end)
+        force = controller.control(seen).force
+        x += DT * v
+        after = max(0.0, MODEL.decay * v + MODEL.speed_per_force * force)
+        hardest, v = max(hardest, (v - after) / DT), after
+    assert room - 0.5 < x < room + 0.1
+    assert hardest < 2.0

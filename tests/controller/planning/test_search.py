@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from controller import ControllerError, Manoeuvre, ManoeuvreParameters, PlannerParameters
 from controller.planning.costs import corridor, cost, stopping_need
-from controller.planning.motions import aim, shift
+from controller.planning.motions import aim, approach, shift
 from controller.planning.parameters import Weights
 from controller.planning.search import copy
 
@@ -237,3 +237,17 @@ def test_a_speed_above_the_wanted_one_is_given_up_without_a_hard_brake(wanted):
     aim(13.9, 0.0, wanted, 0.0, 4.0, 8.0, 0.05, m.distance, m.speed, m.acceleration)
     assert -3.0 - 1e-9 <= m.acceleration.min() < -2.9
     assert m.speed[-1] < 6.0
+
+
+@given(speed=st.floats(0.0, 15.0), room=st.floats(0.5, 60.0), fastest=st.floats(1.0, 15.0))
+@settings(deadline=None)
+def test_driving_up_to_the_end_of_the_way_is_a_stop_in_comfort_there(speed, room, fastest):
+    assume(speed**2 / 3.0 + 0.7 * speed <= room)  # such a stop is possible
+    m = Manoeuvre.empty(400)
+    approach(speed, 0.0, 2.5, room, fastest, 8.0, DT, m.distance, m.speed, m.acceleration)
+    assert np.allclose(np.diff(m.distance), DT * m.speed[:-1])
+    assert m.distance[-1] <= room + 0.05
+    assert m.speed.max() <= max(speed, fastest) + 0.05
+    assert m.acceleration.min() >= (-3.1 if speed > fastest else -2.5)
+    if fastest * 20.0 > room + 20.0:
+        assert m.distance[-1] > room - 0.2
