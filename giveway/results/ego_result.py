@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from giveway.config import EgoRunConfig, RunConfig
@@ -19,7 +20,7 @@ from giveway.metrics import (
     summarise,
     vehicle_contacts,
 )
-from giveway.metrics.law import Drive, Ledger, ledger
+from giveway.metrics.law import Drive, Ledger, Undisturbed, ledger
 from giveway.recording.recorded import RecordedEgo, RecordedRows
 from giveway.records.progress import Ending
 from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack
@@ -105,8 +106,21 @@ class EgoResult:
             comfortable=self.config.regulation.comfortable_deceleration,
             goal=self.goal,
             stop_speed=self.config.record.stop_speed,
+            undisturbed=self._undisturbed,
         )
         return ledger(drive, self.vehicle_contacts)
+
+    @property
+    def _undisturbed(self) -> Undisturbed | None:
+        """The twin's people by their places in the run's crowd."""
+        if self.effect is None:
+            return None
+        twin, places = self.effect.twin, {name: k for k, name in enumerate(self.crowd.ids)}
+        place = np.array([places.get(name, -1) for name in twin.ids], dtype=np.int64)
+        who = place[twin.pedestrian]
+        known = who >= 0
+        steps = twin.step[known] - self.first
+        return Undisturbed(steps, who[known], twin.x[known], twin.y[known])
 
     @cached_property
     def summary(self) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,15 @@ from giveway.records.way import EgoWay
 
 NO_LIGHT = "O"
 _SAME = 1e-6  # [s]
+
+
+class Undisturbed(NamedTuple):
+    """Where people were in the run's twin, in which they did not feel the ego; R records."""
+
+    step: NDArray[np.int64]  # (R,) control instants, counted from the ego's first one
+    pedestrian: NDArray[np.int64]  # (R,) as in the run's crowd
+    x: Array  # (R,) [m]
+    y: Array  # (R,) [m]
 
 
 @dataclass(frozen=True)
@@ -33,6 +43,7 @@ class Drive:
         comfortable: deceleration [m/s^2] that a yellow light asks of it.
         goal: position [m] at which it leaves the road.
         stop_speed: it stands below it [m/s].
+        undisturbed: the people of the run's twin; None: there is no twin.
     """
 
     ego: EgoTrack
@@ -46,6 +57,7 @@ class Drive:
     comfortable: float = 2.0
     goal: float = np.inf
     stop_speed: float = STOP_SPEED
+    undisturbed: Undisturbed | None = None
 
     @cached_property
     def path(self) -> EgoPath:

@@ -29,6 +29,9 @@ PULL_AWAY = 2.0
 TOUCHES = 2.0
 """[m] from its body an ego that stands may still push somebody; one that drives may anywhere."""
 
+ABOUT = 2.0
+"""[s] before and after it what happens in the twin is the same event."""
+
 BY = 20.0
 """[m] before a crossing from which on the ego may push people back there."""
 
@@ -103,7 +106,8 @@ def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:
 def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
     """How far somebody with priority went back where the ego may have pushed them, if at all.
 
-    What others on foot or SUMO's vehicles do to them while the ego stands away does not count.
+    What others on foot or SUMO's vehicles do to them while the ego stands away does not count, nor
+    what happens to them in the run's twin as well.
 
     Args:
         drive: the ego's.
@@ -121,10 +125,27 @@ def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
         farthest = np.maximum.accumulate(progress)
         back = farthest - progress
         k = int(np.argmax(back))
-        if back[k] > (0.0 if worst is None else worst.distance):
-            at = begin + int(np.argmax(progress[: k + 1]))
-            worst = PushedBack(area, walk, at, float(back[k]))
+        at = begin + int(np.argmax(progress[: k + 1]))
+        distance = float(back[k]) - _goes_back_anyway(drive, area, walk, at, begin + k)
+        if distance > (0.0 if worst is None else worst.distance):
+            worst = PushedBack(area, walk, at, distance)
     return [] if worst is None else [worst]
+
+
+def _goes_back_anyway(drive: Drive, area: Area, walk: Walk, first: int, last: int) -> float:
+    """How far [m] a person goes back in the twin about the records ``first`` to ``last``."""
+    twin = drive.undisturbed
+    if twin is None:
+        return 0.0
+    time, steps = drive.ego.time, walk.steps
+    since, until = time[steps[first]] - ABOUT, time[steps[last]] + ABOUT
+    within = np.searchsorted(time, (since, until))
+    mine = (twin.pedestrian == walk.pedestrian) & (twin.step >= within[0]) & (twin.step < within[1])
+    u, _ = area.place(twin.x[mine], twin.y[mine])
+    along, _ = area.place(walk.x[:1], walk.y[:1])
+    onwards = np.isclose(along[0], walk.progress[0])
+    progress = u if onwards else -u
+    return float(np.max(np.maximum.accumulate(progress) - progress, initial=0.0))
 
 
 def _may_push(drive: Drive, walk: Walk) -> NDArray[np.bool_]:

@@ -1,5 +1,7 @@
 """Who is met at a crossing, and who is not let pass; each definition from both of its sides."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from support.crossing_world import (
@@ -16,7 +18,7 @@ from support.crossing_world import (
     walker,
 )
 
-from giveway.metrics.law import ledger
+from giveway.metrics.law import Undisturbed, ledger
 from giveway.metrics.law.areas import areas_of
 
 THROUGH = ego((15.0, 0.0))  # at 4 m/s over the crossing, on it from 5 s on
@@ -240,6 +242,22 @@ def test_an_ego_that_stands_away_from_them_pushes_nobody_back(front, speed, rows
     person = Person(np.column_stack([np.full(120, 21.0), y]), way=((21.0, -20.0),))
     found = judged(ego((6.0, 0.0), speed=speed, front=front), person, front=front)
     assert kinds(found).count("pushed back") == rows
+
+
+@pytest.mark.parametrize(
+    ("back", "later", "pushed"),
+    [(0.0, 0.0, 0.5), (0.4, 0.5, 0.1), (0.5, 0.0, 0.0), (0.5, 9.0, 0.5)],
+)
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_what_happens_in_the_twin_as_well_is_not_the_egos_doing(back, later, pushed, side):
+    t = np.arange(270) * 0.05
+    y = side * np.interp(t, [0.0, 3.0, 4.0, 9.0], [4.4, 1.0, 1.5, 1.5])
+    person = Person(np.column_stack([np.full(270, 22.0), y]), way=((22.0, -20.0 * side),))
+    there = side * np.interp(t - later, [0.0, 3.0, 4.0, 9.0], [4.4, 1.0, 1.0 + back, 1.0 + back])
+    twin = Undisturbed(np.arange(270), np.zeros(270, dtype=np.int64), np.full(270, 22.0), there)
+    found = ledger(replace(drive(WAITS, person), undisturbed=twin))
+    assert found.summary.pushed_back == pytest.approx(pushed)
+    assert kinds(found).count("pushed back") == (pushed > 0.3)
 
 
 def test_how_long_people_stand_at_a_zebra():
