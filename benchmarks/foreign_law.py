@@ -80,8 +80,9 @@ def drive(scenario: Path, ego: str, seed: int) -> dict[str, Any]:
     }
     try:
         result = giveway.run(settings)
-    except giveway.GivewayError as error:
-        return {"ego": ego, "seed": seed, "failed": str(error)}
+    except Exception as error:  # no drive ends the campaign
+        told = "" if isinstance(error, giveway.GivewayError) else f"{type(error).__name__}: "
+        return {"ego": ego, "seed": seed, "failed": f"{told}{error}"}
     summary, events = result.summary, result.ledger
     violations = events[events.violation.astype(bool)] if len(events) else events
     return {

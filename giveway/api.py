@@ -19,7 +19,7 @@ from giveway.cosimulation.loop import Loop
 from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.cosimulation.twin import Twin, twin_of
 from giveway.ego.vehicle import model_margin
-from giveway.errors import CrowdError, GivewayError, ResultsError
+from giveway.errors import CrowdError, GivewayError, ResultsError, SumoError
 from giveway.metrics import delays
 from giveway.processes.child import STDERR_FILE
 from giveway.processes.heartbeat import Phase
@@ -42,6 +42,7 @@ from giveway.results.folder import (
 )
 from giveway.results.provenance import manifest
 from giveway.results.run_result import RunResult
+from giveway.sumo.library import is_refusal
 from pedestrian_model import PedestrianModelError
 from sumo_scenarios import Scenario
 
@@ -223,30 +224,42 @@ def simulate(
         try:
             ending = loop.run(watcher, interrupt)
         except Exception as failure:  # whatever it is, the rows so far are the user's
-            error, ending = failure, Ending.FAILED
+            error, ending = _in_our_words(failure, checked.scenario), Ending.FAILED
         elapsed = perf_counter() - began
         result = _result(parts, checked.scenario, recorder, loop, ending, error, elapsed)
         if loop.followed is None or error is not None or ending is Ending.INTERRUPTED:
             return result
-        gone_on, error = _guarded(lambda: loop.follow_up(ending, interrupt))
+        gone_on, error = _guarded(lambda: loop.follow_up(ending, interrupt), checked.scenario)
         tracks = {ego.id: ego.track for ego in result.egos}
         driven = Driven(tracks, parts.horizon, float(result.time[0]))
     twin = None
     if gone_on and error is None and result.egos:
         heartbeat = recorder.journal.heartbeat
         make = partial(twin_of, checked, loop.followed, driven, heartbeat, interrupt, native_log)
-        twin, error = _guarded(make)
+        twin, error = _guarded(make, checked.scenario)
     return _with_twin(result, loop.followed, twin, error, began + elapsed)
 
 
-def _guarded(call: Callable[[], Result]) -> tuple[Result | None, Exception | None]:
+def _in_our_words(error: Exception, scenario: Scenario) -> Exception:
+    """What a run has failed by; SUMO's own errors with the scenario that they are about."""
+    if not is_refusal(error):
+        return error
+    reason = " ".join(str(error).split())
+    told = SumoError(f"{scenario.config_file}: SUMO failed: {reason}")
+    told.__cause__ = error
+    return told
+
+
+def _guarded(
+    call: Callable[[], Result], scenario: Scenario
+) -> tuple[Result | None, Exception | None]:
     """What a call returns, or its failure: the run's rows are the user's in any case."""
     try:
         return call(), None
     except PedestrianModelError as error:
         return None, CrowdError(f"crowd of the twin: {error}")
     except Exception as error:
-        return None, error
+        return None, _in_our_words(error, scenario)
 
 
 def _with_twin(

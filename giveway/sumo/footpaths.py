@@ -103,10 +103,26 @@ class FootPaths:
     def _by_distance(
         self, person: str, edges: Sequence[str], arrival: float, candidates: Sequence[int]
     ) -> int:
-        """The edge where the rest of the route is as long as the person's; for a repeated edge."""
-        left = self._sumo.person.getWalkingDistance(person, edges[-1], arrival)
+        """The edge where the rest of the route is as long as the person's; for a repeated edge.
+
+        Where no footpaths join the edges SUMO knows no distance: then it is the nearest one.
+        """
+        sumo = self._sumo
+        try:
+            left = sumo.person.getWalkingDistance(person, edges[-1], arrival)
+        except (sumo.TraCIException, sumo.FatalTraCIError):
+            return self._nearest(edges, candidates, *sumo.person.getPosition(person))
         lengths = [self._sumo.lane.getLength(f"{edge}_0") for edge in edges]
         return min(candidates, key=lambda k: abs(sum(lengths[k + 1 : -1]) + arrival - left))
+
+    def _nearest(self, edges: Sequence[str], candidates: Sequence[int], x: float, y: float) -> int:
+        """The first of the candidates whose footpath is closest to a place [m]."""
+
+        def distance(k: int) -> float:
+            foot = self.foot(edges[k], x, y)
+            return math.inf if foot is None else foot.distance
+
+        return min(candidates, key=distance)
 
     def _joined(self, edge: str) -> tuple[str, str]:
         """The junctions at both ends of an edge."""

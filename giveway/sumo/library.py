@@ -34,6 +34,12 @@ def direct(sumo: Any, domain: str, function: str) -> Any:
     return getattr(native, f"{domain}_{function}", getattr(getattr(sumo, domain), function))
 
 
+def is_refusal(error: BaseException) -> bool:
+    """Whether an error is SUMO's own, from a call that it could not carry out."""
+    sumo = import_libsumo()
+    return isinstance(error, (sumo.TraCIException, sumo.FatalTraCIError))  # no common base
+
+
 def version() -> str:
     """SUMO's own version string."""
     return str(import_libsumo().simulation.getVersion()[1])

@@ -20,6 +20,7 @@ CITIES = {
     # 4 x 4 junctions, 100 m apart, A0 in the south-west, D3 in the north-east
     "signals": [*GRID, *PAVED, "--default-junction-type", "traffic_light"],
     "priority": [*GRID, *PAVED, "--default-junction-type", "priority"],
+    "islands": [*GRID, "--sidewalks.guess", "--walkingareas"],  # corners that no crossing joins
     "bare": [*GRID, "--sidewalks.guess"],  # no crossings, no walkingareas
 }
 

@@ -97,6 +97,12 @@ def test_a_walk_that_comes_by_twice_is_told_from_where_the_walker_is(look: Look)
     assert len(look("take", "bare", person(round_trip), time=320.0)["edges"]) == 2
 
 
+def test_a_walk_that_sumo_finds_no_way_for_is_told_from_the_nearest_edge(look: Look) -> None:
+    """SUMO walks on across a junction without a footpath, but cannot say how far it is."""
+    round_trip = '<walk edges="A1B1 B1B2 B2A2 A2A1 A1B1 B1C1"/>'
+    assert len(look("take", "islands", person(round_trip), time=30.0)["edges"]) == 6
+
+
 @pytest.mark.parametrize(
     ("walk", "speed"),
     [
