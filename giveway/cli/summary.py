@@ -51,6 +51,11 @@ _OF_THE_PEOPLE = (  # shown where there is a twin
     ("People who gave way, of those who crossed", "share_gave_way", "%"),
     ("Delay of background vehicles", "traffic_delay", "s"),
 )
+_OF_WALKS = (  # shown where there is no ego
+    ("Mean walking speed", "mean_walking_speed", "m/s"),
+    ("Time slower than 0.2 m/s, on average", "mean_slow_time", "s"),
+    ("Way, on average", "mean_walk", "m"),
+)
 _COUNTED = (
     ("Pedestrians added", "added"),
     ("Persons taken over from SUMO", "taken_over"),
@@ -75,6 +80,9 @@ def summary_table(result: RunResult) -> Table:
     for label, name, unit in _shown(result):
         cells = [_formatted(ego.summary.get(name), unit) for ego in result.egos]
         table.add_row(label, *(value for value, _ in cells), max(unit for _, unit in cells))
+    if result.walks is not None:
+        for label, name, unit in _OF_WALKS:
+            table.add_row(label, *_formatted(result.summary[name], unit))
     blanks = [""] * max(0, len(result.egos) - 1)
     for label, count in _counts(result):
         table.add_row(label, count, *blanks, "")

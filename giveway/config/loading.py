@@ -96,11 +96,13 @@ def _with_one_ego(config: RunConfig, layers: Sequence[Layer]) -> RunConfig:
     """``config`` with the kind of ego that was asked for last, and nothing left of the others.
 
     A scenario's own route means nothing to a run that takes over a vehicle; written down beside
-    it, the two would contradict each other.
+    it, the two would contradict each other. Where nobody drives, the route stays: zone and crowd
+    are about the way that an ego would have.
     """
     asked = [key for layer in layers for key in _KINDS_OF_EGO if _ego_of(layer).get(key)]
     nothing: dict[str, Any] = {"take_over": (), "route": (), "none": False}
-    others = {key: value for key, value in nothing.items() if asked and key != asked[-1]}
+    kept = {"none": {"none", "route"}}.get(asked[-1], {asked[-1]}) if asked else set(nothing)
+    others = {key: value for key, value in nothing.items() if key not in kept}
     return config.model_copy(update={"ego": config.ego.model_copy(update=others)})
 
 
@@ -117,7 +119,7 @@ def _require_one_ego(layer: Layer) -> None:
     """
     ego = _ego_of(layer)
     named = [layer.name(("ego", key)) for key in _KINDS_OF_EGO if ego.get(key)]
-    if len(named) > 1:
+    if len(named) > 1 and ego.get("take_over"):
         raise ConfigError(
             f"{' and '.join(named)}: contradict each other; expected one of them: a vehicle of the "
             "scenario, an inserted one, or none"

@@ -37,7 +37,9 @@ class EgoConfig(Section):
         "ids of the scenario's vehicles to drive from their departure on, comma-separated",
         flag="--ego",
     )
-    none: bool = option(False, None, "drive no vehicle at all", flag="--no-ego")
+    none: bool = option(
+        False, None, "drive no vehicle at all; a route is where one would", flag="--no-ego"
+    )
     id: str = option("ego", None, "SUMO id of an inserted ego", pattern=_SUMO_ID)
     route: NameList = option((), None, "edges that an inserted ego drives along, comma-separated")
     lane: int | None = option(

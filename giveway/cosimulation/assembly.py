@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import shapely
+from shapely.ops import substring
 
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.presets import parameters_of
@@ -23,6 +25,8 @@ from giveway.ego.vehicle import model_remark
 from giveway.ego.waiting import WaitingEgo, make_waiting_ego, recorded_ego
 from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath
 from giveway.records.tracks import EgoTrack
 from giveway.scenario_files import StartOptions, free_prefix
 from giveway.sumo.session import SumoSession
@@ -112,7 +116,8 @@ def assemble(
     config, files, zone = checked.config, checked.files, checked.zone
     egos, time_step = checked.egos, checked.time_step
     controllers = [make_controller(ego, time_step) for ego in egos if driven is None]
-    walkers = not zone.nowhere and not (zone.follows_egos and not egos)
+    imagined = config.ego.route if config.ego.none else ()
+    walkers = not zone.nowhere and not (zone.follows_egos and not egos and not imagined)
     moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
     sumo = stack.enter_context(
         SumoSession(
@@ -125,6 +130,9 @@ def assemble(
     )
     substeps = substeps_of(time_step, sumo.step_length)
     remarks = list(sumo.start.remarks)
+    way = _imagined_way(config, sumo) if imagined else None
+    if way is not None:
+        zone = zone.along(_driven_part(way, config))
     network = WalkNetwork.read(files.net_file) if walkers or config.crowd.walls else None
     if network is not None:
         zone.require_overlap(network.boundary)
@@ -141,7 +149,7 @@ def assemble(
         departures.forgo(driven.start)
     else:
         departures.run_until_first(goes_on)
-    roster = _roster(config, departures, sumo, files.net_file, network)
+    roster = _roster(config, departures, way, sumo, files.net_file, network)
     exchange = None
     if network is not None:
         exchange = Exchange(
@@ -186,6 +194,22 @@ def assemble(
         ),
         remarks=tuple(remarks),
     )
+
+
+def _imagined_way(config: RunConfig, sumo: SumoSession) -> EgoPath:
+    """The path that an inserted ego would have, where nobody drives."""
+    ego = config.ego
+    lane_path = sumo.lanes.along(ego.route, ego.lane, start=ego.depart_position)
+    return EgoPath.through(lane_path.points)
+
+
+def _driven_part(way: EgoPath, config: RunConfig) -> Array:
+    """(k, 2) [m] the part of a path between departure and goal."""
+    ego, line = config.ego, shapely.LineString(way.vertices)
+    end = line.length
+    if ego.travel_distance is not None:
+        end = min(end, ego.depart_position + ego.travel_distance)
+    return np.array(substring(line, ego.depart_position, end).coords)
 
 
 def _priority(
@@ -243,6 +267,7 @@ def _remarks_on(network: WalkNetwork, net_file: Path) -> list[str]:
 def _roster(
     config: RunConfig,
     departures: Departures,
+    way: EgoPath | None,
     sumo: SumoSession,
     net_file: Path,
     network: WalkNetwork | None,
@@ -251,7 +276,7 @@ def _roster(
     if not config.crowd.pedestrians:
         return Roster()
     prefix = free_prefix(PREFIX, (file for file in sumo.start.read if file != net_file))
-    spawned = spawn(config.crowd, departures.first_path, config.seed, prefix)
+    spawned = spawn(config.crowd, departures.first_path or way, config.seed, prefix)
     for name in departures.names:
         if name in spawned.ids:
             raise ConfigError(f"--ego-id '{name}': a pedestrian has this id; choose another")

@@ -291,7 +291,8 @@ class Loop:
         if self._law.ruled:
             self._law.walks(roster)
         crowd = roster.crowd
-        within = self._near if self._k % self._far_steps else np.inf
+        everybody = not self._parts.egos or self._k % self._far_steps == 0
+        within = np.inf if everybody else self._near
         self._recorder.crowd(roster.present, crowd.position, crowd.velocity, self._places(), within)
 
     def _record_predictions(

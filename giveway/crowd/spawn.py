@@ -47,7 +47,7 @@ def spawn(config: CrowdConfig, path: EgoPath | None, seed: int, prefix: str = PR
     if config.two_sided:
         if path is None:
             raise CrowdError(
-                "--two-sided: mirrors about the way of an inserted ego; insert one (--ego-route)"
+                "--two-sided: mirrors about the way of an inserted ego; name it (--ego-route)"
             )
         axis = _axis(config, path)
     position = _scatter(config, random, axis)

@@ -19,7 +19,7 @@ _FARTHEST = 1e7  # [m] a corner; beyond it a millimetre is lost in rounding
 
 
 class Zone:
-    """Where pedestrians are ours: round the egos, in a polygon, everywhere or nowhere.
+    """Where pedestrians are ours: round the egos or their way, in a polygon, everywhere, nowhere.
 
     Args:
         text: as in the configuration.
@@ -52,6 +52,21 @@ class Zone:
             shapely.prepare((self._inner, self._outer))
         else:
             raise ConfigError(f"--zone '{text}': {_EXPECTED}")
+
+    def along(self, way: Array) -> "Zone":
+        """The zone of a run without an ego: where one would be that drives along ``way``.
+
+        Args:
+            way: (k, 2) [m].
+        """
+        if self._radius is None:
+            return self
+        line, zone = shapely.LineString(way), Zone("none", self._margin)
+        zone._text, zone.nowhere = self._text, False
+        zone._inner = line.buffer(self._radius)
+        zone._outer = line.buffer(self._radius + self._margin)
+        shapely.prepare((zone._inner, zone._outer))
+        return zone
 
     @property
     def follows_egos(self) -> bool:

@@ -12,7 +12,14 @@ from giveway.metrics.delays import (
     summarise_delays,
 )
 from giveway.metrics.encroachment import EGO, encroachment, post_encroachment_time
-from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS, pedestrian_metrics, walks_without_ego
+from giveway.metrics.pedestrians import (
+    PEDESTRIAN_FIELDS,
+    WALK_SUMMARY_FIELDS,
+    WalkSummary,
+    pedestrian_metrics,
+    summarise_walks,
+    walks_without_ego,
+)
 from giveway.metrics.severity import SEVERITIES, SEVERITY_FIELDS, severities
 from giveway.metrics.summary import (
     SUMMARY_FIELDS,
@@ -36,12 +43,14 @@ __all__ = [
     "SIDE",
     "STOP_SPEED",
     "SUMMARY_FIELDS",
+    "WALK_SUMMARY_FIELDS",
     "Critical",
     "DelaySummary",
     "Delays",
     "Proximity",
     "Summary",
     "VehicleContact",
+    "WalkSummary",
     "conflicts",
     "contacts",
     "delays",
@@ -53,6 +62,7 @@ __all__ = [
     "severities",
     "summarise",
     "summarise_delays",
+    "summarise_walks",
     "vehicle_contacts",
     "waiting_times",
     "walks_without_ego",

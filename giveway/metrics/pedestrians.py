@@ -1,5 +1,6 @@
 """One row per pedestrian: how it walked, and how close the ego came to it."""
 
+from dataclasses import asdict, dataclass
 from typing import Annotated
 
 import numpy as np
@@ -110,6 +111,34 @@ def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> pd.DataFr
         crowd: the crowd's track.
     """
     return pd.DataFrame(_walks(crowd, PedestrianGroups(crowd), time[crowd.step]))
+
+
+@dataclass(frozen=True)
+class WalkSummary:
+    """How people walked in a run without an ego; nan says that there were none."""
+
+    mean_walking_speed: Annotated[float, Quantity("m/s", "mean of these people's mean speeds")]
+    mean_slow_time: Annotated[
+        float, Quantity("s", "mean time for which one of them was slower than 0.2 m/s")
+    ]
+    mean_walk: Annotated[float, Quantity("m", "mean length of these people's paths")]
+
+    def as_dict(self) -> dict[str, float]:
+        """Names and values, in the order of ``WALK_SUMMARY_FIELDS``."""
+        return asdict(self)
+
+
+WALK_SUMMARY_FIELDS = columns_of(WalkSummary)
+
+
+def summarise_walks(table: pd.DataFrame) -> WalkSummary:
+    """The rows of :func:`walks_without_ego` in one."""
+    seen = table[table["first_seen"].notna()]
+    return WalkSummary(
+        mean_walking_speed=float(seen["mean_speed"].mean()),
+        mean_slow_time=float(seen["slow_time"].mean()),
+        mean_walk=float(seen["path_length"].mean()),
+    )
 
 
 def _walks(

@@ -68,9 +68,11 @@ def one_line(result: RunTables) -> str:
     """What ``repr`` says of a result."""
     head = result.head
     simulated = float(result.time[-1] - result.time[0]) if len(result.time) else 0.0
-    egos = f"{len(result.egos)} egos, " if len(result.egos) != 1 else ""
+    driver = head["controller"] or "no ego"
+    if len(result.egos) > 1:
+        driver = f"{len(result.egos)} egos"
     return (
-        f"<RunResult {head['scenario']}: {head['controller']}, {egos}{head['pedestrians']} "
+        f"<RunResult {head['scenario']}: {driver}, {head['pedestrians']} "
         f"pedestrians, seed {head['seed']}; {head['ending']} after {simulated:.2f} s>"
     )
 

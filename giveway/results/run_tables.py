@@ -18,6 +18,8 @@ from giveway.metrics import (
     PEDESTRIAN_FIELDS,
     SEVERITY_FIELDS,
     SUMMARY_FIELDS,
+    WALK_SUMMARY_FIELDS,
+    summarise_walks,
     walks_without_ego,
 )
 from giveway.metrics.law import LAW_FIELDS
@@ -146,9 +148,16 @@ class RunTables:
             pd.concat([ego.pedestrians, ego.conflicts], axis=1).assign(ego=ego.id)
             for ego in self.egos
         ]
-        if not self.egos and self.crowd_track.ids:
-            tables = [walks_without_ego(self.time, self.crowd_track).reindex(columns=names)]
+        if self.walks is not None:
+            tables = [self.walks.reindex(columns=names)]
         return _stacked(tables, names)
+
+    @cached_property
+    def walks(self) -> pd.DataFrame | None:
+        """How everybody walked in a run without an ego; None: there was one, or nobody walked."""
+        if self.egos or not self.crowd_track.ids:
+            return None
+        return walks_without_ego(self.time, self.crowd_track)
 
     @cached_property
     def predictions(self) -> pd.DataFrame:
@@ -189,7 +198,7 @@ class RunTables:
         """The run's settings and ending: the first columns of the summary."""
         return {
             "scenario": self.scenario.name,
-            "controller": self.config.controller,
+            "controller": "" if self.config.ego.none else self.config.controller,
             "pedestrians": len(self.crowd_track.ids),
             "seed": self.config.seed,
             "ending": str(self.ending),
@@ -197,7 +206,9 @@ class RunTables:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """The run in one row, that of its first ego; without an ego, the head alone."""
+        """The run in one row: that of its first ego, or how people walked without one."""
+        if self.walks is not None:
+            return self.head | summarise_walks(self.walks).as_dict()
         return self.head | (self._row(self.egos[0]) if self.egos else {})
 
     def _row(self, ego: EgoResult) -> dict[str, Any]:
@@ -206,9 +217,12 @@ class RunTables:
 
     @property
     def summary_table(self) -> pd.DataFrame:
-        """One row per ego."""
+        """One row per ego; of a run without one, how people walked."""
         names = [column.name for column in self.schemas["summary"]]
-        return pd.DataFrame([self._row(ego) for ego in self.egos], columns=names)
+        rows = [self._row(ego) for ego in self.egos]
+        if self.walks is not None:
+            rows = [self.summary]
+        return pd.DataFrame(rows, columns=names)
 
     @property
     def timing_summary(self) -> dict[str, Any]:
@@ -232,6 +246,8 @@ class RunTables:
         if any(ego.law is not None for ego in self.egos):
             summary = (*summary, *LAW_FIELDS)
             optional |= {"ledger": LEDGER_COLUMNS, "people": PEOPLE_COLUMNS}
+        if self.walks is not None:
+            summary = (*SUMMARY_HEAD, *WALK_SUMMARY_FIELDS)
         pedestrians = PEDESTRIAN_TABLE
         if self.effect is not None:
             summary = (*summary, *DELAY_SUMMARY_FIELDS)

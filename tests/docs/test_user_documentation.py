@@ -14,6 +14,7 @@ from giveway.metrics import (
     DELAY_SUMMARY_FIELDS,
     PEDESTRIAN_FIELDS,
     SUMMARY_FIELDS,
+    WALK_SUMMARY_FIELDS,
 )
 from giveway.metrics.law import LAW_FIELDS
 from giveway.records.columns import (
@@ -40,6 +41,7 @@ DOCS = Path(__file__).parents[2] / "docs"
         DELAY_FIELDS,
         DELAY_SUMMARY_FIELDS,
         SUMMARY_FIELDS,
+        WALK_SUMMARY_FIELDS,
         LAW_FIELDS,
         LEDGER_COLUMNS,
         PEOPLE_COLUMNS,

@@ -43,7 +43,7 @@ def test_a_notebook_shows_each_picture(result: RunResult, kind: str) -> None:
 def test_a_run_without_ego_has_its_view_from_above() -> None:
     alone = giveway.run({"crowd.pedestrians": 3, "ego.none": True, "time_limit": 2.0})
     assert alone.plot().axes
-    assert "2 pedestrians" not in repr(alone)
+    assert "shared_space: no ego, 3 pedestrians" in repr(alone)
     with pytest.raises(ResultsError, match=r"ego = 0: the run has 0"):
         alone.plot("state")
 
