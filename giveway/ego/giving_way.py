@@ -11,6 +11,7 @@ USUAL_SPEED = 13.9  # [m/s] that vehicles are expected to speed up to
 AFTER, BEFORE = 1.0, 0.5  # [s] to whoever has priority, who passes after or before
 _COMFORT = 2.0  # [m/s^2] with which others brake before a red light
 _CAR = 5.0  # [m] length of one who stands there
+_QUEUE = 30.0  # [m] before a red light, from which on a vehicle may have to stop behind others
 
 
 def needed_braking(speed: float, room: float) -> float:
@@ -19,7 +20,7 @@ def needed_braking(speed: float, room: float) -> float:
 
 
 def at_rest(leader: Leader, stop: float) -> Leader:
-    """The vehicle ahead where it comes to rest, if it has to stop at a red light ahead.
+    """The vehicle ahead where it comes to rest, if it is about to stop at a red light ahead.
 
     Args:
         leader: the vehicle ahead.
@@ -28,6 +29,8 @@ def at_rest(leader: Leader, stop: float) -> Leader:
     if leader.station >= stop or stop == math.inf:
         return leader
     braked = leader.station + leader.speed**2 / (2.0 * _COMFORT)
+    if braked < stop - _QUEUE:
+        return leader
     return Leader(max(leader.station, min(stop - _CAR, braked)), 0.0)
 
 

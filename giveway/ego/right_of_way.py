@@ -192,12 +192,12 @@ class RightOfWay:
         before = front <= place.entry
         if before and letter in "sw" and not (first and self._halted):
             return line
-        gap = place.gap_at_lights if letter in "gG" else place.gap
+        gap = place.gap_at_lights if letter in "gGyY" else place.gap
         critical, follow_up = (
             usual if wanted is None else wanted
             for usual, wanted in zip(gap, self._gap, strict=True)
         )
-        if first and before and letter not in "GM" and self._time - self._followed < follow_up:
+        if first and before and letter not in "GMyY" and self._time - self._followed < follow_up:
             return line
         margin = AFTER
         if first and self._going:

@@ -213,6 +213,15 @@ def test_it_follows_another_through_the_same_gap_after_the_follow_up_gap() -> No
     assert drive.stop(LINE, 0.0, after=1.0) == math.inf
 
 
+@pytest.mark.parametrize(("letter", "stops"), [("g", True), ("y", False), ("G", False)])
+def test_at_yellow_it_waits_for_no_gap_behind_another(letter: str, stops: bool) -> None:
+    """Lights decide whether it goes on; a wait of some seconds would end at red."""
+    drive = Drive(junction(lights=True), follow_up_gap=4.0)
+    ahead = Approach("leader", OWN, -0.1, 8.0, 4.5, 0.0)
+    drive.stop(LINE - 25.0, 8.0, lights="Gr")
+    assert (drive.stop(LINE - 24.0, 8.0, ahead, lights=f"{letter}r") == LINE) == stops
+
+
 @pytest.mark.parametrize(("station", "stops"), [(58.0, True), (70.0, True), (72.0, False)])
 def test_it_enters_no_junction_that_it_cannot_leave(station: float, stops: bool) -> None:
     drive = Drive(junction(named=False))
