@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from giveway.api import run
     from giveway.config import RunConfig
     from giveway.results.run_result import RunResult
+    from giveway.studies.interface import study
 
-__all__ = ["GivewayError", "RunConfig", "RunResult", "__version__", "run"]
+__all__ = ["GivewayError", "RunConfig", "RunResult", "__version__", "run", "study"]
 
 check_rooms()
 keep_kernels()
@@ -32,6 +33,10 @@ def __getattr__(name: str) -> Any:
         from giveway import api
 
         return getattr(api, name)
+    if name == "study":
+        from giveway.studies.interface import study
+
+        return study
     if name == "RunConfig":
         from giveway.config import RunConfig
 

@@ -22,14 +22,25 @@ def add_studies(app: Commands) -> None:
 
 def _study(
     study: Annotated[
-        str,
+        str | None,
         typer.Argument(
-            help="Bundled study (see giveway studies) or .toml.", autocompletion=complete_study
+            help="Bundled study (see giveway studies) or .toml; none: see --vary.",
+            autocompletion=complete_study,
         ),
-    ],
+    ] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Without a study: an option and its values, like crowd.pedestrians=10,20."
+        ),
+    ] = None,
+    config: Annotated[
+        Path | None, typer.Option(help="With --vary: a run's TOML file with the other settings.")
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder (default results/study_NAME).")] = None,
     runs: Annotated[
-        int | None, typer.Option(help="Seeds per cell, instead of the study's.", min=1)
+        int | None,
+        typer.Option("--runs", "--seeds", help="Seeds per cell, instead of the study's.", min=1),
     ] = None,
     first_seed: Annotated[
         int | None, typer.Option(help="First seed, instead of the study's.", min=0)
@@ -68,9 +79,16 @@ def _study(
     as_json: JsonFlag = False,
 ) -> None:
     """Run a study: many paired runs, compared; can be ended at any moment and resumed."""
+    from giveway.errors import ConfigError
     from giveway.studies.finding import find_study
 
-    find_study(study)  # before anything that takes longer is loaded
+    if (study is None) == (not vary) or (config is not None and not vary):
+        raise ConfigError(
+            "expected a study, or --vary (with --config, if you like); 'giveway studies' lists the "
+            "bundled ones"
+        )
+    if study is not None:
+        find_study(study)  # before anything that takes longer is loaded
     from giveway.cli.study import StudyRequest, study_command
     from giveway.studies.study import StudyOptions
 
@@ -85,6 +103,8 @@ def _study(
     )
     request = StudyRequest(
         study,
+        tuple(vary or ()),
+        config,
         out,
         runs,
         first_seed,

@@ -19,6 +19,7 @@ from giveway.studies.definition import changed, read_definition
 from giveway.studies.finding import find_study
 from giveway.studies.plan import plan
 from giveway.studies.study import StudyOptions, StudyProgress, estimate, processors, run_study
+from giveway.studies.varying import varied
 
 _REFRESH = 0.2  # [s] of wall clock between two redraws
 _LINE = 30.0  # [s] between two lines where there is no terminal
@@ -28,7 +29,9 @@ _LINE = 30.0  # [s] between two lines where there is no terminal
 class StudyRequest:
     """What the user asked for."""
 
-    study: str
+    study: str | None  # None: the variations are one
+    vary: tuple[str, ...]
+    config: Path | None
     out: Path | None
     runs: int | None
     first_seed: int | None
@@ -46,15 +49,17 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
         GivewayError: one line that says what to do.
     """
     console = Console(quiet=request.quiet or request.as_json)
-    file = find_study(request.study)
-    definition = read_definition(file)
+    if request.study is None:
+        origin, definition = "--vary", varied(request.vary, request.config)
+    else:
+        origin, definition = request.study, read_definition(find_study(request.study))
     wanted = {"replications": request.runs, "first_seed": request.first_seed}
     changes: dict[str, Any] = {key: value for key, value in wanted.items() if value is not None}
     if request.twin is not None:
         changes["run"] = definition.run | {"twin": request.twin}
-    definition = changed(definition, changes, request.study)
+    definition = changed(definition, changes, origin)
     out = request.out or Path("results") / f"study_{definition.name}"
-    planned = plan(definition, request.study)
+    planned = plan(definition, origin)
     compile_kernels_once(console)
     if request.dry_run:
         with console.status("Trying one run of each cell ..."):
@@ -63,7 +68,7 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
         return 0
     began = time.monotonic()
     with study_progress(console, definition.name) as watcher:
-        study = run_study(definition, request.study, out, options, watcher)
+        study = run_study(definition, origin, out, options, watcher)
     elapsed = time.monotonic() - began
     workers = None if options.cluster else options.jobs or processors()
     print_summary(console, study, made=watcher.made, elapsed=elapsed, workers=workers)

@@ -129,13 +129,15 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
         style="bold",
         highlight=False,
     )
-    missing, left = [], _MOST_ROWS
+    missing, left, fewest = [], _MOST_ROWS, math.inf
     for name, situation in _SHOWN:
         chosen = comparison[(comparison["metric"] == name) & (comparison["situation"] == situation)]
-        if (chosen["verdict"] == "N.A.").all():
+        few = chosen[chosen["verdict"] == "N.A."]["n"]
+        if (chosen["n"] == 0).all():
             if name not in _OF_TWINS:
                 missing.append(f"{metric(name).label} ({situation})")
         elif left > 0:
+            fewest = min(fewest, few[few > 0].min() if (few > 0).any() else math.inf)
             known = metric(name)
             unit = f" [{known.unit}]" if known.unit else ""
             title = f"{known.label}{unit}, {situation}: {known.better} is better"
@@ -143,9 +145,15 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
             table = _metric_table(study, chosen.head(left))
             console.print(Padding(table, (0, 0, 0, 1)))
             left -= len(chosen)
+    if fewest < math.inf:
+        more = wanted.minimum_pairs - int(fewest)
+        console.print(
+            f"Intervals need {wanted.minimum_pairs} pairs: {more} more where there are "
+            f"{int(fewest)}; --resume --runs {_seeds_for(study, more)} adds seeds",
+            highlight=False,
+        )
     if missing:
-        few = f"N.A., fewer than {wanted.minimum_pairs} pairs with a number on both sides"
-        console.print(f"{few}: {', '.join(missing)}", highlight=False)
+        console.print(f"In no pair on both sides: {', '.join(missing)}", highlight=False)
     console.print("All metrics, situations and contexts: comparison.csv", highlight=False)
 
 
@@ -165,6 +173,11 @@ def _metric_table(study: StudyFolder, chosen: pd.DataFrame) -> Table:
     return table
 
 
+def _seeds_for(study: StudyFolder, more: int) -> int:
+    """Seeds with which there are so many more pairs, if each seed gives one."""
+    return study.definition.replications + more
+
+
 def _short(names: Sequence[str]) -> Iterator[str]:
     """The last part of each factor's name, where no two are the same."""
     last = [*(name.rpartition(".")[2] for name in names), "seed"]  # the crowd's
@@ -175,6 +188,8 @@ def _short(names: Sequence[str]) -> Iterator[str]:
 def _cells(row: Mapping[Any, Any]) -> tuple[str, ...]:
     if math.isnan(row["mean_difference"]):
         return "N.A.", "", f"{row['n']:,}", ""
+    if math.isnan(row["ci_low"]):
+        return f"{row['mean_difference']:+.3f}", "", f"{row['n']:,}", ""
     interval = f"{row['ci_low']:+.3f} ... {row['ci_high']:+.3f}"
     verdict = row["verdict"] if row["verdict"] in {"better", "worse"} else "="
     return f"{row['mean_difference']:+.3f}", interval, f"{row['n']:,}", verdict

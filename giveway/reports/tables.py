@@ -55,7 +55,8 @@ def comparison_table(study: StudyFolder) -> Table:
 
 
 def _numbers(row: Mapping[Any, Any]) -> list[Cell]:
-    digits = digits_for(row["ci_high"] - row["ci_low"])
+    wide = row["ci_high"] - row["ci_low"]
+    digits = digits_for(wide) if math.isfinite(wide) else 2
     return [
         number_cell(row["mean_difference"], digits),
         Cell(interval(row["ci_low"], row["ci_high"])),

@@ -126,6 +126,19 @@ def _placed(values: dict[str, Any], origin: str, folder: Path) -> StudyDefinitio
     return _validated(values | _folder_of(values, folder), origin)
 
 
+def make_definition(values: dict[str, Any], origin: str) -> StudyDefinition:
+    """The study in a dictionary with the keys of a study's TOML file.
+
+    Args:
+        values: file names in it are relative to the working folder.
+        origin: of it, for messages.
+
+    Raises:
+        ConfigError: one line that names the key, its value and what was expected.
+    """
+    return _placed(values, origin, Path.cwd())
+
+
 def changed(definition: StudyDefinition, changes: dict[str, Any], origin: str) -> StudyDefinition:
     """The study with some keys changed.
 

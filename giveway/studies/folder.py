@@ -91,6 +91,10 @@ class StudyFolder:
                 "very beginning; go on with giveway study and --resume"
             )
 
+    def __repr__(self) -> str:
+        made, cells = len(self.records), len(self.design.cells)
+        return f"<StudyFolder {self.path}: {cells} cells, {made} of {cells * self._seeds} runs>"
+
     @classmethod
     def open(cls, path: str | Path) -> StudyFolder:
         """The study in ``path``."""

@@ -17,3 +17,9 @@ def main() -> None:
     result.plot("state").savefig("state.png")
     result.replay().save("replay.html")
     print(result, result.ego["time"].max(), longest_wait(3))  # noqa: T201
+
+
+def compare() -> float:
+    """Mean difference [s] of a small study."""
+    study = giveway.study({"factors": {"controller": ["mpc", "pid-tuned"]}}, out="study")
+    return float(study.comparison["mean_difference"].mean())

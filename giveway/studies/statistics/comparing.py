@@ -111,20 +111,23 @@ def _row(
         "better": metric.better,
         "interval": "",
     }
+    if len(found):
+        row |= {
+            "treatment_mean": mean(found.treated),
+            "baseline_mean": mean(found.based),
+            "mean_difference": mean(found.values),
+            "median_difference": median(found.values),
+        }
     if len(found) < comparison.minimum_pairs:
         return row
     between = interval(found, pairs, metric.name, situation, comparison)
-    return row | _numbers(found, between, signed_rank(found.values))
+    return row | _certainty(between, signed_rank(found.values))
 
 
-def _numbers(found: Differences, between: Interval, test: SignedRank) -> dict[str, object]:
+def _certainty(between: Interval, test: SignedRank) -> dict[str, object]:
     return {
-        "treatment_mean": mean(found.treated),
-        "baseline_mean": mean(found.based),
-        "mean_difference": mean(found.values),
         "ci_low": between.low,
         "ci_high": between.high,
-        "median_difference": median(found.values),
         "wilcoxon_statistic": test.statistic,
         "p_value": test.p_value,
         "interval": between.method,

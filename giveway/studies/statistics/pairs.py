@@ -108,7 +108,7 @@ def paired(runs: pd.DataFrame, design: Design, comparison: Comparison) -> Iterat
 def cleaned(runs: pd.DataFrame) -> pd.DataFrame:
     """The columns that are compared, with the types that a CSV reader may have lost."""
     frame = runs.reindex(columns=["cell", "seed", "ego", "ending", *_NAMES])
-    frame["ego"] = frame["ego"].fillna("").astype(str)
+    frame["ego"] = frame["ego"].astype(object).fillna("").astype(str)
     for name in _NAMES:
         values = pd.to_numeric(frame[name], errors="coerce").to_numpy(np.float64, na_value=np.nan)
         frame[name] = np.where(np.isfinite(values), values, np.nan)

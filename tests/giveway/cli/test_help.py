@@ -44,7 +44,7 @@ def test_all_options_are_there_whole(
 def test_commands_are_listed_with_whole_sentences(type_here: Type) -> None:
     text = type_here("--help").stdout
     assert "..." not in text.partition("Commands:")[2]
-    assert "  --runs INTEGER " in type_here("study", "--help").stdout
+    assert "  --runs, --seeds INTEGER " in type_here("study", "--help").stdout
 
 
 @pytest.mark.parametrize(

@@ -51,9 +51,23 @@ def test_the_interval_is_headed_by_the_confidence_asked_for(
     assert "95 %" not in text
 
 
-def test_what_has_too_few_pairs_is_one_line(small_study, printed):
+def test_what_has_no_pair_is_one_line(small_study, printed):
     text = " ".join(printed(small_study).split())
-    assert "N.A., fewer than 4 pairs with a number on both sides: completion time (general)" in text
+    assert "In no pair on both sides: completion time (general)" in text
+
+
+def test_few_pairs_have_their_mean_and_the_seeds_that_intervals_need(
+    study_of, small_study_text, printed, tmp_path
+):
+    study = study_of(small_study_text.replace("minimum_pairs = 4", "minimum_pairs = 12"), tmp_path)
+    text = printed(study, width=200)
+    rows = study.comparison[study.comparison["metric"] == "rms_jerk"]
+    row = rows[rows["situation"] == "general"].iloc[0]
+    assert (row["n"], row["verdict"]) == (5, "N.A.")
+    assert f"{row['mean_difference']:+.3f}" in text
+    assert (
+        "Intervals need 12 pairs: 7 more where there are 5; --resume --runs 12 adds seeds" in text
+    )
 
 
 def test_a_resumed_study_says_how_many_runs_are_new(small_study, printed):

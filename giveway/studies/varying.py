@@ -1,0 +1,77 @@
+"""Studies without a file: what is varied comes from the command line or from Python."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from giveway.config.layers import read_toml, undotted
+from giveway.errors import ConfigError
+from giveway.studies.definition import StudyDefinition, make_definition
+
+_SEEDS = 20
+
+
+def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefinition:
+    """The study of some options' values: all combinations of them.
+
+    Args:
+        variations: like ``planner.conflict_weight=0.3,0.6``.
+        settings: a TOML file with the other settings of every run; None: giveway's own.
+
+    Raises:
+        ConfigError: a variation is none, or the file cannot be used.
+    """
+    factors: dict[str, list[Any]] = {}
+    for variation in variations:
+        name, values = _parsed(variation)
+        if name in factors:
+            raise ConfigError(f"--vary {name}: stands twice; name all its values at once")
+        factors[name] = values
+    definition: dict[str, Any] = {
+        "name": "_".join(["vary", *factors])[:80],
+        "description": "; ".join(variations),
+        "replications": _SEEDS,
+        "factors": factors,
+    }
+    if settings is not None:
+        definition["run"] = dict(read_toml(settings).values)
+    return make_definition(definition, "--vary")
+
+
+def _parsed(variation: str) -> tuple[str, list[Any]]:
+    name, equals, text = variation.partition("=")
+    values = [_value(part.strip()) for part in text.split(",") if part.strip()]
+    if not equals or not name.strip() or len(values) < 2:
+        raise ConfigError(
+            f"--vary {variation}: expected an option and at least two values, like "
+            "planner.conflict_weight=0.3,0.6"
+        )
+    return name.strip(), values
+
+
+def _value(text: str) -> Any:
+    """As TOML has it; what is no TOML is a word."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
+
+
+def study_of(study: Mapping[str, Any] | str | Path) -> tuple[StudyDefinition, str]:
+    """The study that a caller of the Python API means, and where it is from, for messages.
+
+    Raises:
+        ConfigError: it is none.
+    """
+    from giveway.studies.definition import read_definition
+    from giveway.studies.finding import find_study
+
+    if isinstance(study, Mapping):
+        values = {"name": "study", "replications": _SEEDS, **study}
+        if isinstance(values.get("run"), Mapping):
+            values["run"] = undotted(values["run"])
+        return make_definition(values, "study"), "study"
+    return read_definition(find_study(study)), str(study)

@@ -1,0 +1,64 @@
+"""Studies without a file, from the command line and from Python."""
+
+from __future__ import annotations
+
+import pytest
+
+import giveway
+from giveway.errors import ConfigError
+from giveway.studies.varying import varied
+
+
+def test_variations_are_a_grid_of_their_values():
+    found = varied(["planner.conflict_weight=0.3, 0.6", "controller=mpc,pid-tuned"])
+    assert found.factors == {
+        "planner.conflict_weight": [0.3, 0.6],
+        "controller": ["mpc", "pid-tuned"],
+    }
+    assert found.name == "vary_planner.conflict_weight_controller"
+    assert found.replications == 20
+
+
+@pytest.mark.parametrize("wrong", ["crowd.pedestrians", "crowd.pedestrians=5", "=1,2", "a=,,"])
+def test_what_is_no_variation_is_said(wrong):
+    with pytest.raises(ConfigError, match="expected an option and at least two values"):
+        varied([wrong])
+
+
+def test_an_option_that_is_named_twice_is_refused():
+    with pytest.raises(ConfigError, match="--vary seed: stands twice"):
+        varied(["seed=1,2", "seed=3,4"])
+
+
+def test_other_settings_come_from_a_file(tmp_path):
+    (tmp_path / "run.toml").write_text("time_limit = 2.0\n[crowd]\npedestrians = 3\n")
+    found = varied(["controller=mpc,pid-tuned"], tmp_path / "run.toml")
+    assert found.run == {"time_limit": 2.0, "crowd": {"pedestrians": 3}}
+
+
+def test_a_study_from_python_gives_frames(tmp_path):
+    study = giveway.study(
+        {
+            "factors": {"controller": ["mpc", "pid-tuned"]},
+            "replications": 2,
+            "run": {"crowd.pedestrians": 2, "time_limit": 1.0},
+        },
+        out=tmp_path / "study",
+        jobs=1,
+    )
+    assert len(study.runs) == 4
+    assert set(study.levels["controller"]) == {"mpc", "pid-tuned"}
+    assert (study.comparison["n"] <= 2).all()
+    assert repr(study).endswith("2 cells, 4 of 4 runs>")
+
+
+def test_the_command_line_takes_variations(type_here, tmp_path):
+    (tmp_path / "run.toml").write_text("time_limit = 0.5\n[crowd]\npedestrians = 2\n")
+    words = ("study", "--vary", "controller=mpc,pid-tuned", "--config", "run.toml", "--seeds", 1)
+    done = type_here(*words, "--no-report", "--jobs", 1, "--out", "out")
+    assert done.returncode == 0, done.stderr
+    assert len(list((tmp_path / "out").glob("runs.csv"))) == 1
+    for wrong in ((), ("paper", *words[1:3]), ("paper", "--config", "run.toml")):
+        done = type_here("study", *wrong)
+        assert done.returncode == 2
+        assert done.stderr.startswith("error: expected a study, or --vary")
