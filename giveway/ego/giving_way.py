@@ -11,7 +11,7 @@ USUAL_SPEED = 13.9  # [m/s] that vehicles are expected to speed up to
 AFTER, BEFORE = 1.0, 0.5  # [s] to whoever has priority, who passes after or before
 _COMFORT = 2.0  # [m/s^2] with which others brake before a red light
 _CAR = 5.0  # [m] length of one who stands there
-_QUEUE = 30.0  # [m] before a red light, from which on a vehicle may have to stop behind others
+_QUEUE = 100.0  # [m] before a red light, from which on others may stand there already
 
 
 def needed_braking(speed: float, room: float) -> float:

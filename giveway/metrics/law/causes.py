@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath
 from giveway.metrics.law.areas import Area
 from giveway.metrics.law.drive import Drive, runs, spread
 from giveway.metrics.law.encounters import AHEAD, Encounter
@@ -24,6 +25,7 @@ SIGHT = 10.0
 _ASIDE = 0.5  # [m] beside the ego's way people are on it as well
 _FOE = 9.0  # [s] before another vehicle comes by: the largest critical gap, and time to start
 _ROOM = 6.0  # [m] that the ego wants behind a crossing or a junction, besides its own length
+_ABOUT, _SHORTEST = 20.0, 0.01  # [m] of path before and beyond what is looked at; a segment
 _STARTING = 3.0  # [s] in which an ego drives off that departs standing
 _HALT = 1.0  # [m] about a scheduled stop
 _POINTS = 5  # of a vehicle's middle line, front to rear
@@ -121,7 +123,7 @@ def _people_ahead(drive: Drive, stand: _Stand) -> Mask:
     rows = _during(drive, stand, drive.ego.time[crowd.step])
     reach = SIGHT + drive.shape.width + _ASIDE
     rows = rows[np.hypot(crowd.x[rows] - x, crowd.y[rows] - y) <= reach]
-    station, aside = _on_path(drive, crowd.x[rows], crowd.y[rows])
+    station, aside = _on_path(drive, stand, crowd.x[rows], crowd.y[rows])
     on = aside <= drive.shape.width / 2 + drive.body_radius + _ASIDE
     on &= (station > front - drive.body_radius) & (station <= front + SIGHT)
     there = np.zeros(len(drive.ego.time), dtype=np.bool_)
@@ -139,7 +141,7 @@ def _vehicles_ahead(drive: Drive, stand: _Stand, sight: float) -> Mask:
     back = np.linspace(0.0, 1.0, _POINTS) * others.length[rows, None]
     p_x = others.x[rows, None] - back * np.cos(others.heading[rows, None])
     p_y = others.y[rows, None] - back * np.sin(others.heading[rows, None])
-    station, aside = (each.reshape(back.shape) for each in _on_path(drive, p_x, p_y))
+    station, aside = (each.reshape(back.shape) for each in _on_path(drive, stand, p_x, p_y))
     on = aside <= (drive.shape.width + others.width[rows, None]) / 2
     on &= (station > front) & (station <= front + sight)
     there = np.zeros(len(time), dtype=np.bool_)
@@ -154,7 +156,15 @@ def _during(drive: Drive, stand: _Stand, time: Array) -> NDArray[np.intp]:
     return np.arange(*np.searchsorted(time, (since, until)))
 
 
-def _on_path(drive: Drive, x: Array, y: Array) -> tuple[Array, Array]:
-    """Stations and distances (n,) [m] of points beside the ego's path."""
-    station, lateral = drive.path.project(np.column_stack([x.ravel(), y.ravel()]))
-    return station, np.abs(lateral)
+def _on_path(drive: Drive, stand: _Stand, x: Array, y: Array) -> tuple[Array, Array]:
+    """Stations and distances (n,) [m] of points beside the ego's path about where it stands.
+
+    A way may come by twice: the rest of it is not looked at.
+    """
+    stations = drive.path.stations
+    begin = max(stand.front - _ABOUT, 0.0)
+    end = min(stand.front + stand.sight + _ABOUT, stations[-1])
+    between = stations[(stations > begin + _SHORTEST) & (stations < end - _SHORTEST)]
+    part = EgoPath.through(drive.path.points(np.array([begin, *between, end])))
+    station, lateral = part.project(np.column_stack([x.ravel(), y.ravel()]))
+    return begin + station, np.abs(lateral)

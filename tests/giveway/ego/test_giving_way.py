@@ -28,7 +28,7 @@ def test_who_stands_right_behind_leaves_no_room(station: float, speed: float, no
 def test_who_drives_up_to_a_red_light_will_stand_there() -> None:
     driving = Leader(35.0, 4.0)
     assert at_rest(driving, math.inf) == driving
-    assert at_rest(driving, 90.0) == driving  # the light is far off: it will have gone on by then
+    assert at_rest(driving, 150.0) == driving  # the light is far off: it will have gone on by then
     assert at_rest(driving, 46.0) == Leader(39.0, 0.0)  # with 2 m/s^2
     assert at_rest(driving, 41.0) == Leader(36.0, 0.0)  # at the line, 5 m long
     assert at_rest(driving, 37.0) == Leader(35.0, 0.0)  # a part of it beyond the line

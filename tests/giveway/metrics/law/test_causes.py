@@ -97,3 +97,17 @@ def test_an_ego_that_departs_standing_has_three_seconds():
 def test_each_stop_counts_once():
     twice = to_a_stand(30.0, (2.0, 0.0), (2.0, 1.5), (2.0, -1.5), (2.0, 0.0), (3.0, 1.5))
     assert judged(track=twice).summary.stops_without_cause == 2
+
+
+def test_on_a_way_that_comes_by_twice_a_leader_is_where_the_ego_is():
+    twice = (
+        (20.0, -1.75),
+        (90.0, -1.75),
+        (90.0, 40.0),
+        (-20.0, 40.0),
+        (-20.0, -1.75),
+        (90.0, -1.75),
+    )
+    second_time = {"points": twice, "front": 283.5}
+    assert judged(vehicles=[car(35.0 + 4.0)], **second_time).violations == ()
+    assert len(judged(vehicles=[car(41.0 + 4.0)], **second_time).violations) == 1
