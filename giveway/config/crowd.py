@@ -7,6 +7,7 @@ docs/reproduction.md explains.
 from __future__ import annotations
 
 import math
+from typing import Final, Literal
 
 from pydantic import model_validator
 
@@ -21,6 +22,7 @@ from giveway.config.option import (
 from giveway.config.reasons import GAP, MILLIMETRE
 
 WALKING = "the model's people walk with 2.5 m/s at most, and somebody below 0.01 m/s stands"
+ENCOUNTERS: Final = "encounters"
 _NEAREST = 0.01  # [m] a shorter side of an area, or a shorter walk, is none
 _FARTHEST = 1e7  # [m] beyond it a millimetre is lost in rounding
 
@@ -36,6 +38,13 @@ class CrowdConfig(Section):
         ge=0,
         le=20_000,
         because="nobody fits more of them round one vehicle",
+    )
+    sampler: Literal["area", "encounters"] = option(
+        "area",
+        None,
+        "where they start: anywhere in spawn_area, or in groups that meet the ego's free drive from "
+        "both sides; encounters uses neither spawn_area, walk nor two_sided",
+        flag="--sampler",
     )
     spawn_area: Rectangle = option(
         (23.3, -23.4, 33.2, -12.0),

@@ -11,8 +11,10 @@ import shapely
 from shapely.ops import substring
 
 from giveway.config import EgoRunConfig, RunConfig
+from giveway.config.crowd import ENCOUNTERS
 from giveway.config.presets import parameters_of
 from giveway.cosimulation.departures import Departures
+from giveway.cosimulation.free_drive import free_drive
 from giveway.cosimulation.preflight import CheckedRun, substeps_of
 from giveway.cosimulation.yielding import Yielding
 from giveway.crowd.exchange import Exchange
@@ -276,7 +278,9 @@ def _roster(
     if not config.crowd.pedestrians:
         return Roster()
     prefix = free_prefix(PREFIX, (file for file in sumo.start.read if file != net_file))
-    spawned = spawn(config.crowd, departures.first_path or way, config.seed, prefix)
+    way = departures.first_path or way
+    drive = free_drive(config, way) if config.crowd.sampler == ENCOUNTERS else None
+    spawned = spawn(config.crowd, way, config.seed, prefix, drive)
     for name in departures.names:
         if name in spawned.ids:
             raise ConfigError(f"--ego-id '{name}': a pedestrian has this id; choose another")

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from giveway.config.crowd import CrowdConfig
+from giveway.config.crowd import ENCOUNTERS, CrowdConfig
+from giveway.crowd.encounters import FreeDrive, meet
 from giveway.errors import CrowdError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, Pose
@@ -25,8 +26,16 @@ class Spawned:
     desired_speed: Array  # (n,) [m/s]
 
 
-def spawn(config: CrowdConfig, path: EgoPath | None, seed: int, prefix: str = PREFIX) -> Spawned:
-    """Draw ``config.pedestrians`` pedestrians, uniform in the spawn area, none closer than allowed.
+def spawn(
+    config: CrowdConfig,
+    path: EgoPath | None,
+    seed: int,
+    prefix: str = PREFIX,
+    drive: FreeDrive | None = None,
+) -> Spawned:
+    """Draw ``config.pedestrians`` pedestrians, none closer to another than allowed.
+
+    They start uniform in the spawn area; with the sampler ``encounters`` so as to meet ``drive``.
 
     With ``two_sided`` every second one stands on, and walks to, the mirror image about the ego's
     path where it passes the spawn area. The first k of a larger crowd of the same seed are not the
@@ -37,12 +46,21 @@ def spawn(config: CrowdConfig, path: EgoPath | None, seed: int, prefix: str = PR
         path: the ego's, for ``two_sided``; None where no ego is inserted.
         seed: of the draw.
         prefix: of their ids; a number follows.
+        drive: that is met, for the sampler ``encounters``; None where no way is known.
 
     Raises:
-        CrowdError: the area is too small for so many at this spacing, or there is no ego
-            about whose path to mirror.
+        CrowdError: there is no room for so many at this spacing, or no ego about whose path to
+            mirror, or whom to meet.
     """
     random = np.random.default_rng(seed)
+    ids = tuple(f"{prefix}{i}" for i in range(config.pedestrians))
+    if config.sampler == ENCOUNTERS:
+        if drive is None:
+            raise CrowdError(
+                "--sampler encounters: people meet an ego on its route, and there is none; name "
+                "one (--ego-route)"
+            )
+        return Spawned(ids, *meet(config, drive, random))
     axis = None
     if config.two_sided:
         if path is None:
@@ -56,7 +74,6 @@ def spawn(config: CrowdConfig, path: EgoPath | None, seed: int, prefix: str = PR
     if axis is not None:
         unmirrored = _mirror(position[1::2], axis)
         destination[1::2] = _mirror(unmirrored + np.asarray(config.walk), axis)
-    ids = tuple(f"{prefix}{i}" for i in range(config.pedestrians))
     return Spawned(ids, position, destination, desired_speed)
 
 
