@@ -83,8 +83,8 @@ def examine(task: Task) -> Found:
     }
     alone = {**common, "ego": {"none": True}, "record": record, "time_limit": 30.0}
     driven = {name: _driven(run) for name, run in runs.items()}
-    ego, rules = runs["mpc"].egos[0], _rules(runs["mpc"])
-    track, h = ego.track, _time_step(runs["mpc"])
+    ego, rules = runs["mpc"].egos[0], rules_of(runs["mpc"])
+    track, h = ego.track, time_step_of(runs["mpc"])
     if np.ptp(track.heading) > 1e-6:
         raise SystemExit("clairvoyant: the ego's way bends; expected a straight one")
     start = float(track.front_x[0]), float(track.front_y[0]), float(track.heading[0])
@@ -101,14 +101,16 @@ def examine(task: Task) -> Found:
 
 def _driven(run: RunResult) -> tuple[float, float]:
     summary, below = run.summary, run.ego_track.gap < run.config.regulation.safe_distance
-    return float(summary["completion_time"]), _time_step(run) * float(np.sum(below))
+    return float(summary["completion_time"]), time_step_of(run) * float(np.sum(below))
 
 
-def _time_step(run: RunResult) -> float:
+def time_step_of(run: RunResult) -> float:
+    """The control step [s] of a run."""
     return round(float(run.time[1] - run.time[0]), 9)
 
 
-def _rules(run: RunResult) -> Rules:
+def rules_of(run: RunResult) -> Rules:
+    """Whom the ego of a run must not touch, and who counts as being in front of it."""
     regulation, shape = run.config.regulation, run.shape
     half = regulation.corridor_half_width
     return Rules(

@@ -310,6 +310,12 @@ class PerceptionConfig(Section):
     desired_speeds: Literal["known", "typical"] = option(
         "known", None, "of each person, or [crowd] desired_speed_mean for everybody"
     )
+    goals: Literal["known", "heading"] = option(
+        "known",
+        None,
+        "where each person goes, or no more than that everybody walks on as now: heading",
+        flag="--goals",
+    )
     preset: Preset = option(
         "", None, "parameters the pedestrians are predicted with, as [crowd] preset; none: the same"
     )

@@ -42,8 +42,8 @@ class CrowdConfig(Section):
     sampler: Literal["area", "encounters"] = option(
         "area",
         None,
-        "where they start: anywhere in spawn_area, or in groups that meet the ego's free drive from "
-        "both sides; encounters uses neither spawn_area, walk nor two_sided",
+        "area: they start anywhere in spawn_area; encounters: in groups that meet the ego's free "
+        "drive from both sides, whatever spawn_area, walk and two_sided say",
         flag="--sampler",
     )
     spawn_area: Rectangle = option(

@@ -17,6 +17,7 @@ from giveway.cosimulation.departures import Departures
 from giveway.cosimulation.free_drive import free_drive
 from giveway.cosimulation.preflight import CheckedRun, substeps_of
 from giveway.cosimulation.yielding import Yielding
+from giveway.crowd.encounters import FreeDrive
 from giveway.crowd.exchange import Exchange
 from giveway.crowd.priority import PriorityOnFoot
 from giveway.crowd.roster import Roster
@@ -284,15 +285,25 @@ def _roster(
     for name in departures.names:
         if name in spawned.ids:
             raise ConfigError(f"--ego-id '{name}': a pedestrian has this id; choose another")
-    host = config.crowd.host_edge or _host(config, network or WalkNetwork.read(net_file), net_file)
+    host = config.crowd.host_edge
+    if not host:
+        host = _host(_middle(config, drive), network or WalkNetwork.read(net_file), net_file)
     sumo.add_persons(spawned.ids, host)
     return Roster(spawned.ids, _crowd(spawned))
 
 
-def _host(config: RunConfig, network: WalkNetwork, net_file: Path) -> str:
-    """The edge for pedestrians that is nearest to the spawn area."""
+def _middle(config: RunConfig, drive: FreeDrive | None) -> tuple[float, float]:
+    """Where the added people are about: x, y [m] of the middle of their area or of the drive."""
+    if drive is not None:
+        pose = drive.path.pose(drive.departure + drive.distance / 2.0)
+        return pose.x, pose.y
     x_min, y_min, x_max, y_max = config.crowd.spawn_area
-    lane = network.nearest_lane((x_min + x_max) / 2, (y_min + y_max) / 2)
+    return (x_min + x_max) / 2, (y_min + y_max) / 2
+
+
+def _host(place: tuple[float, float], network: WalkNetwork, net_file: Path) -> str:
+    """The edge for pedestrians that is nearest to a place x, y [m]."""
+    lane = network.nearest_lane(*place)
     if lane is None:
         raise ScenarioError(
             f"{net_file}: no lane for pedestrians, where SUMO could register the added ones; "

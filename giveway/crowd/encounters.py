@@ -134,7 +134,7 @@ def _group(
 
 
 def _formation(size: int) -> Array:
-    """(size, 2) [m] beside and ahead of the group's middle: abreast, the larger ones in two rows."""
+    """(size, 2) [m] beside and ahead of the middle: abreast, the larger ones in two rows."""
     front = size if size <= _ABREAST else (size + 1) // 2
     rows = [front, size - front]
     return np.array(
@@ -147,7 +147,7 @@ def _formation(size: int) -> Array:
 
 
 def _has_room(starts: Array, others: Array, spacing: float) -> bool:
-    """Whether each of ``starts`` keeps ``spacing`` [m] from the group's others and all ``others``."""
+    """Whether each of ``starts`` keeps ``spacing`` [m] from all the rest and all ``others``."""
     everybody = np.vstack([others, starts])
     offsets = everybody[None] - starts[:, None]
     squares = np.einsum("ijk,ijk->ij", offsets, offsets)

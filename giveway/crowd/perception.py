@@ -12,10 +12,12 @@ from giveway.crowd.noise import planar_noise
 from pedestrian_model import Crowd
 
 _STREAM = 0x5EE  # tells these draws from others of the same seed
+_FAR = 1000.0  # [m] along the heading: beyond every horizon
+_STANDS = 0.1  # [m/s] who is slower has no heading, and is expected to stay
 
 
 class Perception:
-    """One ego's eyes: positions with noise, and desired speeds that cannot be seen.
+    """One ego's eyes: positions with noise, and desired speeds and goals that cannot be seen.
 
     Each observation draws new noise for all, from a generator of this ego's own: equal runs see the
     same, whatever other egos there are.
@@ -28,6 +30,7 @@ class Perception:
         self._noise = config.perception.position_noise
         known = config.perception.desired_speeds == "known"
         self._speed = None if known else config.crowd.desired_speed_mean
+        self._goals = config.perception.goals == "known"
         self._random = np.random.default_rng((config.seed, _STREAM, *config.ego_id.encode()))
         self._truth: Crowd | None = None
         self._seen: Crowd | None = None
@@ -35,7 +38,7 @@ class Perception:
     @property
     def exact(self) -> bool:
         """Whether it sees the truth."""
-        return not self._noise and self._speed is None
+        return not self._noise and self._speed is None and self._goals
 
     def observe(self, crowd: Crowd) -> Crowd:
         """The crowd as it is seen.
@@ -54,10 +57,25 @@ class Perception:
             noise = planar_noise(self._random, len(crowd))
             noise *= self._noise
             np.add(crowd.position, noise, out=self._seen.position)
-        return self._seen
+        return self._seen if self._goals else _walking_on(self._seen)
 
     def _look_at(self, crowd: Crowd) -> Crowd:
         """A crowd that shares with ``crowd``, which is stepped in place, what is seen exactly."""
         position = crowd.position.copy() if self._noise else crowd.position
         speed = crowd.desired_speed if self._speed is None else np.full(len(crowd), self._speed)
         return replace(crowd, position=position, desired_speed=speed)
+
+
+def _walking_on(crowd: Crowd) -> Crowd:
+    """Everybody goes on along the present heading; who stands stays. Nothing but ways differs."""
+    n = len(crowd)
+    speed = np.hypot(crowd.velocity[:, 0], crowd.velocity[:, 1])
+    reach = np.where(speed > _STANDS, _FAR / np.maximum(speed, _STANDS), 0.0)
+    return replace(
+        crowd,
+        waypoints=crowd.position + crowd.velocity * reach[:, None],
+        waypoint_start=np.arange(n + 1),
+        waypoint_index=np.zeros(n, dtype=np.int64),
+        waypoint_passage=np.zeros((n, 3)),
+        waypoint_signal=np.full(n, -1, dtype=np.int64),
+    )

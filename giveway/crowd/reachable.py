@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 import shapely.affinity
 
-from giveway.config.crowd import CrowdConfig
+from giveway.config.crowd import ENCOUNTERS, CrowdConfig
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at
 from giveway.walkways import WalkNetwork, beside
@@ -24,6 +24,8 @@ def spawn_remark(config: CrowdConfig, ways: Sequence[Array], net_file: Path) -> 
         ways: (k, 2) [m] of each ego, from its departure to where it is done.
         net_file: the network's, which is read only if there is something to remark.
     """
+    if config.sampler == ENCOUNTERS:
+        return ""  # they start where they meet it
     start = shapely.box(*config.spawn_area)
     middle = (start.centroid.x, start.centroid.y)
     walked = start.union(shapely.affinity.translate(start, *config.walk)).convex_hull

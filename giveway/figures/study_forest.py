@@ -19,12 +19,13 @@ from giveway.figures.study_rows import (
     with_unit,
     wrapped,
 )
-from giveway.figures.style import BLACK, BLUE, GREEN, GREY, VERMILION, styled
+from giveway.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, styled
 
 LOOKS = {  # colour and marker
     "general": (BLUE, "o"),
     "stop-and-wait": (VERMILION, "s"),
     "non-stop": (GREEN, "^"),
+    "slowed": (ORANGE, "D"),
 }
 PAPER = "#ffffff"
 SPREAD = 0.26  # of a row, between the situations

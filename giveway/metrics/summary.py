@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from giveway.metrics.conflicts import Critical
 from giveway.metrics.contacts import FRONTAL, SIDE
+from giveway.metrics.slowing import slowed
 from giveway.metrics.vehicles import VehicleContact
 from giveway.records.columns import Quantity, columns_of
 from giveway.records.rows import STOP_SPEED
@@ -89,6 +90,9 @@ class Summary:
     hard_brakes_without_cause: Annotated[
         int, Quantity(None, "of these, with nobody, no vehicle and no stop within 15 m in front")
     ]
+    slowed: Annotated[
+        bool, Quantity(None, "whether it was ever below 0.8 times its speed with nobody about")
+    ]
 
     def as_dict(self) -> dict[str, bool | int | float]:
         """Names and values, in the order of ``SUMMARY_FIELDS``."""
@@ -105,6 +109,7 @@ def summarise(
     *,
     goal: float,
     safe_distance: float,
+    reference_speed: float | None = None,
     stop_speed: float = STOP_SPEED,
     controller: str,
     vehicles: Sequence[VehicleContact] = (),
@@ -122,6 +127,7 @@ def summarise(
         goal: the position that ends the run [m]; the time at which it is reached is interpolated
             between control instants.
         safe_distance: d_safe [m].
+        reference_speed: v_r [m/s]; None: the lanes say how fast.
         stop_speed: the ego stands below it [m/s].
         controller: its name; one that begins with "mpc" optimises.
         vehicles: the background vehicles that it came into contact with.
@@ -171,6 +177,7 @@ def summarise(
         vehicle_contact_time=float(sum(contact.duration for contact in vehicles)),
         hard_brakes=len(brakes),
         hard_brakes_without_cause=sum(not _has_cause(ego, k) for k in brakes),
+        slowed=slowed(ego, reference_speed),
     )
 
 

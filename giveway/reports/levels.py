@@ -44,6 +44,7 @@ _OF_TWINS = {  # shown where a run has a twin
 }
 _IN_PERCENT = frozenset({"share_below_safe_distance", "safety_share", "share_gave_way"})
 _MOST_DIGITS = 3
+_SLOWED = (("slowed", "%"), ("completion, slowed", "s"))
 _TIMES = ("control step", "worst step")
 
 
@@ -95,7 +96,7 @@ def level_table(study: StudyFolder) -> LevelTable:
     Half of the interval's width stands for both of its ends, which ``levels.csv`` has.
     """
     headings = [(heading, _unit(name)) for name, heading in _shown(study).items()]
-    headings += [(heading, "ms") for heading in _TIMES]
+    headings += [*_SLOWED, *((heading, "ms") for heading in _TIMES)]
     rows = [row for context in contexts(study) for row in _rows(study, context)]
     return LevelTable(tuple(headings), tuple(rows), baseline_label(study))
 
@@ -125,6 +126,7 @@ def _rows(study: StudyFolder, context: Context) -> Iterator[Row]:
                 _mean(by_metric[name], verdicts.get((label, ego, name), ""))
                 for name in _shown(study)
             ]
+            means += _slowed(by_metric["completion_time"])
             means += _times(study, context.cells[label])
             yield Row(title, f"{label} ({ego})" if several else label, tuple(means))
 
@@ -151,15 +153,27 @@ def _mean(row: Mapping[Any, Any], verdict: str) -> Mean:
     if not math.isfinite(row["mean"]):
         return Mean("–")
     scale = 100.0 if row["metric"] in _IN_PERCENT else 1.0
-    mean, half = scale * row["mean"], scale * (row["ci_high"] - row["ci_low"]) / 2.0
-    if half > 0.0:
-        digits = _digits(half)
-        text = f"{number(mean, digits)} ±{number(half, digits)}"
-    else:
-        text = f"{mean:.3g}"
+    text = _with_half(scale * row["mean"], scale * (row["ci_high"] - row["ci_low"]) / 2.0)
     if row["metric"] == "completion_time" and row["n"] < row["runs"]:
         text += f" ({row['n']}/{row['runs']})"
     return Mean(text, verdict)
+
+
+def _with_half(mean: float, half: float) -> str:
+    if not half > 0.0:
+        return f"{mean:.3g}"
+    digits = _digits(half)
+    return f"{number(mean, digits)} ±{number(half, digits)}"
+
+
+def _slowed(row: Mapping[Any, Any]) -> list[Mean]:
+    """In how many runs people slowed the ego, and the completion time of these alone."""
+    share = row["share_slowed"]
+    if not math.isfinite(share):
+        return [Mean("–")] * len(_SLOWED)
+    mean, half = row["slowed_mean"], (row["slowed_ci_high"] - row["slowed_ci_low"]) / 2.0
+    time = _with_half(mean, half) if math.isfinite(mean) else "–"
+    return [Mean(f"{100.0 * share:.3g}"), Mean(time)]
 
 
 def _digits(half: float) -> int:
@@ -192,8 +206,9 @@ def levels_section(study: StudyFolder) -> Table | None:
         rows=rows,
         filters=(0, 1),
         note=f"{BETTER} better, {WORSE} worse than {table.baseline}, pair by pair. (n/m): n of m "
-        "runs arrived. A control step is prediction and controller: the median of the runs' "
-        "medians, and the longest of all.",
+        "runs arrived. Slowed: at some instant below 0.8 times the speed with nobody about. "
+        "A control step is prediction and controller: the median of the runs' medians, and "
+        "the longest of all.",
     )
 
 

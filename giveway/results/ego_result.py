@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from giveway.config import EgoRunConfig, RunConfig
+from giveway.config.option import LANE
 from giveway.config.presets import parameters_of
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
@@ -127,12 +128,14 @@ class EgoResult:
         """The drive in one row."""
         config = self.config
         body = self.shape, self.body_radius
+        reference = config.regulation.reference_speed
         figures = summarise(
             self.track,
             self.pedestrians,
             conflicts(self.track, self.crowd, *body, config.record.stop_speed),
             goal=self.goal,
             safe_distance=config.regulation.safe_distance,
+            reference_speed=None if reference == LANE else float(reference),
             stop_speed=config.record.stop_speed,
             controller=config.controller,
             vehicles=self.vehicle_contacts,

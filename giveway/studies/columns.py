@@ -13,7 +13,7 @@ _COMPARED = (
     Column("treatment", "string", None, "the level that is compared"),
     Column("baseline", "string", None, "the level that is subtracted"),
 )
-_SITUATION = Column("situation", "string", None, "general, stop-and-wait or non-stop")
+_SITUATION = Column("situation", "string", None, "general, stop-and-wait, non-stop or slowed")
 _METRIC = (
     Column("metric", "string", None, "the summary's column whose difference this is"),
     Column("unit", "string", None, "of the means, the differences and the interval"),
@@ -61,6 +61,11 @@ LEVEL_COLUMNS = (
     Column("smallest", "number", None, "of the n numbers"),
     Column("largest", "number", None, "of the n numbers"),
     Column("interval", "string", None, "how it was made: BCa, percentile, constant; empty: none"),
+    Column("share_slowed", "number", None, "of the runs, in which people ever slowed the ego"),
+    Column("slowed_n", "integer", None, "of these runs with a number in this metric"),
+    Column("slowed_mean", "number", None, "mean of the numbers of these runs alone"),
+    Column("slowed_ci_low", "number", None, "lower end of that mean's interval"),
+    Column("slowed_ci_high", "number", None, "upper end of that mean's interval"),
 )
 
 FRONT_COLUMNS = (

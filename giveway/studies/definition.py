@@ -15,7 +15,7 @@ from giveway.config.schema_names import STUDY, with_schema
 from giveway.config.toml import parse_toml, read_toml_file
 from giveway.errors import ConfigError
 
-Situation = Literal["general", "stop-and-wait", "non-stop"]
+Situation = Literal["general", "stop-and-wait", "non-stop", "slowed"]
 
 _MOST_SEEDS = 1_000_000
 _NAME = r"^[\w.-]*\w[\w.-]*$"

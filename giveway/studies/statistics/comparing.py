@@ -92,7 +92,9 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
     frame = pd.DataFrame(rows, columns=[*names, "better", "direction", "excludes_zero"])
     numbers = numbers_of(COMPARISON_COLUMNS)
     frame[numbers] = frame[numbers].astype(np.float64)
-    frame["q_value"] = q_values(frame["p_value"].to_numpy())
+    # The slowed pairs are some of the general ones: a look at them corrects nobody else's tests.
+    for family in (frame["situation"] != "slowed", frame["situation"] == "slowed"):
+        frame.loc[family, "q_value"] = q_values(frame.loc[family, "p_value"].to_numpy())
     frame["verdict"] = [_verdict(row, comparison) for row in frame.to_dict("records")]
     return tabulated(frame[names], numbers)
 

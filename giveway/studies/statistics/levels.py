@@ -33,6 +33,7 @@ def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Dat
     tables = dict(iter(frame.groupby(["cell", "ego"])))
     rows = [
         _row(cell, str(ego), metric.name, table[metric.name].to_numpy(np.float64), comparison)
+        | _slowed(cell, str(ego), metric.name, table, comparison)
         | {"unit": metric.unit}
         for cell in design.cells
         for (number, ego), table in tables.items()
@@ -42,6 +43,19 @@ def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Dat
     names = [factor.name for factor in design.factors]
     frame = pd.DataFrame(rows, columns=[*names, *(column.name for column in LEVEL_COLUMNS)])
     return tabulated(frame, numbers_of(LEVEL_COLUMNS))
+
+
+def _slowed(
+    cell: Cell, ego: str, name: str, table: pd.DataFrame, comparison: Comparison
+) -> dict[str, object]:
+    """The columns about those runs in which people slowed the ego."""
+    which = table["slowed"].to_numpy(np.float64)
+    values = table[name].to_numpy(np.float64)[which == 1.0]
+    alone = _row(cell, ego, name, values, comparison)
+    known = np.isfinite(which)
+    share = {"share_slowed": mean(which[known])} if known.any() else {}
+    kept = ("n", "mean", "ci_low", "ci_high")
+    return share | {f"slowed_{key}": alone[key] for key in kept if key in alone}
 
 
 def _row(

@@ -16,7 +16,7 @@ from giveway.studies.design import Design
 from giveway.studies.record import CRASHED, FAILED, Scalar
 from giveway.studies.statistics.metrics import METRICS
 
-_NAMES = tuple(metric.name for metric in METRICS)
+_NAMES = (*(metric.name for metric in METRICS), "slowed")
 
 
 @dataclass(frozen=True)

@@ -66,6 +66,9 @@ def within(pairs: Pairs, situation: Situation) -> Mask:
         return seen & treated & based
     if situation == "non-stop":
         return seen & ~treated & ~based
+    if situation == "slowed":
+        slowed: Mask = (np.stack(pairs.of("slowed")) == 1.0).any(axis=0)
+        return seen & slowed
     return seen
 
 

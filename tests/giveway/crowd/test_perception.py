@@ -106,3 +106,29 @@ def test_a_run_with_unseen_desired_speeds_predicts_otherwise(run_once):
         seed=2, time_limit=4.0, crowd=PEOPLE, perception={"desired_speeds": "typical"}
     )
     assert not np.array_equal(typical.egos[0].track.force, plain.egos[0].track.force)
+
+
+def walking_crowd() -> Crowd:
+    place = np.array([[0.0, 0.0], [3.0, 1.0], [5.0, 5.0]])
+    velocity = np.array([[1.0, 0.0], [0.0, -2.0], [0.01, 0.0]])
+    routes = [np.array([[0.0, 9.0], [9.0, 9.0]]), np.array([[3.0, 9.0]]), np.array([[9.0, 5.0]])]
+    return Crowd.create(place, velocity, 1.4, routes)
+
+
+def test_unknown_goals_lie_along_the_heading_and_who_stands_stays():
+    crowd = walking_crowd()
+    seen = eyes(goals="heading").observe(crowd)
+    way = seen.waypoints - crowd.position
+    assert np.allclose(way[0], (1000.0, 0.0))
+    assert np.allclose(way[1], (0.0, -1000.0))
+    assert (way[2] == 0.0).all()
+    assert (seen.velocity == crowd.velocity).all()
+    assert (seen.position == crowd.position).all()
+    assert len(crowd.waypoints) == 4  # the crowd itself knows
+
+
+def test_unknown_goals_turn_with_the_heading():
+    crowd, seen_by = walking_crowd(), eyes(goals="heading")
+    seen_by.observe(crowd)
+    crowd.velocity[0] = (0.0, 1.0)
+    assert np.allclose((seen_by.observe(crowd).waypoints - crowd.position)[0], (0.0, 1000.0))

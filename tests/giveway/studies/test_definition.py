@@ -271,7 +271,7 @@ def test_the_study_of_controllers_compares_all_of_them_in_every_scene():
         "mpc-paper",
         "pid-paper",
     ]
-    assert len(planned.cells) == len(scene.levels) * 4 == 64
+    assert len(planned.cells) == len(scene.levels) * 4 == 88
     assert planned.definition.table == "levels"
 
 

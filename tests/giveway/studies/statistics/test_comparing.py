@@ -49,8 +49,9 @@ def test_a_row_for_every_metric_and_situation_in_a_fixed_order(two_controllers) 
     study = two_controllers({"stops": [0, 1, 1]}, {"stops": [0, 1, 0]})
     found = rows(study)
     assert list(found.columns) == [column.name for column in COMPARISON_COLUMNS]
-    assert list(found["metric"]) == [metric.name for metric in METRICS] * 3
-    assert list(found["situation"].unique()) == ["general", "stop-and-wait", "non-stop"]
+    assert list(found["metric"]) == [metric.name for metric in METRICS] * 4
+    situations = ["general", "stop-and-wait", "non-stop", "slowed"]
+    assert list(found["situation"].unique()) == situations
 
 
 def test_situations_are_the_papers(two_controllers) -> None:
@@ -63,6 +64,31 @@ def test_situations_are_the_papers(two_controllers) -> None:
     assert row(study, "longest_wait", "stop-and-wait").share == 0.5
     assert row(study, "longest_wait", "non-stop").n == 1
     assert row(study, "longest_wait").n == 6
+
+
+def test_slowed_pairs_leave_out_those_that_nobody_slowed(two_controllers) -> None:
+    treated = {"slowed": [True, False, False, True], "completion_time": [12.0, 10.0, 10.5, 15.0]}
+    based = {"slowed": [True, True, False, False], "completion_time": [13.0, 11.0, 10.0, 10.0]}
+    study = two_controllers(treated, based)
+    assert row(study, "completion_time").n == 4
+    found = row(study, "completion_time", "slowed")
+    assert (found.n, found.share) == (3, 0.75)
+    assert found.mean_difference == 1.0
+
+
+def test_slowed_pairs_correct_no_other_test(two_controllers) -> None:
+    """What the tests over all pairs come to depends on the first three situations alone."""
+    rng = np.random.default_rng(3)
+    values = {name: rng.normal(10.0, 1.0, 12) for name in ("completion_time", "rms_jerk")}
+    worse = {name: numbers + 0.4 for name, numbers in values.items()}
+    all_slowed = {"slowed": [True] * 12}
+    with_them = rows(two_controllers(values | all_slowed, worse | all_slowed))
+    without = rows(two_controllers(values, worse))
+    general = [frame[frame["situation"] != "slowed"] for frame in (with_them, without)]
+    assert np.isfinite(general[0]["q_value"]).any()
+    assert np.array_equal(general[0]["q_value"], general[1]["q_value"], equal_nan=True)
+    slowed = with_them[with_them["situation"] == "slowed"]
+    assert np.isfinite(slowed["q_value"]).any()
 
 
 def test_a_pair_counts_where_both_sides_have_a_number(two_controllers) -> None:
@@ -179,7 +205,7 @@ def test_nothing_to_compare(new_study, lost: bool) -> None:
         study.lose("mpc", seeds=range(1, 9)).lose("pid", seeds=range(1, 9))
     found = rows(study)
     assert list(found.columns) == [column.name for column in COMPARISON_COLUMNS]
-    assert len(found) == (3 * len(METRICS) if lost else 0)
+    assert len(found) == (4 * len(METRICS) if lost else 0)
     assert set(found["verdict"]) <= {"N.A."}
 
 

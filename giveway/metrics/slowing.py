@@ -1,0 +1,51 @@
+"""Whether people ever slowed an ego: its speed against what it drives there with nobody about."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.records.tracks import EgoTrack
+
+SLOWED = 0.8
+"""Of the free speed: an ego below it is slowed."""
+_RISE = 1.0  # [m/s^2] with which the free speed rises from the start, or from where it was held up
+_HELD = 30.0  # [m] nearer to a stop or a vehicle in front, these may hold it up, whoever walks
+_STANDING = 0.1  # [m/s] a free speed below it says nothing
+
+
+def slowed(ego: EgoTrack, reference: float | None) -> bool:
+    """Whether the ego was, at any instant, below 0.8 times its speed with nobody about.
+
+    The free speed rises with 1 m/s^2 from the start up to the reference speed of the place. A stop
+    (a red light) or a vehicle less than 30 m in front may slow an ego that is alone, too: such
+    instants do not count, and the free speed rises anew from the ego's after them.
+
+    Args:
+        ego: its track.
+        reference: v_r [m/s]; None where the lanes say how fast: then what the controller aimed
+            at while nobody was in front, interpolated over the way.
+    """
+    top = _reference(ego, reference)
+    held = (ego.vehicle_gap < _HELD) | (ego.stop_gap < _HELD)
+    square = float(ego.speed[0]) ** 2
+    way = np.diff(ego.position, prepend=ego.position[0])
+    for k in range(len(ego.time)):
+        if held[k]:
+            square = float(ego.speed[k]) ** 2
+            continue
+        square = min(square + 2.0 * _RISE * max(float(way[k]), 0.0), float(top[k]) ** 2)
+        free = np.sqrt(square)
+        if free > _STANDING and ego.speed[k] < SLOWED * free:
+            return True
+    return False
+
+
+def _reference(ego: EgoTrack, reference: float | None) -> NDArray[np.float64]:
+    """(T,) [m/s] the speed to aim at where the ego is at each instant."""
+    if reference is not None:
+        return np.full(len(ego.time), reference)
+    free = np.isinf(ego.gap) & np.isfinite(ego.reference_speed)
+    free &= (ego.vehicle_gap >= _HELD) & (ego.stop_gap >= _HELD)
+    if not free.any():
+        return np.zeros(len(ego.time))  # it says nothing
+    places = np.maximum.accumulate(ego.position)
+    return np.asarray(np.interp(places, places[free], ego.reference_speed[free]), dtype=np.float64)
