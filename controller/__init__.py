@@ -30,6 +30,7 @@ from controller.solution import MpcSolution
 from controller.speed_controller import SpeedController
 from controller.speed_reference import ReferenceParameters, SpeedReference
 from controller.tuned_pid import TunedPid, TunedPidParameters
+from controller.worst_motion import PeopleName, WorstMotion, worst_motion
 
 __all__ = [
     "PRINTED_PID",
@@ -48,6 +49,7 @@ __all__ = [
     "ParameterError",
     "PathAhead",
     "People",
+    "PeopleName",
     "Pid",
     "PidParameters",
     "Planner",
@@ -66,6 +68,8 @@ __all__ = [
     "TunedPid",
     "TunedPidParameters",
     "Verdict",
+    "WorstMotion",
     "add_cost_of_others",
     "own_cost",
+    "worst_motion",
 ]

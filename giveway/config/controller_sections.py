@@ -2,6 +2,7 @@
 
 from typing import Literal
 
+from controller import PeopleName
 from giveway.config.option import Preset, Section, option
 from giveway.config.reasons import BUFFER, FORCE, GAP, MILLIMETRE, TYRES
 
@@ -275,6 +276,14 @@ class SafetyConfig(Section):
         None,
         "brakes where the controller would not; none: yes, but not for the paper's controllers",
         flag="--safety",
+    )
+    people: PeopleName = option(
+        "worst-case",
+        None,
+        "what it takes them to do at worst: worst-case, all that the simulated ones can; "
+        "recorded-99.9, 3 m/s^2, which real people near cars exceed once in 1,000 instants; "
+        "responsible, 2.2 m/s^2, once in 100",
+        flag="--safety-people",
     )
     margin: float = option(
         0.05,

@@ -7,7 +7,7 @@ from math import inf, sqrt
 from controller import Controller, SafetyParameters
 from fmus import FmuError, Vehicle
 from giveway.config import EgoRunConfig
-from giveway.config.presets import parameters_of
+from giveway.config.presets import parameters_of, people_at_worst
 from giveway.ego.recorded import NoController, RecordedVehicle
 from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
 from giveway.errors import VehicleError
@@ -126,10 +126,11 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
         time_step: of the co-simulation [s].
     """
     safety, walking = config.safety, parameters_of(config.crowd.preset)
+    worst = people_at_worst(safety.people, config.crowd.preset)
     reaction = safety.reaction_time
     return SafetyParameters(
-        walking_acceleration=walking.max_acceleration,
-        walking_speed=walking.max_speed,
+        walking_acceleration=worst.acceleration,
+        walking_speed=worst.speed,
         body_radius=walking.body_radius,
         margin=safety.margin + model_margin(config, time_step),
         position_error=_WITHIN * config.perception.position_noise,

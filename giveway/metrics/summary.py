@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from controller import WorstMotion
 from giveway.metrics.conflicts import Critical
 from giveway.metrics.contacts import FRONTAL, SIDE
 from giveway.metrics.slowing import slowed
@@ -20,6 +21,7 @@ SAFETY = "safety"  # the name under which the safety layer acts
 HARD = 4.0
 """[m/s^2] A harder deceleration is a hard brake: above what passengers who stand can bear."""
 _CAUSE = 15.0  # [m] nobody nearer in front at a hard brake: it has no cause
+_ROUNDING = 1.0 + 1e-6  # of a velocity in a table
 _AROUND = 0.5  # [s] before and after its begin in which that is looked for
 
 
@@ -93,6 +95,13 @@ class Summary:
     slowed: Annotated[
         bool, Quantity(None, "whether it was ever below 0.8 times its speed with nobody about")
     ]
+    beyond_assumption: Annotated[
+        float,
+        Quantity(None, "pedestrians who accelerated harder than assumed; empty: no safety layer"),
+    ]
+    contacts_beyond: Annotated[
+        float, Quantity(None, "of these, those that the ego moved into; empty: no safety layer")
+    ]
 
     def as_dict(self) -> dict[str, bool | int | float]:
         """Names and values, in the order of ``SUMMARY_FIELDS``."""
@@ -112,6 +121,7 @@ def summarise(
     reference_speed: float | None = None,
     stop_speed: float = STOP_SPEED,
     controller: str,
+    people: WorstMotion | None = None,
     vehicles: Sequence[VehicleContact] = (),
 ) -> Summary:
     """Summarise a run in one row.
@@ -130,6 +140,7 @@ def summarise(
         reference_speed: v_r [m/s]; None: the lanes say how fast.
         stop_speed: the ego stands below it [m/s].
         controller: its name; one that begins with "mpc" optimises.
+        people: what the safety layer takes them to do at worst; None: there is no such layer.
         vehicles: the background vehicles that it came into contact with.
 
     Raises:
@@ -143,6 +154,8 @@ def summarise(
     jerk = np.diff(ego.acceleration) / np.diff(ego.time)
     clearances = per_pedestrian["minimum_clearance"].to_numpy()
     brakes = hard_brakes(ego)
+    frontal = (per_pedestrian["contact"] == FRONTAL).to_numpy()
+    beyond = _beyond(per_pedestrian, people)
     return Summary(
         completed=bool(ego.position[-1] >= goal),
         completion_time=_time_at(ego, goal),
@@ -164,7 +177,7 @@ def summarise(
         share_below_safe_distance=float(np.mean(ego.gap < safe_distance)),
         minimum_clearance=_extreme(clearances, np.min),
         overlaps=int(np.count_nonzero(clearances < 0.0)),
-        frontal_contacts=int(np.count_nonzero(per_pedestrian["contact"] == FRONTAL)),
+        frontal_contacts=int(np.count_nonzero(frontal)),
         side_contacts=int(np.count_nonzero(per_pedestrian["contact"] == SIDE)),
         overlap_time=float(np.nansum(per_pedestrian["overlap_time"].to_numpy())),
         minimum_ttc=_extreme(per_pedestrian["minimum_ttc"].to_numpy(), np.min),
@@ -178,7 +191,18 @@ def summarise(
         hard_brakes=len(brakes),
         hard_brakes_without_cause=sum(not _has_cause(ego, k) for k in brakes),
         slowed=slowed(ego, reference_speed),
+        beyond_assumption=float(np.count_nonzero(beyond)) if people else np.nan,
+        contacts_beyond=float(np.count_nonzero(beyond & frontal)) if people else np.nan,
     )
+
+
+def _beyond(per_pedestrian: pd.DataFrame, people: WorstMotion | None) -> NDArray[np.bool_]:
+    """Which pedestrians accelerated harder than ``people`` allows, by more than rounding."""
+    if people is None:
+        return np.zeros(len(per_pedestrian), dtype=np.bool_)
+    hardest = per_pedestrian["peak_acceleration"].to_numpy(np.float64)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(hardest > people.acceleration * _ROUNDING, dtype=np.bool_)
 
 
 def _time_at(ego: EgoTrack, goal: float) -> float:

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from controller import WorstMotion
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.option import LANE
-from giveway.config.presets import parameters_of
+from giveway.config.presets import parameters_of, people_at_worst
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
     DELAY_FIELDS,
@@ -123,6 +124,14 @@ class EgoResult:
         steps = twin.step[known] - self.first
         return Undisturbed(steps, who[known], twin.x[known], twin.y[known])
 
+    @property
+    def people_at_worst(self) -> WorstMotion | None:
+        """What its safety layer takes people to be able to do; None: it has none."""
+        config = self.config
+        if not config.safety_layer:
+            return None
+        return people_at_worst(config.safety.people, config.crowd.preset)
+
     @cached_property
     def summary(self) -> dict[str, Any]:
         """The drive in one row."""
@@ -138,6 +147,7 @@ class EgoResult:
             reference_speed=None if reference == LANE else float(reference),
             stop_speed=config.record.stop_speed,
             controller=config.controller,
+            people=self.people_at_worst,
             vehicles=self.vehicle_contacts,
         )
         row = figures.as_dict()

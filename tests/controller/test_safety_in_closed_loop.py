@@ -16,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controller import LongitudinalModel, SafetyLayer, SafetyParameters
+from controller.worst_motion import RECORDED
 
 A_MAX, V_MAX, R, HALF = 5.0, 2.5, 0.27, 1.0
 LOOKS = 5  # in between, at each step
@@ -74,10 +75,10 @@ class Plant:
             self.speed = 0.0
 
 
-def walk(x, v, a, dt):
+def walk(x, v, a, dt, hardest=A_MAX):
     """One step of the crowd with its limits (pedestrian_model): positions, velocities, (a)."""
     size = np.maximum(np.hypot(*a.T), 1e-12)[:, None]
-    after = v + dt * a * np.minimum(1.0, A_MAX / size)
+    after = v + dt * a * np.minimum(1.0, np.reshape(hardest, (-1, 1)) / size)
     fast = np.maximum(np.hypot(*after.T), 1e-12)[:, None]
     after *= np.minimum(1.0, V_MAX / fast)
     return x + 0.5 * dt * (v + after), after
@@ -122,8 +123,23 @@ def moved_into(road, before, after, x, x_next, v, dt):
     return False
 
 
-def drive(seed, *, road=Road(), people=4, steps=50, dt=0.05, noise=0.0, plant=None, **parameters):
-    """The reasons given while the ego drove; fails where its front got into somebody."""
+def drive(
+    seed,
+    *,
+    road=Road(),
+    people=4,
+    steps=50,
+    dt=0.05,
+    noise=0.0,
+    plant=None,
+    hardest=A_MAX,
+    kept=slice(None),
+    **parameters,
+):
+    """The reasons given while the ego drove; fails where its front got into one of ``kept``.
+
+    ``hardest`` is how hard everybody, or each, accelerates at most.
+    """
     rng = np.random.default_rng(seed)
     layer = SafetyLayer(
         LongitudinalModel(time_step=dt), SafetyParameters(position_error=noise, **parameters)
@@ -142,9 +158,10 @@ def drive(seed, *, road=Road(), people=4, steps=50, dt=0.05, noise=0.0, plant=No
         a = accelerations(rng, mood, x, v, road, plant)
         before, moving = plant.travel, plant.speed
         plant.step(safe.force)
-        x_next, v_next = walk(x, v, a, dt)
+        x_next, v_next = walk(x, v, a, dt, hardest)
         if moving > 1e-9 or plant.travel > before:
-            assert not moved_into(road, before, plant.travel, x, x_next, v, dt), safe
+            among = x[kept], x_next[kept], v[kept]
+            assert not moved_into(road, before, plant.travel, *among, dt), safe
         x, v = x_next, v_next
     return reasons
 
@@ -185,6 +202,56 @@ def test_when_the_vehicle_obeys_late_too(seed, delay):
     """It may be as late as is said, or sooner."""
     reasons = drive(seed, plant=Plant(0.0, delay=delay), reaction_time=0.2)
     assert "unavoidable" not in reasons
+
+
+@pytest.mark.parametrize("name", ["recorded-99.9", "responsible"])
+@relaxed
+@given(seed=seeds)
+def test_within_what_it_assumes_nobody_is_hit_and_a_stop_stays_possible(name, seed):
+    """As hard as the assumption lets them, and no harder."""
+    reasons = drive(seed, hardest=RECORDED[name].acceleration, **limits_of(name))
+    assert "unavoidable" not in reasons
+
+
+@pytest.mark.parametrize("name", ["recorded-99.9", "responsible"])
+@relaxed
+@given(seed=seeds)
+def test_who_keeps_to_the_assumption_is_safe_whatever_others_do(name, seed):
+    """The promise is made person by person: two of these four lunge as nobody is taken to."""
+    bound = RECORDED[name].acceleration
+    hardest = np.array([bound, bound, A_MAX, A_MAX])
+    drive(seed, hardest=hardest, kept=slice(2), **limits_of(name))
+
+
+def test_who_breaks_the_assumption_can_be_hit():
+    """The bounds are no formality: beyond them the same adversaries reach the front."""
+
+    def is_hit(seed):
+        try:
+            drive(seed, hardest=A_MAX, **limits_of("responsible"))
+        except AssertionError:
+            return True
+        return False
+
+    assert any(map(is_hit, range(200)))
+
+
+def limits_of(name):
+    worst = RECORDED[name]
+    return {"walking_acceleration": worst.acceleration, "walking_speed": worst.speed}
+
+
+@pytest.mark.parametrize("name", ["recorded-99.9", "responsible"])
+def test_a_milder_assumption_lets_more_through(name):
+    """Somebody stands 0.8 m beside the way of an ego at 4 m/s."""
+    way, still = np.array([[0.0, 0.0, 1.0, 0.0]]), np.zeros((1, 2))
+    beside = np.array([[0.8, 1.8]])
+
+    def allowed(**limits):
+        layer = SafetyLayer(LongitudinalModel(), SafetyParameters(**limits))
+        return layer.filter(8000.0, 4.0, way, SPACING, beside, still).force
+
+    assert allowed(**limits_of(name)) > allowed() + 100.0
 
 
 def test_these_people_are_driven_into_without_it():

@@ -59,6 +59,8 @@ def test_the_paper_s_gains_are_the_configurations():
 def test_the_safety_layers_defaults_are_the_configurations_and_the_people_s():
     assert safety_parameters(CONFIG, STEP) == SafetyParameters()
     assert SafetyParameters().width == BODY.width
+    milder = safety_parameters(EgoRunConfig(safety={"people": "responsible"}), STEP)
+    assert (milder.walking_acceleration, milder.walking_speed) == (2.2, 2.8)
     assert SafetyParameters().walking_speed == SIM.max_speed
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from controller import WorstMotion
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
     PEDESTRIAN_FIELDS,
@@ -173,6 +174,8 @@ def test_what_never_occurred_is_empty(ego):
     summary = summary_of(ego(TIME), goal=1e9, controller="pid")
     never = {name for name, value in summary.as_dict().items() if np.isnan(value)}
     assert never == {
+        "beyond_assumption",
+        "contacts_beyond",
         "completion_time",
         "mpc_feasibility_rate",
         "minimum_gap",
@@ -231,3 +234,18 @@ def test_every_column_says_what_it_means():
         assert column.unit != ""
     units = {column.name: column.unit for column in (*PEDESTRIAN_FIELDS, *SUMMARY_FIELDS)}
     assert (units["post_encroachment_time"], units["rms_jerk"], units["id"]) == ("s", "m/s^3", None)
+
+
+def test_who_breaks_the_assumption_of_the_safety_layer_is_counted_and_their_contacts_apart(ego):
+    table = pd.DataFrame(
+        {name: np.full(4, np.nan) for name in NOBODY.columns}
+        | {"contact": ["frontal", "frontal", "", "side"]}
+        | {"peak_acceleration": [2.0, 4.0, 3.0000001, 3.5]}
+    )
+    track = ego(0.5 * np.arange(6), speed=np.full(6, 4.0))
+    found = summary_of(track, table, people=WorstMotion(3.0, 3.3))
+    assert (found.beyond_assumption, found.contacts_beyond) == (2.0, 1.0)
+    assert found.frontal_contacts == 2
+    without = summary_of(track, table)
+    assert np.isnan(without.beyond_assumption)
+    assert np.isnan(without.contacts_beyond)

@@ -25,6 +25,7 @@ def test_what_is_left_out_says_nothing_about_a_controller() -> None:
     said |= {"vehicle_contacts", "vehicle_contact_time"}  # SUMO drives those into it
     said |= {"encounters", "people_delayed"}  # how many people come is not up to it
     said |= {"twin_differs"}  # says how much the delays mean
+    said |= {"beyond_assumption", "contacts_beyond"}  # what the simulated people do
     said |= {"slowed"}  # people do; which runs count, see the situations
     assert left == said | {"hard_brakes", "hard_brakes_without_cause"}  # of drives in traffic
 
