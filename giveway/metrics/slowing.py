@@ -7,7 +7,7 @@ from giveway.records.tracks import EgoTrack
 
 SLOWED = 0.8
 """Of the free speed: an ego below it is slowed."""
-_RISE = 1.0  # [m/s^2] with which the free speed rises from the start, or from where it was held up
+_RISE = 0.5  # [m/s^2] with which the free speed rises from the start, or from where it was held up
 _HELD = 30.0  # [m] nearer to a stop or a vehicle in front, these may hold it up, whoever walks
 _STANDING = 0.1  # [m/s] a free speed below it says nothing
 
@@ -15,7 +15,7 @@ _STANDING = 0.1  # [m/s] a free speed below it says nothing
 def slowed(ego: EgoTrack, reference: float | None) -> bool:
     """Whether the ego was, at any instant, below 0.8 times its speed with nobody about.
 
-    The free speed rises with 1 m/s^2 from the start up to the reference speed of the place. A stop
+    The free speed rises with 0.5 m/s^2 from the start up to the reference speed of the place. A stop
     (a red light) or a vehicle less than 30 m in front may slow an ego that is alone, too: such
     instants do not count, and the free speed rises anew from the ego's after them.
 
