@@ -87,6 +87,7 @@ def _smoothed(
 def departures(found: list[Track], ahead: float, dt: float) -> Array:
     """[m/s^2] the constant acceleration that leaves a straight line as far within ``ahead``."""
     steps = round(ahead / dt)
+    ahead = steps * dt
     parts = []
     for track in found:
         off = track.position[steps:] - track.position[:-steps] - ahead * track.velocity[:-steps]
