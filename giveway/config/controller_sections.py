@@ -2,7 +2,6 @@
 
 from typing import Literal
 
-from controller import PeopleName
 from giveway.config.option import Preset, Section, option
 from giveway.config.reasons import BUFFER, FORCE, GAP, MILLIMETRE, TYRES
 
@@ -277,7 +276,7 @@ class SafetyConfig(Section):
         "brakes where the controller would not; none: yes, but not for the paper's controllers",
         flag="--safety",
     )
-    people: PeopleName = option(
+    people: Literal["worst-case", "recorded-99.9", "responsible"] = option(
         "worst-case",
         None,
         "what it takes them to do at worst: worst-case, all that the simulated ones can; "

@@ -9,7 +9,6 @@ from typing import Any
 
 import tomlkit
 
-from controller import PeopleName, WorstMotion, worst_motion
 from giveway.config.schema_names import PRESET, with_schema
 from giveway.config.toml import read_toml_file
 from giveway.errors import ConfigError
@@ -152,17 +151,3 @@ def _require_names(path: Path, given: Mapping[str, object]) -> None:
             f"{path}: [parameters] {missing[0]} is missing; give all {len(NAMES)} parameters, or "
             'take the others from a preset: base = "SIM"'
         )
-
-
-def people_at_worst(people: PeopleName, preset: str) -> WorstMotion:
-    """What a safety layer takes people to be able to do.
-
-    Args:
-        people: as in ``[safety] people``.
-        preset: that they walk by.
-
-    Raises:
-        ConfigError: the preset cannot be used.
-    """
-    walking = parameters_of(preset)
-    return worst_motion(people, WorstMotion(walking.max_acceleration, walking.max_speed))

@@ -7,9 +7,10 @@ from math import inf, sqrt
 from controller import Controller, SafetyParameters
 from fmus import FmuError, Vehicle
 from giveway.config import EgoRunConfig
-from giveway.config.presets import parameters_of, people_at_worst
+from giveway.config.presets import parameters_of
 from giveway.ego.recorded import NoController, RecordedVehicle
 from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
+from giveway.ego.worst_motion import people_at_worst
 from giveway.errors import VehicleError
 from giveway.records.tracks import EgoTrack
 from pedestrian_model import Predictor

@@ -11,7 +11,8 @@ import pandas as pd
 from controller import WorstMotion
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.option import LANE
-from giveway.config.presets import parameters_of, people_at_worst
+from giveway.config.presets import parameters_of
+from giveway.ego.worst_motion import people_at_worst
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
     DELAY_FIELDS,

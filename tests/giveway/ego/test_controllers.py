@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import get_args
 
 import pytest
 
@@ -10,6 +11,7 @@ from controller import (
     LongitudinalModel,
     ManoeuvreParameters,
     MpcParameters,
+    PeopleName,
     PidParameters,
     PlannerParameters,
     ReferenceParameters,
@@ -18,6 +20,7 @@ from controller import (
 )
 from fmus.sources.parameters import ControllerParameters
 from giveway.config import EgoRunConfig
+from giveway.config.controller_sections import SafetyConfig
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.ego.controllers import filled
 from giveway.ego.waiting import safety_parameters
@@ -62,6 +65,8 @@ def test_the_safety_layers_defaults_are_the_configurations_and_the_people_s():
     milder = safety_parameters(EgoRunConfig(safety={"people": "responsible"}), STEP)
     assert (milder.walking_acceleration, milder.walking_speed) == (2.2, 2.8)
     assert SafetyParameters().walking_speed == SIM.max_speed
+    chosen = SafetyConfig.model_fields["people"].annotation
+    assert get_args(chosen) == get_args(PeopleName)
 
 
 def test_the_exported_controllers_defaults_are_the_configurations():
