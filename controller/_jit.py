@@ -10,8 +10,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 _Function = TypeVar("_Function", bound="Callable[..., Any]")
+_STRICT: dict[str, Any] = {
+    "cache": True,
+    "error_model": "numpy",
+    "no_cfunc_wrapper": True,  # none is called from C; it would be compiled with each kernel
+}
 
 
 def kernel(function: _Function) -> _Function:
     """Compile ``function`` on its first call; no fastmath, no reordered sums."""
-    return cast("_Function", numba.njit(cache=True, error_model="numpy")(function))
+    return cast("_Function", numba.njit(**_STRICT)(function))

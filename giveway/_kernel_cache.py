@@ -13,17 +13,21 @@ import re
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import llvmlite
 import numba
+from numba.core import caching
 from numba.core.caching import UserProvidedCacheLocator
+from numba.core.runtime.nrt import rtsys
 
 from giveway._environment import user_cache
 
 FOLDERS = "kernels-*"
+_LOCK = "saving.lock"
 _HOUSE = Path(__file__).resolve().parent.parent
 _OF_KERNELS = ("controller", "pedestrian_model")  # rooms whose constants go into kernels, too
-_KERNEL = re.compile(rb"^@kernel|^def kernel\b", re.MULTILINE)
+_KERNEL = re.compile(rb"^@(?:kernel|inlined)\b|^def kernel\b", re.MULTILINE)
 
 
 @functools.cache
@@ -64,9 +68,13 @@ def kernel_cache() -> Path:
 class KernelLocator(UserProvidedCacheLocator):
     """Tells numba where it finds and keeps a kernel of ours; of other functions it says nothing."""
 
-    def __init__(self, py_func: object, py_file: str) -> None:
-        super().__init__(py_func, py_file)  # type: ignore[no-untyped-call]
+    def __init__(self, py_func: Any, py_file: str) -> None:
+        self._lineno = py_func.__code__.co_firstlineno
         self._cache_path = str(kernel_cache() / ".".join(_place(py_file).parts[:-1]))
+
+    def ensure_cache_path(self) -> None:
+        """Make the folder; whether it can be written is tried once for all kernels in it."""
+        _ensure_writable(self._cache_path)
 
     def get_source_stamp(self) -> str:
         """What the compiled code was made from: all kernels, since some are inlined into others."""
@@ -79,13 +87,59 @@ class KernelLocator(UserProvidedCacheLocator):
             return None
         locator = cls(py_func, py_file)
         try:
-            locator.ensure_cache_path()  # type: ignore[no-untyped-call]
+            locator.ensure_cache_path()
         except OSError:
             return None
         return locator
 
 
+@functools.cache
+def _ensure_writable(folder: str) -> None:
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    tempfile.TemporaryFile(dir=folder).close()
+
+
+@functools.cache
 def _place(py_file: str) -> Path:
     """A module's path as seen from the folder of our packages."""
     path = Path(py_file).resolve()
     return path.relative_to(_HOUSE) if path.is_relative_to(_HOUSE) else path
+
+
+class _Kernels(caching.FunctionCache):
+    """What differs in numba's cache for kernels of ours; put into numba's own class below."""
+
+    load_as_ever: Any = caching.FunctionCache.load_overload
+    save_as_ever: Any = caching.FunctionCache.save_overload
+
+    def load_overload(self, signature: Any, target_context: Any) -> Any:
+        """Load machine code without making the compiler ready.
+
+        Numba registers hundreds of typed implementations before it looks into its cache, a third
+        of a second. Code that is there needs the runtime of arrays alone; where none is found, the
+        compiler makes itself ready.
+        """
+        if not isinstance(self._impl.locator, KernelLocator):
+            return _Kernels.load_as_ever(self, signature, target_context)
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(signature, target_context)  # type: ignore[no-untyped-call]
+
+    def save_overload(self, signature: Any, data: Any) -> None:
+        """Save one after the other: numba reads the list of a kernel's signatures and writes it.
+
+        Two processes at once might else give both signatures the same file.
+        """
+        if not isinstance(self._impl.locator, KernelLocator):
+            _Kernels.save_as_ever(self, signature, data)
+            return
+        from filelock import FileLock
+
+        with FileLock(Path(self.cache_path) / _LOCK):
+            _Kernels.save_as_ever(self, signature, data)
+
+
+_numbas: Any = caching.FunctionCache
+if hasattr(_numbas, "_load_overload") and hasattr(_numbas, "_guard_against_spurious_io_errors"):
+    _numbas.load_overload = _Kernels.load_overload
+    _numbas.save_overload = _Kernels.save_overload

@@ -3,43 +3,83 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import shutil
+import subprocess
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from llvmlite.binding import get_host_cpu_name
 
 from controller import LongitudinalModel, Mpc, MpcParameters
 from giveway._kernel_cache import FOLDERS, kernel_cache
-from pedestrian_model import Crowd
+from giveway.processes.child import die_with
+from giveway.processes.interpreter import command
+from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles
+from pedestrian_model.model import SHARED_FROM
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
     from rich.console import Console
 
 _MARKER = "compiled-for-"
 _KEPT = 30 * 86400.0  # [s] since the last run
 _MESSAGE = "Compiling the numerical kernels (once after installation, about half a minute) ..."
+_MESSAGE_THREADS = "Compiling the kernels of several threads (once, some ten seconds) ..."
+_LONGEST: Final = 600.0  # [s] that the other process is waited for
+_HELP: Final = "from giveway.precompile import help_compiling; help_compiling(*arguments)"
+
+_PEOPLE: Final = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
+_FREE: Final[dict[str, Any]] = {"time_limit": 0.2, "crowd": {"pedestrians": 0}}
+_PLANNING: Final[dict[str, Any]] = {"time_limit": 0.2, "crowd": _PEOPLE, "twin": True}
+# In this order two processes hardly compile the same at the same time: the vehicle and its plans
+# in one, the crowd, what is measured and the other controllers in the other.
+_PLANS: Final[tuple[dict[str, Any], ...]] = (_FREE, _PLANNING)
+_OTHERS: Final[tuple[dict[str, Any], ...]] = (
+    {"time_limit": 0.2, "crowd": _PEOPLE, "ego": {"none": True}},
+    {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "pid-paper", "twin": True},
+    {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "mpc-paper"},
+    {"time_limit": 1.2, "scenario": "street", "controller": "pid-paper"},
+    {
+        "time_limit": 0.3,
+        "scenario": "junction",
+        "controller": "pid-paper",
+        "crowd": {"walls": True},
+    },
+)
 
 
-def compile_kernels_once(console: Console | None = None) -> None:
+def compile_kernels_once(console: Console | None = None, *, threads: int = 1) -> None:
     """Compile and cache every kernel of a run, with a message, unless that has been done.
 
     A few tiny runs call them all; numba keeps the machine code in the user's cache folder.
 
     Args:
         console: for the message; None prints nothing.
+        threads: that step the crowd; several have kernels of their own.
     """
-    marker = kernel_cache() / f"{_MARKER}{get_host_cpu_name()}"
+    marker = f"{_MARKER}{get_host_cpu_name()}"
+    _once(marker, _MESSAGE, _compile_all, console)
+    if threads > 1:
+        _once(f"threads-{marker}", _MESSAGE_THREADS, _step_on_threads, console)
+
+
+def _once(
+    name: str, message: str, compile_them: Callable[[], None], console: Console | None
+) -> None:
+    """Compile unless the marker of that name is there, and leave it."""
+    marker = kernel_cache() / name
     if marker.exists():
         with contextlib.suppress(OSError):
             marker.touch()  # still in use
         return
-    with contextlib.nullcontext() if console is None else console.status(_MESSAGE):
+    with contextlib.nullcontext() if console is None else console.status(message):
         if console is not None and not console.is_terminal:
-            console.print(_MESSAGE)
-        _tiny_run()
+            console.print(message)
+        compile_them()
     try:
         marker.parent.mkdir(parents=True, exist_ok=True)
         marker.touch()
@@ -60,28 +100,92 @@ def forget_old_kernels(folder: Path) -> None:
             shutil.rmtree(other, ignore_errors=True)
 
 
+def _compile_all() -> None:
+    """Compile in this process and in one beside it; then call everything.
+
+    The other one drives by the planning controller through people: the longest of the runs. What
+    both have compiled lies in the cache; what neither has, the last runs compile.
+    """
+    with _helper() as helper:
+        if helper is not None:
+            for settings in _OTHERS:
+                _run(settings)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                helper.wait(_LONGEST)
+    _tiny_run()
+
+
+@contextlib.contextmanager
+def _helper() -> Iterator[subprocess.Popen[bytes] | None]:
+    """A process that compiles beside this one; None where no processor is left for it."""
+    try:
+        helper = _started() if _processors() > 1 else None
+    except OSError:
+        helper = None  # this process does it all
+    try:
+        yield helper
+    finally:
+        if helper is not None:
+            helper.kill()
+            helper.wait()
+
+
+def _started() -> subprocess.Popen[bytes]:
+    nothing = subprocess.DEVNULL
+    arguments: list[int | str] = [os.getpid()]
+    return subprocess.Popen(
+        command(_HELP, arguments), stdin=nothing, stdout=nothing, stderr=nothing
+    )
+
+
+def help_compiling(parent: int) -> None:
+    """What the process beside ``parent`` does."""
+    die_with(parent)
+    for settings in _PLANS:
+        _run(settings)
+
+
+def _processors() -> int:
+    """How many this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 def _tiny_run() -> None:
     """Call every kernel once: a free drive, people on the path, background vehicles, walls."""
-    from giveway.api import run
-    from giveway.records.progress import Ending
-
-    people = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
     hard = {"soft": False, "gap_choice": False}  # then nothing is planned, and the PID brakes
     for settings in (
-        {"time_limit": 0.2, "crowd": {"pedestrians": 0}},
-        {"time_limit": 0.2, "crowd": people, "twin": True},
-        {"time_limit": 0.2, "crowd": people, "planner": hard},
+        _FREE,
+        _PLANNING,
+        {"time_limit": 0.2, "crowd": _PEOPLE, "planner": hard},
         {"time_limit": 0.2, "crowd": {"pedestrians": 0}, "controller": "mpc-paper"},
-        {"time_limit": 0.2, "crowd": people, "controller": "mpc-paper"},
+        {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "mpc-paper"},
         {"time_limit": 1.2, "scenario": "street", "controller": "pid-paper"},
         {"time_limit": 0.3, "scenario": "junction", "crowd": {"walls": True}},
     ):
-        result = run(settings)
-        if result.ending is Ending.INTERRUPTED:
-            raise KeyboardInterrupt
-        result.summary  # noqa: B018 - the metrics have kernels too
+        _run(settings)
     _solve_without_solution()
     _come_and_go()
+
+
+def _run(settings: dict[str, Any]) -> None:
+    from giveway.api import run
+    from giveway.records.progress import Ending
+
+    result = run(settings)
+    if result.ending is Ending.INTERRUPTED:
+        raise KeyboardInterrupt
+    result.summary  # noqa: B018 - the metrics have kernels too
+
+
+def _step_on_threads() -> None:
+    """Two threads step a crowd that is large enough for them."""
+    n = SHARED_FROM
+    places = np.column_stack([np.arange(n) % 40, np.arange(n) // 40]) * 1.5
+    ways = np.column_stack([places, places + 9.0]).reshape(n, 2, 2)[:, 1:]
+    crowd = Crowd.create(places, np.tile([1.0, 0.0], (n, 1)), 1.4, list(ways))
+    CrowdModel(threads=2).advance(crowd, Vehicles.empty(), Surroundings())
 
 
 def _solve_without_solution() -> None:

@@ -15,18 +15,21 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 _Function = TypeVar("_Function", bound="Callable[..., Any]")
+_STRICT: dict[str, Any] = {
+    "cache": True,
+    "error_model": "numpy",
+    "no_cfunc_wrapper": True,  # none is called from C; it would be compiled with each kernel
+}
 
 
 def kernel(function: _Function) -> _Function:
     """Compile ``function`` on its first call; the machine code is cached on disk."""
-    return cast("_Function", numba.njit(cache=True, error_model="numpy", nogil=True)(function))
+    return cast("_Function", numba.njit(nogil=True, **_STRICT)(function))
 
 
 def inlined(function: _Function) -> _Function:
     """Compile ``function`` into its callers, so that a loop around it can be vectorised."""
-    return cast(
-        "_Function", numba.njit(cache=True, error_model="numpy", forceinline=True)(function)
-    )
+    return cast("_Function", numba.njit(forceinline=True, **_STRICT)(function))
 
 
 def _fma(_typing: Any, a: Any, b: Any, c: Any) -> Any:

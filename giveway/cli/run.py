@@ -76,7 +76,7 @@ def run_command(
     checked = preflight(effective, found)
     folder = outputs.folder or default_folder(effective, found.name)
     check_folder(folder, force=outputs.force)
-    compile_kernels_once(console)
+    compile_kernels_once(console, threads=effective.crowd.threads)
     from giveway.api import run_checked
 
     with run_progress(console, effective) as watcher:

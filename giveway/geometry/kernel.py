@@ -13,13 +13,18 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+_STRICT: dict[str, Any] = {
+    "cache": True,
+    "error_model": "numpy",
+    "no_cfunc_wrapper": True,  # none is called from C; it would be compiled with each kernel
+}
+
 
 def kernel(function: Function) -> Function:
     """Compile ``function`` at its first call; without fastmath bytes do not depend on the CPU."""
-    return cast("Function", njit(cache=True, error_model="numpy")(function))
+    return cast("Function", njit(**_STRICT)(function))
 
 
 def inlined(function: Function) -> Function:
     """Compile ``function`` into its callers: each array that is handed over costs a count of it."""
-    compiled = njit(cache=True, error_model="numpy", forceinline=True)(function)
-    return cast("Function", compiled)
+    return cast("Function", njit(forceinline=True, **_STRICT)(function))

@@ -3,10 +3,9 @@
 import importlib.util
 import warnings
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.config.measures import MeasureConfig
@@ -15,6 +14,9 @@ from giveway.measures.columns import MEASURE_COLUMNS
 from giveway.measures.service import FRUIN, HCM, level_of_service
 from giveway.measures.trajectories import surroundings, trajectory_data, walks
 from giveway.records.tracks import CrowdTrack
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 CUT_OFF = 1.0  # [m] no Voronoi cell reaches farther from its person
 SAMPLING = 0.25  # [s] between the instants at which an area is looked at
@@ -36,7 +38,7 @@ def require_pedpy() -> None:
 
 def measure_table(
     measures: Sequence[MeasureConfig], time: NDArray[np.float64], crowd: CrowdTrack
-) -> pd.DataFrame:
+) -> "pd.DataFrame":
     """One row per measure and interval, columns as in ``MEASURE_COLUMNS``.
 
     Args:
@@ -44,6 +46,8 @@ def measure_table(
         time: (T,) [s] the control instants, evenly spaced.
         crowd: the crowd's track.
     """
+    import pandas as pd
+
     names = [column.name for column in MEASURE_COLUMNS]
     if len(time) < 2:
         return pd.DataFrame(columns=names)
@@ -67,7 +71,7 @@ def _intervals(measure: MeasureConfig, time: NDArray[np.float64]) -> list[tuple[
     return [(begin, min(begin + length, last)) for begin in range(0, last, length)]
 
 
-def _speeds(table: pd.DataFrame, step: float) -> tuple[Any, pd.DataFrame]:
+def _speeds(table: "pd.DataFrame", step: float) -> "tuple[Any, pd.DataFrame]":
     """PedPy's trajectories, and everybody's speed [m/s] at each frame."""
     from pedpy import SpeedCalculation, compute_individual_speed
 
@@ -81,7 +85,7 @@ def _speeds(table: pd.DataFrame, step: float) -> tuple[Any, pd.DataFrame]:
 
 
 def _line_rows(
-    measure: MeasureConfig, time: NDArray[np.float64], table: pd.DataFrame
+    measure: MeasureConfig, time: NDArray[np.float64], table: "pd.DataFrame"
 ) -> list[dict[str, Any]]:
     step = float(time[-1] - time[0]) / (len(time) - 1)
     frames, speeds = np.empty(0, dtype=np.int64), np.empty(0)
@@ -116,7 +120,7 @@ def _line_rows(
 
 
 def _area_rows(
-    measure: MeasureConfig, time: NDArray[np.float64], table: pd.DataFrame
+    measure: MeasureConfig, time: NDArray[np.float64], table: "pd.DataFrame"
 ) -> list[dict[str, Any]]:
     step = float(time[-1] - time[0]) / (len(time) - 1)
     every = max(1, round(SAMPLING / step))
@@ -145,7 +149,7 @@ def _area_rows(
 
 
 def _area_series(
-    measure: MeasureConfig, looked_at: NDArray[np.int64], step: float, table: pd.DataFrame
+    measure: MeasureConfig, looked_at: NDArray[np.int64], step: float, table: "pd.DataFrame"
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Classic and Voronoi density [1/m^2] and mean speed [m/s] at the frames ``looked_at``."""
     nobody = np.zeros(len(looked_at))
@@ -190,7 +194,7 @@ def _area_series(
     )
 
 
-def _by_frame(found: pd.DataFrame, looked_at: NDArray[np.int64]) -> pd.Series:
+def _by_frame(found: "pd.DataFrame", looked_at: NDArray[np.int64]) -> "pd.Series":
     """PedPy's value at each frame; nan where it has none."""
     if "frame" in found.columns:
         found = found.set_index("frame")

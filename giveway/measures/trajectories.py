@@ -1,20 +1,24 @@
 """A crowd's records as PedPy takes them."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.metrics.groups import PedestrianGroups
 from giveway.records.tracks import CrowdTrack
 
+if TYPE_CHECKING:
+    import pandas as pd
 
-def walks(crowd: CrowdTrack) -> pd.DataFrame:
+
+def walks(crowd: CrowdTrack) -> "pd.DataFrame":
     """One row per record: id, frame (control instant), x, y [m].
 
     Who was out of our hands for a while has another id after that: nobody jumps over a line.
     """
+    import pandas as pd
+
     groups = PedestrianGroups(crowd)
     order = groups.order
     frame = crowd.step[order]
@@ -26,14 +30,14 @@ def walks(crowd: CrowdTrack) -> pd.DataFrame:
     return table[lasting].reset_index(drop=True)
 
 
-def trajectory_data(table: pd.DataFrame, time_step: float) -> Any:
+def trajectory_data(table: "pd.DataFrame", time_step: float) -> Any:
     """PedPy's own of ``walks``."""
     from pedpy import TrajectoryData
 
     return TrajectoryData(data=table, frame_rate=1.0 / time_step)
 
 
-def surroundings(table: pd.DataFrame, places: NDArray[np.float64], beyond: float) -> Any:
+def surroundings(table: "pd.DataFrame", places: NDArray[np.float64], beyond: float) -> Any:
     """A walkable area that holds all of ``table`` and ``places`` (k, 2) [m]."""
     from pedpy import WalkableArea
 

@@ -1,10 +1,9 @@
 """One row per pedestrian: how it walked, and how close the ego came to it."""
 
 from dataclasses import asdict, dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
@@ -14,6 +13,9 @@ from giveway.metrics.encroachment import encroachment
 from giveway.metrics.groups import PedestrianGroups
 from giveway.records.columns import Quantity, columns_of
 from giveway.records.tracks import CrowdTrack, EgoTrack
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SLOW = 0.2
 """[m/s] Who walks slower stands: as of the ego, Yang & Özgüner 2019, section 2.1."""
@@ -65,7 +67,7 @@ PEDESTRIAN_FIELDS = columns_of(PedestrianRow)
 
 def pedestrian_metrics(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
-) -> pd.DataFrame:
+) -> "pd.DataFrame":
     """Proximity and walking of every pedestrian; columns as in ``PEDESTRIAN_FIELDS``.
 
     Args:
@@ -81,6 +83,8 @@ def pedestrian_metrics(
     Raises:
         ValueError: a record points outside the ego's track.
     """
+    import pandas as pd
+
     clear, ttc, drac = proximity(ego, crowd, shape, body_radius)
     groups = PedestrianGroups(crowd)
     time = ego.time[crowd.step]
@@ -103,13 +107,15 @@ def pedestrian_metrics(
     return pd.DataFrame(columns, columns=[column.name for column in PEDESTRIAN_FIELDS])
 
 
-def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> pd.DataFrame:
+def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> "pd.DataFrame":
     """How every pedestrian walked where there was no ego: the columns that need none.
 
     Args:
         time: (T,) [s] the control instants.
         crowd: the crowd's track.
     """
+    import pandas as pd
+
     return pd.DataFrame(_walks(crowd, PedestrianGroups(crowd), time[crowd.step]))
 
 
@@ -131,7 +137,7 @@ class WalkSummary:
 WALK_SUMMARY_FIELDS = columns_of(WalkSummary)
 
 
-def summarise_walks(table: pd.DataFrame) -> WalkSummary:
+def summarise_walks(table: "pd.DataFrame") -> WalkSummary:
     """The rows of :func:`walks_without_ego` in one."""
     seen = table[table["first_seen"].notna()]
     return WalkSummary(

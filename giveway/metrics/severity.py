@@ -5,10 +5,9 @@ number does both (Laureshyn, Svensson & Hydén 2010), so class and speed stand i
 own.
 """
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
@@ -17,6 +16,9 @@ from giveway.metrics.contacts import FRONTAL
 from giveway.metrics.groups import PedestrianGroups
 from giveway.records.columns import Quantity, columns_of
 from giveway.records.tracks import CrowdTrack, EgoTrack
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SERIOUS_TTC = 1.0
 """[s] Below it a conflict is serious: the highest of the three classes of Sayed, Brown & Navin
@@ -62,8 +64,8 @@ def severities(
     shape: VehicleShape,
     body_radius: float,
     stop_speed: float,
-    per_pedestrian: pd.DataFrame,
-) -> pd.DataFrame:
+    per_pedestrian: "pd.DataFrame",
+) -> "pd.DataFrame":
     """Class, instant, relative speed and place of each pedestrian's conflict.
 
     A conflict is closest to a collision where the time to collision with the moving ego is
@@ -80,6 +82,8 @@ def severities(
     Returns:
         n rows in the order of ``crowd.ids``, columns as in ``SEVERITY_FIELDS``.
     """
+    import pandas as pd
+
     clear, ttc, _ = proximity(ego, crowd, shape, body_radius)
     groups = PedestrianGroups(crowd)
     moving = np.where(ego.speed[crowd.step] > stop_speed, ttc, np.inf)
@@ -108,7 +112,7 @@ def severities(
     return pd.DataFrame(columns, columns=[column.name for column in SEVERITY_FIELDS])
 
 
-def _classes(ttc: NDArray[np.float64], per_pedestrian: pd.DataFrame) -> NDArray[np.object_]:
+def _classes(ttc: NDArray[np.float64], per_pedestrian: "pd.DataFrame") -> NDArray[np.object_]:
     """(n,) the class of each pedestrian's conflict, empty where there was none."""
     pet = per_pedestrian["post_encroachment_time"].to_numpy(dtype=np.float64)
     frontal = (per_pedestrian["contact"] == FRONTAL).to_numpy(dtype=np.bool_)

@@ -2,10 +2,9 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from controller import WorstMotion
@@ -16,6 +15,9 @@ from giveway.metrics.vehicles import VehicleContact
 from giveway.records.columns import Quantity, columns_of
 from giveway.records.rows import STOP_SPEED
 from giveway.records.tracks import EgoTrack
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SAFETY = "safety"  # the name under which the safety layer acts
 HARD = 4.0
@@ -113,7 +115,7 @@ SUMMARY_FIELDS = columns_of(Summary)
 
 def summarise(
     ego: EgoTrack,
-    per_pedestrian: pd.DataFrame,
+    per_pedestrian: "pd.DataFrame",
     critical: Critical,
     *,
     goal: float,

@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from controller import WorstMotion
 from giveway.config import EgoRunConfig, RunConfig
@@ -29,6 +28,9 @@ from giveway.records.progress import Ending
 from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack
 from giveway.results.effect import Effect
 from giveway.results.law import LawRows, others_of, people_from
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -69,8 +71,10 @@ class EgoResult:
         return float(parameters_of(self.config.crowd.preset).body_radius)
 
     @cached_property
-    def pedestrians(self) -> pd.DataFrame:
+    def pedestrians(self) -> "pd.DataFrame":
         """One row per pedestrian: closest approach to this ego, TTC, PET; delay."""
+        import pandas as pd
+
         table = pedestrian_metrics(self.track, self.crowd, self.shape, self.body_radius)
         if self.effect is None:
             return table
@@ -82,7 +86,7 @@ class EgoResult:
         return table.assign(**{name: more[name] for name in names})
 
     @cached_property
-    def conflicts(self) -> pd.DataFrame:
+    def conflicts(self) -> "pd.DataFrame":
         """One row per pedestrian: how severe its conflict was, when, how fast and where."""
         body = self.shape, self.body_radius, self.config.record.stop_speed
         return severities(self.track, self.crowd, *body, self.pedestrians)

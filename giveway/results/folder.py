@@ -5,10 +5,9 @@ import shutil
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from giveway.errors import ResultsError
 from giveway.processes.locks import FolderInUseError, locked
@@ -18,6 +17,9 @@ from giveway.results.json_text import DECIMALS, json_text
 from giveway.results.names import FILES, SUMO_FOLDER
 from giveway.results.run_tables import RunTables
 from giveway.results.scene import scene_of
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _RUNNING = '{"ending": "running"}\n'
 
@@ -276,7 +278,7 @@ def _fields(columns: Sequence[Column]) -> list[dict[str, str]]:
     return fields
 
 
-def _rounded(frame: pd.DataFrame) -> pd.DataFrame:
+def _rounded(frame: "pd.DataFrame") -> "pd.DataFrame":
     """Floats to six decimals, without negative zeros: short, and the same bytes on every system."""
     frame = frame.copy()
     for name in frame.columns:
@@ -285,7 +287,7 @@ def _rounded(frame: pd.DataFrame) -> pd.DataFrame:
     return frame
 
 
-def _write_parquet(frame: pd.DataFrame, path: Path) -> None:
+def _write_parquet(frame: "pd.DataFrame", path: Path) -> None:
     import pyarrow
     import pyarrow.parquet
 

@@ -1,10 +1,9 @@
 """The law of the road over a run's rows: what each ego's drive is judged by, and in words."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from giveway.geometry.kernel import Array
 from giveway.metrics.law import Event, count
@@ -12,6 +11,9 @@ from giveway.recording.recorded import RecordedEgo
 from giveway.records.columns import LEDGER_COLUMNS, PEOPLE_COLUMNS, SIGNAL_COLUMNS
 from giveway.records.tracks import BackgroundTrack, PeopleTrack, SignalTrack
 from giveway.records.way import EgoWay
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class LawRows(NamedTuple):
@@ -61,26 +63,32 @@ def _as_background(ego: RecordedEgo) -> BackgroundTrack:
     )
 
 
-def ledger_table(events: Sequence[tuple[str, Event]]) -> pd.DataFrame:
+def ledger_table(events: Sequence[tuple[str, Event]]) -> "pd.DataFrame":
     """``ledger.csv``: one row per event.
 
     Args:
         events: with the id of the ego of each.
     """
+    import pandas as pd
+
     rows = [{"ego": ego} | event._asdict() for ego, event in events]
     table = pd.DataFrame(rows, columns=[column.name for column in LEDGER_COLUMNS])
     return table.sort_values("time", kind="stable", ignore_index=True)
 
 
-def signal_table(track: SignalTrack) -> pd.DataFrame:
+def signal_table(track: SignalTrack) -> "pd.DataFrame":
     """``signals.csv``: the traffic lights' changes."""
+    import pandas as pd
+
     names = [column.name for column in SIGNAL_COLUMNS]
     values = (track.time, track.system, track.state)
     return pd.DataFrame(dict(zip(names, values, strict=True)))
 
 
-def people_table(time: Array, track: PeopleTrack, ids: Sequence[str]) -> pd.DataFrame:
+def people_table(time: Array, track: PeopleTrack, ids: Sequence[str]) -> "pd.DataFrame":
     """``people.csv``: where people mean to walk, and how fast."""
+    import pandas as pd
+
     names = [column.name for column in PEOPLE_COLUMNS]
     another = np.diff(track.pedestrian, prepend=-1) != 0
     another[1:] |= np.diff(track.step) != 0

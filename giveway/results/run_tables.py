@@ -2,9 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from giveway.config import RunConfig
 from giveway.config.layers import dump_toml
@@ -52,6 +50,9 @@ from giveway.results.law import (
 )
 from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
 from sumo_scenarios import Scenario
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, repr=False)
@@ -128,21 +129,23 @@ class RunTables:
         return float(parameters_of(self.config.crowd.preset).body_radius)
 
     @cached_property
-    def ego(self) -> pd.DataFrame:
+    def ego(self) -> "pd.DataFrame":
         """One row per control instant and ego."""
         names = [column.name for column in EGO_COLUMNS]
         tables = [ego_table(ego.track, ego.id) for ego in self.egos]
         return _stacked(tables, names, by="time")
 
     @cached_property
-    def trajectories(self) -> pd.DataFrame:
+    def trajectories(self) -> "pd.DataFrame":
         """Everybody's position and velocity, SUMO's FCD names."""
         egos = [(ego.id, ego.track) for ego in self.egos]
         return trajectory_table(self.time, egos, self.crowd_track, self.background_track)
 
     @cached_property
-    def pedestrians(self) -> pd.DataFrame:
+    def pedestrians(self) -> "pd.DataFrame":
         """One row per ego and pedestrian: closest approach, TTC, PET; delay, if there is a twin."""
+        import pandas as pd
+
         names = [column.name for column in self.schemas["pedestrians"]]
         tables = [
             pd.concat([ego.pedestrians, ego.conflicts], axis=1).assign(ego=ego.id)
@@ -153,14 +156,14 @@ class RunTables:
         return _stacked(tables, names)
 
     @cached_property
-    def walks(self) -> pd.DataFrame | None:
+    def walks(self) -> "pd.DataFrame | None":
         """How everybody walked in a run without an ego; None: there was one, or nobody walked."""
         if self.egos or not self.crowd_track.ids:
             return None
         return walks_without_ego(self.time, self.crowd_track)
 
     @cached_property
-    def predictions(self) -> pd.DataFrame:
+    def predictions(self) -> "pd.DataFrame":
         """One row per control instant, ego, pedestrian and look-ahead, if it was asked for."""
         names = [column.name for column in PREDICTION_COLUMNS]
         ids = self.crowd_track.ids
@@ -168,28 +171,28 @@ class RunTables:
         return _stacked(tables, names, by="time")
 
     @cached_property
-    def ledger(self) -> pd.DataFrame:
+    def ledger(self) -> "pd.DataFrame":
         """One row per encounter and violation of the law of the road."""
         judged = [(ego.id, ego.ledger) for ego in self.egos if ego.ledger is not None]
         return ledger_table([(name, event) for name, found in judged for event in found.events])
 
     @cached_property
-    def signals(self) -> pd.DataFrame:
+    def signals(self) -> "pd.DataFrame":
         """The changes of the traffic lights on the egos' ways."""
         return signal_table(self.signal_track)
 
     @cached_property
-    def people(self) -> pd.DataFrame:
+    def people(self) -> "pd.DataFrame":
         """Where people mean to walk, and how fast."""
         return people_table(self.time, self.people_track, self.crowd_track.ids)
 
     @cached_property
-    def measures(self) -> pd.DataFrame:
+    def measures(self) -> "pd.DataFrame":
         """Density, speed and flow on each ``[[measure]]``, interval by interval, by PedPy."""
         return measure_table(self.config.measure, self.time, self.crowd_track)
 
     @cached_property
-    def timing(self) -> pd.DataFrame:
+    def timing(self) -> "pd.DataFrame":
         """Computing times per control step; the only table that differs between equal runs."""
         return timing_table(self.time, self.timings)
 
@@ -216,8 +219,10 @@ class RunTables:
         return self.head | head | ego.summary
 
     @property
-    def summary_table(self) -> pd.DataFrame:
+    def summary_table(self) -> "pd.DataFrame":
         """One row per ego; of a run without one, how people walked."""
+        import pandas as pd
+
         names = [column.name for column in self.schemas["summary"]]
         rows = [self._row(ego) for ego in self.egos]
         if self.walks is not None:
@@ -273,8 +278,12 @@ PEDESTRIAN_TABLE = (
 )
 
 
-def _stacked(tables: list[pd.DataFrame], names: list[str], by: str | None = None) -> pd.DataFrame:
+def _stacked(
+    tables: "list[pd.DataFrame]", names: list[str], by: str | None = None
+) -> "pd.DataFrame":
     """The tables one below the other, with the columns ``names``, perhaps ordered."""
+    import pandas as pd
+
     if not tables:
         return pd.DataFrame(columns=names)
     table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)

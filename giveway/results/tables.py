@@ -1,9 +1,9 @@
 """The run's tables as pandas frames, columns as in :mod:`giveway.records.columns`."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import headings_to_angles
@@ -21,11 +21,16 @@ from giveway.records.tracks import (
     Timings,
 )
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 _STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
 
 
-def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
+def ego_table(track: EgoTrack, ego_id: str) -> "pd.DataFrame":
     """``ego.csv``: one row per control instant."""
+    import pandas as pd
+
     gaps = (track.gap, track.vehicle_gap, track.stop_gap)
     gap, vehicle_gap, stop_gap = (np.where(np.isfinite(each), each, np.nan) for each in gaps)
     values = (
@@ -52,8 +57,10 @@ def ego_table(track: EgoTrack, ego_id: str) -> pd.DataFrame:
     return pd.DataFrame(dict(zip(names, values, strict=True)), index=range(len(track.time)))
 
 
-def prediction_table(track: PredictionTrack, ego_id: str, ids: Sequence[str]) -> pd.DataFrame:
+def prediction_table(track: PredictionTrack, ego_id: str, ids: Sequence[str]) -> "pd.DataFrame":
     """``predictions.csv``: one row per control instant, pedestrian and look-ahead."""
+    import pandas as pd
+
     names = np.array(ids, dtype=object)
     values = (
         track.time,
@@ -73,8 +80,10 @@ def trajectory_table(
     egos: Sequence[tuple[str, EgoTrack]],
     crowd: CrowdTrack,
     background: BackgroundTrack,
-) -> pd.DataFrame:
+) -> "pd.DataFrame":
     """``trajectories.csv``: at each instant the egos, SUMO's own vehicles, the pedestrians."""
+    import pandas as pd
+
     driven = [
         _moving(ego.time, name, "ego", ego.front_x, ego.front_y, ego.heading, ego.speed)
         for name, ego in egos
@@ -109,14 +118,18 @@ def _moving(
     y: Array,
     heading: Array,
     speed: Array,
-) -> pd.DataFrame:
+) -> "pd.DataFrame":
+    import pandas as pd
+
     velocity = {"vx": speed * np.cos(heading), "vy": speed * np.sin(heading)}
     placed = {"time": time, "id": name, "type": kind, "x": x, "y": y}
     angle = headings_to_angles(heading)
     return pd.DataFrame({**placed, "angle": angle, "speed": speed, **velocity})
 
 
-def _walking(time: Array, crowd: CrowdTrack) -> pd.DataFrame:
+def _walking(time: Array, crowd: CrowdTrack) -> "pd.DataFrame":
+    import pandas as pd
+
     speed = np.hypot(crowd.vx, crowd.vy)
     angle = headings_to_angles(np.arctan2(crowd.vy, crowd.vx))
     angle = np.where(speed < _STANDING, np.nan, angle)
@@ -127,8 +140,10 @@ def _walking(time: Array, crowd: CrowdTrack) -> pd.DataFrame:
     return pd.DataFrame({**placed, "x": crowd.x, "y": crowd.y, **moving})
 
 
-def timing_table(time: Array, timings: Timings) -> pd.DataFrame:
+def timing_table(time: Array, timings: Timings) -> "pd.DataFrame":
     """``timing.csv``: computing times [us]; the only table that differs between equal runs."""
+    import pandas as pd
+
     names = [column.name for column in TIMING_COLUMNS]
     microseconds = np.round(timings.seconds * 1e6, 1)
     frame = pd.DataFrame(microseconds, columns=names[1:])

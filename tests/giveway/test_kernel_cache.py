@@ -10,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from filelock import FileLock, Timeout
 from numba.core.dispatcher import Dispatcher
 
 from giveway import _kernel_cache
@@ -59,6 +60,56 @@ def test_only_what_is_compiled_makes_another_folder(elsewhere, file, matters):
     path.write_text(path.read_text(encoding="utf-8") + "# changed\n", encoding="utf-8")
     kernel_digest.cache_clear()
     assert (kernel_digest() != before) == matters
+
+
+def test_a_file_of_inlined_functions_alone_is_looked_at(elsewhere):
+    before = kernel_digest()
+    (elsewhere / "giveway/geometry/tiny.py").write_text("@inlined\ndef f(x):\n    return x\n")
+    kernel_digest.cache_clear()
+    assert kernel_digest() != before
+
+
+HALF = """
+from pedestrian_model._constants import _exp
+value = _exp(-1.0)
+made_ready = 'numba.cpython.setobj' in sys.modules
+print(f'{value:.6f}', sum(_exp.stats.cache_hits.values()), made_ready)
+"""
+
+
+def test_a_callee_that_changes_in_another_file_is_seen_and_code_that_is_there_needs_no_compiler(
+    elsewhere, tmp_path
+):
+    def exponential():
+        script = f"sys.path.insert(0, {str(elsewhere)!r}); import giveway; exec({HALF!r})"
+        return said(script, tmp_path, PYTHONPATH=str(elsewhere), **kept)
+
+    kept = {"NUMBA_CACHE_DIR": str(tmp_path / "kernels"), "PYTHONDONTWRITEBYTECODE": "1"}
+    for room in ("fmus", "sumo_scenarios"):
+        shutil.copytree(HOUSE / room, elsewhere / room)
+    assert exponential() == "0.367879 0 True"
+    assert exponential() == "0.367879 1 False"
+    callee = elsewhere / "pedestrian_model" / "_mathematics.py"
+    text = callee.read_text(encoding="utf-8")
+    changed = text.replace("return p * from_bits(", "return 2.0 * p * from_bits(")
+    assert changed != text
+    callee.write_text(changed, encoding="utf-8")
+    assert exponential() == "0.735759 0 True"
+
+
+def test_code_is_saved_by_one_process_at_a_time(monkeypatch, tmp_path):
+    """Numba reads a kernel's list of signatures and writes it: between them nobody else may."""
+    dispatcher = passage.look
+    saved = []
+
+    def save(cache, _signature, _data):
+        with pytest.raises(Timeout):
+            FileLock(Path(cache.cache_path) / _kernel_cache._LOCK, timeout=0).acquire()
+        saved.append(cache)
+
+    monkeypatch.setattr(_kernel_cache._Kernels, "save_as_ever", save)
+    dispatcher._cache.save_overload(None, None)
+    assert saved == [dispatcher._cache]
 
 
 def test_somebody_elses_function_is_numbas_own_business():

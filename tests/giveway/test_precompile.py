@@ -34,6 +34,10 @@ def looked_for():
 
 for _ in range(2):
     precompile.compile_kernels_once(Console())
+for _ in range(2):
+    precompile.compile_kernels_once(Console(), threads=2)
+from pedestrian_model import _team
+assert _team.walk_share.stats.cache_hits or _team.walk_share.stats.cache_misses
 before = looked_for()
 for settings in (
     {"seed": 4, "twin": True}, {"seed": 3, "controller": "pid"}, {"scenario": "street"}
@@ -54,6 +58,7 @@ def test_after_the_first_compilation_nothing_is_compiled(tmp_path: Path) -> None
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("Compiling the numerical kernels") == 1
+    assert done.stdout.count("Compiling the kernels of several threads") == 1
 
 
 def test_kernels_of_versions_long_gone_are_forgotten(tmp_path: Path) -> None:

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-import json
 import os
 import secrets
 import socket
 import subprocess
 import sys
 from contextlib import suppress
-from pathlib import Path
 from time import monotonic
 from typing import IO, TYPE_CHECKING, Final
 
+from giveway.processes.interpreter import command
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
 START_LIMIT: Final = 600.0  # [s] to import everything and compile the kernels, on a busy machine
-_BOOT: Final = (
-    "import json, sys; sys.path[:], arguments = json.loads(sys.argv[1]); "
-    "from giveway.studies.execution.worker import main; main(*arguments)"
-)
+_BOOT: Final = "from giveway.studies.execution.worker import main; main(*arguments)"
 _ONE_THREAD: Final = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1"
 )  # runs are parallel already; pools of threads would only cost memory
@@ -80,16 +78,9 @@ def _popen(
     printed: IO[bytes],
     pass_fds: Sequence[int] = (),
 ) -> subprocess.Popen[bytes]:
-    flags = {
-        "-E": sys.flags.ignore_environment,
-        "-s": sys.flags.no_user_site,
-        "-B": sys.flags.dont_write_bytecode,
-    }
-    given = json.dumps([[_absolute(entry) for entry in sys.path], arguments])
     places = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(temporary))
-    # -P: nothing is imported from the working directory before our paths are set
     return subprocess.Popen(
-        [sys.executable, "-P", *(flag for flag, on in flags.items() if on), "-c", _BOOT, given],
+        command(_BOOT, list(arguments)),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=printed,
@@ -98,8 +89,3 @@ def _popen(
         start_new_session=True,  # Ctrl-C in the terminal is not for it
         creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),  # likewise on Windows
     )
-
-
-def _absolute(entry: str) -> str:
-    """An entry of sys.path as an absolute path; those of import hooks are returned unchanged."""
-    return str(Path(entry).absolute()) if Path(entry).exists() else entry
