@@ -1,9 +1,11 @@
 """What the runs of a study cost: the pool against a plain loop, two workers, Dask, memory.
 
-Run: python benchmarks/bench_study.py [--runs N] [--cluster] [--memory N]
+Run: python benchmarks/bench_study.py [--runs N] [--crowds N] [--cluster] [--memory N]
 
 A run is the paper's: 30 pedestrians, MPC. Loop, one worker and two are timed in turn, in blocks of
-ten runs, in one session; the ratios are what counts.
+ten runs, in one session; the ratios are what counts. ``--crowds`` makes runs of ``giveway study
+paper``, 30, 20 and 10 people, by each controller in turn and by the processor's time, which others
+on the machine hardly change.
 """
 
 from __future__ import annotations
@@ -11,7 +13,7 @@ from __future__ import annotations
 import argparse
 import statistics
 from dataclasses import asdict
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import TYPE_CHECKING
 
 from giveway.config.layers import Layer
@@ -27,11 +29,11 @@ if TYPE_CHECKING:
     from giveway.studies.execution import Executor
 
 BLOCK = 10
-CROWD = {"crowd": {"pedestrians": 30}}
 
 
-def task(seed: int) -> Task:
-    config, _ = load([Layer("", {"seed": seed, "controller": "mpc-paper"} | CROWD)])
+def task(seed: int, controller: str = "mpc-paper", people: int = 30) -> Task:
+    settings = {"seed": seed, "controller": controller, "crowd": {"pedestrians": people}}
+    config, _ = load([Layer("", settings)])
     return Task(f"c1-s{seed}", f"{seed:032x}", config.model_dump_json(), {}, software_identity())
 
 
@@ -84,13 +86,34 @@ def cluster(tasks: Sequence[Task]) -> None:
     print(f"  the same records: {numbers(records) == numbers(theirs)}")
 
 
+def crowds(count: int) -> None:
+    """What a crowd costs by each controller: the paper's two, and the default."""
+    spent: dict[str, list[float]] = {name: [] for name in ("mpc-paper", "pid-paper", "mpc")}
+    for seed in range(-2, count):
+        for name, times in spent.items():
+            each = task(max(seed, 0) + 1, name, (30, 20, 10)[seed % 3])
+            began = process_time()
+            perform(each)
+            if seed >= 0:  # the first ones load kernels and fill caches
+                times.append(process_time() - began)
+    paper = sum(spent["mpc-paper"]) + sum(spent["pid-paper"])
+    print(f"{count} crowds of 30, 20 and 10 people, processor time")
+    for name, times in spent.items():
+        print(f"  {name:10} {1e3 * sum(times) / count:6.1f} ms a run")
+    print(f"  study paper: {2 * count / paper:.1f} runs per second of one processor")
+    for name in ("mpc-paper", "pid-paper"):
+        print(f"  mpc over {name}: {sum(spent['mpc']) / sum(spent[name]):.2f}")
+
+
 def memory(runs: int) -> None:
     """What one worker holds after its first run, and after the last."""
     with local_executor(jobs=1) as executor:
         held = [r.computing.memory for r in executor.run(map(task, range(1, runs + 1)))]
-    marks = sorted({1, *(runs * n // 4 for n in range(1, 5))} - {0})
+    marks = sorted({1, min(200, runs), *(runs * n // 4 for n in range(1, 5))} - {0})
     print("  one worker holds [MB] after run " + ", ".join(f"{n}: {held[n - 1]}" for n in marks))
     print(f"  growth from run 1 to {runs}: {held[-1] - held[0]:.1f} MB")
+    if runs > 200:
+        print(f"  from run 200 to {runs}: {held[-1] - held[199]:.1f} MB")
 
 
 def _ratio(above: Sequence[float], below: Sequence[float]) -> float:
@@ -100,11 +123,14 @@ def _ratio(above: Sequence[float], below: Sequence[float]) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--runs", type=int, default=100, help="of each way")
+    parser.add_argument("--crowds", type=int, default=0, metavar="RUNS", help="by each controller")
     parser.add_argument("--cluster", action="store_true", help="Dask, too")
     parser.add_argument("--memory", type=int, default=0, metavar="RUNS", help="in one worker")
     options = parser.parse_args()
     tasks = [task(seed) for seed in range(1, options.runs + 1)]
     compare(tasks)
+    if options.crowds:
+        crowds(options.crowds)
     if options.cluster:
         cluster(tasks)
     if options.memory:
