@@ -272,14 +272,12 @@ def _with_twin(
     """The result with what the egos cost the people, or with why that is not known."""
     if error is not None:
         error.args = (f"in the twin of the run, which is whole: {error}", *error.args[1:])
-        return replace(result, error=error, manifest=result.manifest | {"error": str(error)})
+        return replace(result, error=error, facts=result.facts | {"error": str(error)})
     if twin is None:
         if result.egos:
             return replace(result, ending=Ending.INTERRUPTED)
         remarks = (*result.remarks, NO_EGO)
-        return replace(
-            result, remarks=remarks, manifest=result.manifest | {"remarks": list(remarks)}
-        )
+        return replace(result, remarks=remarks, facts=result.facts | {"remarks": list(remarks)})
     walks = followed.walks.track
     yielded = {
         ego.id: who_gave_way(walks, twin.walks, ego.track, ego.first, ego.shape, ego.body_radius)
@@ -302,13 +300,13 @@ def _with_twin(
         "is": "the crowd alone" if twin.among_themselves else "a second run",
         "until": round(walks.time_step * walks.last, 6),
     }
-    manifest = result.manifest | {"remarks": list(remarks), "twin": about}
+    facts = result.facts | {"remarks": list(remarks), "twin": about}
     return replace(
         result,
         egos=tuple(replace(ego, effect=effect) for ego in result.egos),
         effect=effect,
         remarks=remarks,
-        manifest=manifest,
+        facts=facts,
     )
 
 
@@ -344,10 +342,10 @@ def _result(
         people_track=rows.people_track(),
         timings=rows.timings(),
         elapsed=elapsed,
-        manifest=manifest(
+        facts=manifest(
             parts.config,
             scenario,
-            config_text=dump_toml(parts.config),
+            config_text=None,  # writing it takes longer than many a run of a study
             vehicles={ego.id: ego.description | _departure(parts, ego.id) for ego in parts.egos},
             pedestrians=parts.roster.ledger,
             traffic={} if parts.yielding is None else parts.yielding.report,

@@ -190,7 +190,7 @@ def _result_of(
         people_track=rows.people_track(),
         timings=rows.timings(),
         elapsed=float(np.nansum(rows.timings().seconds[:, -1])),
-        manifest=manifest(
+        facts=manifest(
             config,
             scenario,
             config_text=contents.meta["config"],

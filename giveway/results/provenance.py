@@ -1,18 +1,21 @@
 """What a run was made of, so that anybody can make it again: versions, hashes, seeds, command."""
 
+import functools
 import hashlib
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, Final
 
 from giveway._version import __version__
 from giveway.config import RunConfig
 from giveway.scenario_files import read_scenario, with_included
 from sumo_scenarios import Scenario
 
+CONFIGURATION: Final = "configuration_sha256"
 _PACKAGES = ("daqp", "fmpy", "libsumo", "numba", "numpy", "osqp", "pandas", "shapely")
 
 
@@ -21,15 +24,17 @@ def sha256(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def software_versions() -> dict[str, str]:
-    """The versions of all software that can change a number."""
+@functools.cache
+def software_versions() -> Mapping[str, str]:
+    """The versions of all software that can change a number; looked up once in a process."""
     versions = {"giveway": __version__, "python": platform.python_version()}
     for name in _PACKAGES:
         try:
             versions[name] = version(name)
         except PackageNotFoundError:
             versions[name] = "unknown"
-    return versions | {"platform": platform.platform(), "machine": platform.machine()}
+    versions |= {"platform": platform.platform(), "machine": platform.machine()}
+    return MappingProxyType(versions)
 
 
 def scenario_inputs(scenario: Scenario) -> dict[str, Path]:
@@ -62,7 +67,7 @@ def manifest(
     config: RunConfig,
     scenario: Scenario,
     *,
-    config_text: str,
+    config_text: str | None,
     vehicles: dict[str, dict[str, Any]],
     pedestrians: dict[str, int],
     traffic: dict[str, float],
@@ -77,7 +82,7 @@ def manifest(
     Args:
         config: the run's.
         scenario: its scenario.
-        config_text: the configuration as it is written.
+        config_text: the configuration as it is written; None: its hash is filled in later.
         vehicles: each ego's FMU.
         pedestrians: the ledger of the pedestrians that giveway moved.
         traffic: what the yield layer did.
@@ -99,6 +104,6 @@ def manifest(
         "vehicles": vehicles,
         "pedestrians": pedestrians,
         "traffic": traffic,
-        "configuration_sha256": sha256(config_text.encode()),
-        "software": software_versions(),
+        CONFIGURATION: None if config_text is None else sha256(config_text.encode()),
+        "software": dict(software_versions()),
     }

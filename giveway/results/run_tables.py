@@ -48,6 +48,7 @@ from giveway.results.law import (
     people_table,
     signal_table,
 )
+from giveway.results.provenance import CONFIGURATION, sha256
 from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
 from sumo_scenarios import Scenario
 
@@ -70,7 +71,7 @@ class RunTables:
         signal_track: the changes of the traffic lights that govern something on an ego's way.
         people_track: where people mean to walk, if the law of the road has a say on an ego's way.
         elapsed: wall clock of the loop [s].
-        manifest: versions, hashes, seeds, the pedestrians' ledger.
+        facts: the manifest, perhaps without the hash of the configuration.
         sumo_messages: what SUMO printed.
         road: outlines (k, 2) [m] of the network's lanes, crossings and walkingareas.
         remarks: what differs from the scenario, or from what the user may expect.
@@ -89,7 +90,7 @@ class RunTables:
     people_track: PeopleTrack
     timings: Timings
     elapsed: float
-    manifest: dict[str, Any]
+    facts: dict[str, Any]
     sumo_messages: str
     road: tuple[Array, ...]
     remarks: tuple[str, ...]
@@ -100,10 +101,17 @@ class RunTables:
         """Whether every ego has driven its distance."""
         return self.ending is Ending.COMPLETED
 
-    @property
+    @cached_property
     def config_text(self) -> str:
         """The effective configuration as TOML."""
         return dump_toml(self.config)
+
+    @cached_property
+    def manifest(self) -> dict[str, Any]:
+        """Versions, hashes, seeds, the pedestrians' ledger: the contents of ``manifest.json``."""
+        if self.facts[CONFIGURATION] is not None:
+            return self.facts
+        return self.facts | {CONFIGURATION: sha256(self.config_text.encode())}
 
     @property
     def ego_track(self) -> EgoTrack:

@@ -246,7 +246,7 @@ class _Session:
                 }
                 for planned in self._plan.cells
             ],
-            "software": software_versions(),
+            "software": dict(software_versions()),
         }
         whole = sealed(content, self._software)
         text = json.dumps(whole, indent=2, ensure_ascii=False) + "\n"
