@@ -17,7 +17,7 @@ from typing import Any
 
 import llvmlite
 import numba
-from numba.core import caching
+from numba.core import caching, environment
 from numba.core.caching import UserProvidedCacheLocator
 from numba.core.runtime.nrt import rtsys
 
@@ -139,7 +139,30 @@ class _Kernels(caching.FunctionCache):
             _Kernels.save_as_ever(self, signature, data)
 
 
+_rebuild_as_ever: Any = environment._rebuild_env
+
+
+@functools.wraps(_rebuild_as_ever)  # by whose name numba's pickles call it
+def _environment(module: str, constants: list[Any], name: str) -> Any:
+    """Rebuild what a compiled function refers to, without importing numba's own module of it.
+
+    Compiled code reads its constants from there; the globals of the module are for Python's
+    objects, which no kernel handles.
+    """
+    if module in sys.modules or not module.startswith("numba."):
+        return _rebuild_as_ever(module, constants, name)
+    known = environment.Environment._memo.get(name)
+    if known is not None:
+        return known
+    rebuilt: Any = environment.Environment({"__name__": module})
+    rebuilt.consts[:] = constants
+    rebuilt.env_name = name
+    environment.Environment._memo[name] = rebuilt
+    return rebuilt
+
+
 _numbas: Any = caching.FunctionCache
 if hasattr(_numbas, "_load_overload") and hasattr(_numbas, "_guard_against_spurious_io_errors"):
     _numbas.load_overload = _Kernels.load_overload
     _numbas.save_overload = _Kernels.save_overload
+    environment._rebuild_env = _environment
