@@ -198,7 +198,7 @@ def summarise(
     )
 
 
-def _beyond(per_pedestrian: pd.DataFrame, people: WorstMotion | None) -> NDArray[np.bool_]:
+def _beyond(per_pedestrian: "pd.DataFrame", people: WorstMotion | None) -> NDArray[np.bool_]:
     """Which pedestrians accelerated harder than ``people`` allows, by more than rounding."""
     if people is None:
         return np.zeros(len(per_pedestrian), dtype=np.bool_)
