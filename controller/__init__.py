@@ -10,7 +10,7 @@ from controller.errors import (
     SolverMissingError,
     SolverSetupError,
 )
-from controller.foresight import Foresight, Manoeuvre, Prospect, Trials, Verdict
+from controller.foresight import Foresight, Heats, Manoeuvre, Prospect, Trials, Verdict
 from controller.least_squares import Outcome
 from controller.model import LongitudinalModel
 from controller.mpc import Mpc
@@ -38,6 +38,7 @@ __all__ = [
     "ControllerError",
     "Decision",
     "Foresight",
+    "Heats",
     "LongitudinalModel",
     "Manoeuvre",
     "ManoeuvreParameters",

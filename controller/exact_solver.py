@@ -28,6 +28,7 @@ class ExactSolver:
 
     Attributes:
         solution: (n,) of the latest solve.
+        memory: the multipliers and the solution, for :func:`solve_verified` in a kernel.
 
     Raises:
         SolverMissingError, SolverSetupError: the solver cannot be used.
@@ -45,6 +46,7 @@ class ExactSolver:
         count, n = problem.rows.shape
         self.solution = np.empty(n)
         self._multipliers = np.zeros(count)
+        self.memory = (self._multipliers, self.solution)
         self.reset()
 
     def reset(self) -> None:

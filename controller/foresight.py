@@ -81,21 +81,35 @@ class Foresight(Protocol):
         """The latest manoeuvre is the best so far: remember what it would lead to."""
 
 
+class Heats(NamedTuple):
+    """Who of the trials runs when: rows of them; of equal ones the first is the best.
+
+    Attributes:
+        first: run against each other.
+        content: run against the best of these where it lacks no stopping distance.
+        wanting: run against it where it does.
+    """
+
+    first: list[int]
+    content: list[int]
+    wanting: list[int]
+
+
 class Verdict(NamedTuple):
     """What a race between manoeuvres came to.
 
     Attributes:
         best: the row of the cheapest; -1: no cost is a number.
-        cost: of it [s], its handicap included.
         missing: the longest stopping distance that it lacks [m].
-        clear: nobody is in the way of the manoeuvre that was asked for, which then is the best.
-        prospect: what it would lead to; overwritten by the next race.
+        clear: nobody is in the way of the very first one, which then is the best.
+        tried: how many were compared.
+        prospect: what the best would lead to; overwritten by the next race.
     """
 
     best: int
-    cost: float
     missing: float
     clear: bool
+    tried: int
     prospect: Prospect
 
 
@@ -105,8 +119,7 @@ class RacingForesight(Foresight, Protocol):
     def race(
         self,
         trials: Trials,
-        entrants: list[int],
-        known: bool,
+        heats: Heats,
         lead: bool,
         allowed: Array,
         weights: tuple[Any, ...],
@@ -115,9 +128,8 @@ class RacingForesight(Foresight, Protocol):
 
         Args:
             trials: all manoeuvres.
-            entrants: the rows of those that are compared. Of equal ones the first is the best.
-            known: the first of them is the best of the race before, and the crowd is the same.
-            lead: ask first whether anybody is in the way of the first one.
+            heats: which of them are compared.
+            lead: ask first whether anybody is in the way of the first one; if nobody is, it wins.
             allowed: (N,) [m] that may be driven until steps 1 ... N.
             weights: the numbers of the cost.
         """

@@ -1,6 +1,5 @@
 """The vehicle-crowd interaction (VCI) model: a social force model of pedestrians near vehicles."""
 
-from pedestrian_model._step import march
 from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import (
     CrowdError,
@@ -13,7 +12,7 @@ from pedestrian_model.errors import (
 from pedestrian_model.influence import vehicle_influence
 from pedestrian_model.model import LONGEST_STEP, CrowdModel, arrived, require_steady
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
-from pedestrian_model.prediction import Predictor, start
+from pedestrian_model.prediction import Predictor, leap, start
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
 from pedestrian_model.targets import remaining_distance, targets
 from pedestrian_model.vehicles import Vehicles
@@ -38,7 +37,7 @@ __all__ = [
     "Vehicles",
     "Walls",
     "arrived",
-    "march",
+    "leap",
     "remaining_distance",
     "require_steady",
     "start",

@@ -42,13 +42,18 @@ def _exp(x: float) -> float:
 
 
 @lru_cache(maxsize=32)
-def pack(parameters: VciParameters, *, detour: bool = True, creep: bool = True) -> NDArray[Any]:
+def pack(
+    parameters: VciParameters, *, detour: bool = True, creep: bool = True, longer: float = 0.0
+) -> NDArray[Any]:
     """The constants of the kernels for ``parameters``: a read-only array of one record.
 
     Args:
         parameters: of the model.
         detour: whether people see a way round a standing car.
         creep: whether the angle of f_v takes a car below the static speed to move.
+        longer: [s] by which a step is longer than those of the crowd for which it stands. One of
+            2 h gives the speed that two of h under the same forces do, the destination force's
+            part -k_des v being felt by the second, if the mass is m/(1 - k_des h/(2 m)).
     """
     p = parameters
     l_nav = p.navigation_anisotropy
@@ -56,7 +61,7 @@ def pack(parameters: VciParameters, *, detour: bool = True, creep: bool = True) 
     k_rep = p.repulsion_strength / (2.0 * p.repulsion_distance)
     k_nav = p.navigation_strength / (2.0 * p.navigation_distance)
     values = {
-        "m": p.mass,
+        "m": p.mass / (1.0 - 0.5 * p.destination_gain * longer / p.mass),
         "R": p.body_radius,
         "two_R": 2.0 * p.body_radius,
         "r_max": p.interaction_radius,

@@ -194,6 +194,23 @@ class Crowd:
         return (self.desired_speed, self.priority, *self.routes)
 
     @property
+    def _arrays(self) -> Arrays:
+        """All fields, in their order."""
+        return (*self.state[:2], *self._unchanged[:3], self.waypoint_index, *self._unchanged[3:])
+
+    @cached_property
+    def _unchanged(self) -> Arrays:
+        """The fields that no step changes, in their order."""
+        return (
+            self.desired_speed,
+            self.waypoints,
+            self.waypoint_start,
+            self.waypoint_passage,
+            self.waypoint_signal,
+            self.priority,
+        )
+
+    @property
     def state(self) -> Arrays:
         """What a step changes: position, velocity, current way-point."""
         return self.position, self.velocity, self.waypoint_index
@@ -225,25 +242,7 @@ class Crowd:
             raise CrowdError(
                 f"mask is {mask.dtype} of shape {mask.shape}, expected bool of ({len(self)},)"
             )
-        chosen = np.flatnonzero(mask)
-        start = _offsets(np.diff(self.waypoint_start)[chosen])
-        total = int(start[-1])
-        waypoints, passage = np.empty((total, 2)), np.empty((total, 3))
-        signal = np.empty(total, dtype=np.int64)
-        _select_routes(self.routes, mask, (waypoints, passage, signal, start))
-        return _unchecked(
-            {
-                "position": self.position[chosen],
-                "velocity": self.velocity[chosen],
-                "desired_speed": self.desired_speed[chosen],
-                "waypoints": waypoints,
-                "waypoint_start": start,
-                "waypoint_index": self.waypoint_index[chosen],
-                "waypoint_passage": passage,
-                "waypoint_signal": signal,
-                "priority": self.priority[chosen],
-            }
-        )
+        return _unchecked(dict(zip(_FIELDS, _select(self._arrays, mask), strict=True)))
 
     def concatenate(self, other: Crowd) -> Crowd:
         """This crowd followed by ``other``."""
@@ -256,8 +255,9 @@ class Crowd:
         return _unchecked(joined)
 
 
-#: All fields but ``waypoint_start``, whose offsets move on.
-_JOINED = tuple(field.name for field in fields(Crowd) if field.name != "waypoint_start")
+#: All fields; and all but ``waypoint_start``, whose offsets move on.
+_FIELDS = tuple(field.name for field in fields(Crowd))
+_JOINED = tuple(name for name in _FIELDS if name != "waypoint_start")
 
 
 def _for_each(values: NDArray[np.float64], n: int) -> NDArray[np.float64]:
@@ -323,25 +323,32 @@ def _unchecked(state: dict[str, Any]) -> Crowd:
 
 
 @kernel
-def _select_routes(
-    old: tuple[NDArray[Any], ...], mask: NDArray[np.bool_], new: tuple[NDArray[Any], ...]
-) -> None:
-    """Copy the routes of those in ``mask`` from ``old`` to ``new``, one after the other.
-
-    Both are the arrays of :class:`Routes`; the offsets of the new ones are known.
-    """
-    routes = Routes(*old)
-    waypoints, passage, signal, start = new
-    kept = 0
+def _select(arrays: tuple[NDArray[Any], ...], mask: NDArray[np.bool_]) -> Any:
+    """The fields of those in ``mask``, in the same order, from the fields of all."""
+    position, velocity, desired_speed, waypoints, start, index, passage, signal, priority = arrays
+    n, total = 0, 0
+    for i in range(len(mask)):
+        if mask[i]:
+            n += 1
+            total += start[i + 1] - start[i]
+    x, v = np.empty((n, 2)), np.empty((n, 2))
+    wanted, at, relying = np.empty(n), np.empty(n, dtype=np.int64), np.empty(n)
+    points, lines = np.empty((total, 2)), np.empty((total, 3))
+    lights, offsets = np.empty(total, dtype=np.int64), np.zeros(n + 1, dtype=np.int64)
+    k = 0
     for i in range(len(mask)):
         if not mask[i]:
             continue
-        shift = start[kept] - routes.start[i]
-        for at in range(routes.start[i], routes.start[i + 1]):
-            waypoints[at + shift, 0] = routes.waypoints[at, 0]
-            waypoints[at + shift, 1] = routes.waypoints[at, 1]
-            passage[at + shift, 0] = routes.passage[at, 0]
-            passage[at + shift, 1] = routes.passage[at, 1]
-            passage[at + shift, 2] = routes.passage[at, 2]
-            signal[at + shift] = routes.signal[at]
-        kept += 1
+        x[k, 0], x[k, 1] = position[i, 0], position[i, 1]
+        v[k, 0], v[k, 1] = velocity[i, 0], velocity[i, 1]
+        wanted[k], at[k], relying[k] = desired_speed[i], index[i], priority[i]
+        shift = offsets[k] - start[i]
+        for p in range(start[i], start[i + 1]):
+            q = p + shift
+            points[q, 0], points[q, 1] = waypoints[p, 0], waypoints[p, 1]
+            lines[q, 0], lines[q, 1] = passage[p, 0], passage[p, 1]
+            lines[q, 2] = passage[p, 2]
+            lights[q] = signal[p]
+        k += 1
+        offsets[k] = shift + start[i + 1]
+    return x, v, wanted, points, offsets, at, lines, lights, relying

@@ -30,18 +30,20 @@ SHARED_FROM = 1000
 MOST_THREADS = 256
 
 
-def substeps(time_step: float) -> int:
-    """How many equal sub-steps of at most ``LONGEST_STEP`` make one step of ``time_step`` [s].
+def substeps(time_step: float, longest: float = LONGEST_STEP) -> int:
+    """How many equal sub-steps of at most ``longest`` [s] make one step of ``time_step`` [s].
 
     Raises:
         ParameterError: if the time step is not positive and finite.
     """
     if not 0.0 < time_step < math.inf:
         raise ParameterError(f"time_step = {time_step} s, expected a finite number > 0 s")
-    return max(1, math.ceil(time_step / LONGEST_STEP - 1e-9))
+    return max(1, math.ceil(time_step / longest - 1e-9))
 
 
-def require_steady(parameters: VciParameters, time_step: float) -> None:
+def require_steady(
+    parameters: VciParameters, time_step: float, longest: float = LONGEST_STEP
+) -> None:
     """Make sure that the integration's step does not make people's speeds swing.
 
     Somebody alone under the destination force has v' = (k_des/m)(v_d - v), of which one step of
@@ -55,11 +57,12 @@ def require_steady(parameters: VciParameters, time_step: float) -> None:
     Args:
         parameters: of the model.
         time_step: [s]; its sub-steps count.
+        longest: [s] of these.
 
     Raises:
         ParameterError: they swing.
     """
-    dt = time_step / substeps(time_step)
+    dt = time_step / substeps(time_step, longest)
     p = parameters
     steady = p.mass / dt
     if p.destination_gain > steady:

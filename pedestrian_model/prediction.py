@@ -1,6 +1,6 @@
 """Where the crowd will be: the model itself, applied N times under given vehicle poses."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,13 @@ from pedestrian_model._rows import Arrays, Scratch, Workspace
 from pedestrian_model._step import FINE, Scene, State, march, parts
 from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import DivergenceError, ParameterError, VehicleError
-from pedestrian_model.model import CELL_LIST_FROM, require_steady, substeps, unknown_signal
+from pedestrian_model.model import (
+    CELL_LIST_FROM,
+    LONGEST_STEP,
+    require_steady,
+    substeps,
+    unknown_signal,
+)
 from pedestrian_model.parameters import SIM, VciParameters
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings
 
@@ -23,13 +29,15 @@ class Predictor:
 
     Args:
         parameters: the numbers of the model.
-        time_step: [s]; above 0.05 s it is divided into sub-steps as in ``CrowdModel``.
+        time_step: [s]; above ``longest_step`` it is divided into sub-steps as in ``CrowdModel``.
         horizon: N, the number of steps.
         cell_list_from: the crowd size from which neighbours are found by a cell list.
         detour: whether people see the way round a standing car (ours), or walk into its side and
             stay there, as by the published forces alone.
         creep: whether the angle of a vehicle's force takes it to move below the static speed
             too, or to stand, as its contour does.
+        longest_step: [s] that the integration takes at once; the crowd's own by default. A longer
+            one stands for several of these, see :func:`leap`.
 
     Raises:
         ParameterError: if the time step or the horizon is not positive, or speeds would swing.
@@ -44,18 +52,20 @@ class Predictor:
         cell_list_from: int = CELL_LIST_FROM,
         detour: bool = True,
         creep: bool = True,
+        longest_step: float = LONGEST_STEP,
     ) -> None:
         if horizon < 1:
             raise ParameterError(f"horizon = {horizon} steps, expected at least 1")
-        require_steady(parameters, time_step)
+        require_steady(parameters, time_step, longest_step)
         self.parameters = parameters
         self.time_step = float(time_step)
         self.horizon = int(horizon)
         self.cell_list_from = int(cell_list_from)
-        self._substeps = substeps(self.time_step)
+        self._substeps = substeps(self.time_step, longest_step)
         self._dt = self.time_step / self._substeps
-        constants = pack(parameters, detour=detour, creep=creep)
-        self.law = (constants, self._dt, self._substeps, self.cell_list_from)
+        longer = max(0.0, self._dt - LONGEST_STEP)
+        constants = pack(parameters, detour=detour, creep=creep, longer=longer)
+        self.law = (constants, self._dt, self._substeps, self.cell_list_from, 0.5 * longer)
         self._workspace = Workspace()
         self._capacity = -1
         self._reserve(0)
@@ -66,10 +76,10 @@ class Predictor:
             self._workspace.reserve(n)
         if n > self._capacity:
             self._capacity = max(n, 2 * self._capacity)
-            self._memory = np.empty((2 + self.horizon) * self._capacity * 2)
+            self._memory = np.empty((3 + self.horizon) * self._capacity * 2)
             self._all_reached = np.empty(self._capacity, dtype=np.int64)
-        both = self._memory[: (2 + self.horizon) * n * 2].reshape(2 + self.horizon, n, 2)
-        self._state, self._out = (both[0], both[1], self._all_reached[:n]), both[2:]
+        both = self._memory[: (3 + self.horizon) * n * 2].reshape(3 + self.horizon, n, 2)
+        self._state, self._out = (both[0], both[1], self._all_reached[:n], both[2]), both[3:]
 
     def predict(
         self,
@@ -86,7 +96,7 @@ class Predictor:
 
         Returns:
             A buffer that the next call overwrites (copy it to keep it). Bit-equal to N times
-            ``CrowdModel.step`` with the same vehicles.
+            ``CrowdModel.step`` with the same vehicles, if its steps are integrated as the crowd's.
 
         Raises:
             VehicleError: if the trajectory is not C-contiguous float64 of shape (N, m, 7).
@@ -106,7 +116,7 @@ class Predictor:
         return self._out
 
     def arrays(self, crowd: Crowd, surroundings: Surroundings) -> Arrays:
-        """What :func:`start` takes; the last three are memory for the state ahead.
+        """What :func:`start` takes; the last four are memory for the state ahead.
 
         Raises:
             SurroundingsError: if a way-point's signal is not one of the surroundings.
@@ -127,9 +137,16 @@ class Predictor:
         )
 
 
+class Ahead(NamedTuple):
+    """A state that is predicted, and memory."""
+
+    state: State
+    velocity: NDArray[np.float64]  # (n, 2) [m/s] before the latest step
+
+
 @inlined
-def start(arrays: Arrays) -> tuple[State, Scene, Scratch]:
-    """The present state, ready for :func:`march` to be changed, with what the crowd walks among.
+def start(arrays: Arrays) -> tuple[Ahead, Scene, Scratch]:
+    """The present state, ready for :func:`leap` to be changed, with what the crowd walks among.
 
     Inlined, for compiled functions that predict step by step: handing so many arrays from one to
     the next costs as much as the forces of ten people.
@@ -137,13 +154,58 @@ def start(arrays: Arrays) -> tuple[State, Scene, Scratch]:
     Args:
         arrays: those of :meth:`Predictor.arrays`.
     """
-    state, scene, scratch = parts(arrays[:-3])
-    ahead = State(*arrays[-3:])
+    state, scene, scratch = parts(arrays[:-4])
+    ahead = State(*arrays[-4:-1])
     for i in range(state.position.shape[0]):
         ahead.position[i, 0], ahead.position[i, 1] = state.position[i, 0], state.position[i, 1]
         ahead.velocity[i, 0], ahead.velocity[i, 1] = state.velocity[i, 0], state.velocity[i, 1]
         ahead.waypoint_index[i] = state.waypoint_index[i]
-    return ahead, scene, scratch
+    return Ahead(ahead, arrays[-1]), scene, scratch
+
+
+@inlined
+def leap(
+    ahead: Ahead,
+    scene: Scene,
+    vehicles: NDArray[np.float64],
+    scratch: Scratch,
+    constants: NDArray[Any],
+    dt: float,
+    substeps: int,
+    cell_list_from: int,
+    lead: float,
+) -> int:
+    """As :func:`march`, also for steps that stand for several of the crowd's own.
+
+    The forces are then those at the mean of the instants at which the own steps would have them:
+    people are moved on by ``lead`` [s] at their velocities, and back. And the mass is a greater
+    one, because each of the own steps would take back a part k_des dt/m of the speed that the one
+    before has gained (``pack``). So two steps of 0.05 s and one of 0.1 s differ less by half.
+
+    Args:
+        ahead: changed.
+        scene: what the crowd walks among.
+        vehicles: (m, 7) at that mean instant.
+        scratch: memory.
+        constants: of the model.
+        dt: [s] of a step.
+        substeps: how many.
+        cell_list_from: the crowd size from which neighbours are found by a cell list.
+        lead: [s].
+
+    Returns:
+        ``FINE`` or the first bad index.
+    """
+    (x, v, at), before = ahead
+    n = x.shape[0] if lead > 0.0 else 0
+    for i in range(n):
+        before[i, 0], before[i, 1] = v[i, 0], v[i, 1]
+        x[i, 0], x[i, 1] = x[i, 0] + lead * v[i, 0], x[i, 1] + lead * v[i, 1]
+    state = State(x, v, at)
+    insane = march(state, scene, vehicles, scratch, constants, dt, substeps, cell_list_from)
+    for i in range(n):
+        x[i, 0], x[i, 1] = x[i, 0] - lead * before[i, 0], x[i, 1] - lead * before[i, 1]
+    return insane
 
 
 @kernel
@@ -154,16 +216,18 @@ def _predict(
     dt: float,
     substeps: int,
     cell_list_from: int,
+    lead: float,
     out: NDArray[np.float64],
 ) -> int:
     """Fill ``out`` (N, n, 2) with the positions of the next N steps; the state stays as it is.
 
-    As :func:`march`, with ``vehicles`` (N, m, 7).
+    As :func:`leap`, with ``vehicles`` (N, m, 7).
     """
     ahead, scene, scratch = start(arrays)
-    x = ahead.position
+    x = ahead.state.position
+    law = (constants, dt, substeps, cell_list_from, lead)
     for k in range(out.shape[0]):
-        insane = march(ahead, scene, vehicles[k], scratch, constants, dt, substeps, cell_list_from)
+        insane = leap(ahead, scene, vehicles[k], scratch, *law)
         if insane != FINE:
             return insane
         for i in range(out.shape[1]):

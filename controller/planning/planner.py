@@ -15,10 +15,16 @@ from controller.exact_solver import ExactSolver
 from controller.foresight import Foresight, Manoeuvre
 from controller.least_squares import Outcome
 from controller.model import LongitudinalModel
-from controller.planning.costs import corridor
+from controller.planning.following import (
+    NO_PLAN,
+    UNSOLVED,
+    follow,
+    take_over,
+    unfold_and_judge,
+)
 from controller.planning.parameters import PlannerParameters
-from controller.planning.search import Search, copy
-from controller.planning.smoothing import SmoothingProblem, unfold
+from controller.planning.search import Search
+from controller.planning.smoothing import SmoothingProblem
 from controller.protocol import Decision, Observation
 from controller.tuned_pid import TunedPid
 
@@ -58,8 +64,21 @@ class Planner:
         self._solver = ExactSolver(
             self._problem, parameters.solver, parameters.iteration_limit, box=None
         )
+        problem = self._problem
+        self._arrays = (
+            problem.nodes,
+            problem.intervals,
+            problem.limits,
+            problem.rows,
+            problem.lower,
+            problem.upper,
+            problem.target,
+            problem.speeds_of,
+            problem.gradients,
+        )
+        self._soon = round(parameters.manoeuvres.calm_time / model.time_step)
         self._plan = Manoeuvre.empty(N)
-        self._corridor = np.empty(N)
+        self._corridor, self._any_speed = np.empty(N), np.full(N, inf)
 
     def reset(self) -> None:
         """Forget what was planned."""
@@ -117,44 +136,53 @@ class Planner:
         lane_speeds: Array | None,
     ) -> Plan:
         """The QP within the manoeuvre's corridor; the manoeuvre itself where that is better."""
-        p, problem, search = self.parameters, self._problem, self._search
-        best, calm = search.best, search.calm
-        corridor(
-            best.distance,
-            best.speed,
-            search.gap,
-            allowed,
-            p.gap_choice,
-            search.weights,
+        p, search, plan = self.parameters, self._search, self._plan
+        best = search.best
+        to = (plan.distance, plan.speed, plan.acceleration)
+        prospect = (search.gap, search.conflicts, search.calm)
+        judged = (search.missing, allowed)
+        corrections, itself, holds = follow(
+            (speed, before, previous_force, fastest),
+            best,
+            prospect,
+            *judged,
+            self._any_speed if lane_speeds is None else lane_speeds,
+            self._arrays,
+            self._solver.memory,
             self._corridor,
+            to,
+            p.gap_choice,
+            p.soft,
+            self._soon,
+            search.weights,
         )
-        wanted = best.speed[problem.nodes]
-        if not p.gap_choice:
-            wanted = np.full(len(problem.nodes), fastest)
-        soon = round(p.manoeuvres.calm_time / self.model.time_step)
-        calm[soon:] = inf
-        if lane_speeds is not None:
-            np.minimum(calm, lane_speeds, out=calm)
-        problem.aim_at(wanted, speed, before)
-        if not problem.bound(speed, previous_force, fastest, self._corridor, calm, soft=p.soft):
+        if corrections == NO_PLAN:
             search.forget()
             return Plan(0.0, False, "infeasible: cannot keep the distance", 0, chosen, search.tried)
-        outcome, iterations = self._solver.solve()
-        status = str(outcome)
-        if outcome is Outcome.SOLVED:
-            plan = self._plan
-            to = (plan.distance, plan.speed, plan.acceleration)
-            at_nodes = problem.speeds(self._solver.solution)
-            unfold(speed, at_nodes, problem.nodes, self.model.time_step, *to)
-            if p.gap_choice and search.comes_closer(plan, allowed):
-                copy(best, plan)
-                status = "manoeuvre"
-        else:
+        outcome = Outcome.SOLVED
+        if corrections == UNSOLVED:
+            outcome, corrections = self._solver.solve()
+            if outcome is Outcome.SOLVED:
+                solution = self._solver.solution
+                itself, holds = unfold_and_judge(
+                    speed,
+                    best,
+                    prospect,
+                    *judged,
+                    self._arrays,
+                    solution,
+                    to,
+                    p.gap_choice,
+                    search.weights,
+                )
+            else:
+                holds = take_over(best, to, prospect, self.model.time_step, search.weights)
+        status = "manoeuvre" if itself else str(outcome)
+        if outcome is not Outcome.SOLVED:
             status = "manoeuvre: no QP solution"
-            copy(best, self._plan)
-        search.keep(self._plan)
+        search.keep(plan, holds)
         force = self._force(speed, previous_force)
-        return Plan(force, True, status, iterations, chosen, search.tried)
+        return Plan(force, True, status, corrections, chosen, search.tried)
 
     def _force(self, speed: float, previous_force: float) -> float:
         """What drives the plan's next speed, within the actuator's limits [N]."""

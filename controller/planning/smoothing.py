@@ -60,6 +60,10 @@ class SmoothingProblem:
         nodes: (n,) their steps.
         rows: (3 n - 2, n), constant.
         target: (n,) z_m.
+        speeds_of: (n, n) v = L'^-1 z.
+        gradients: what :func:`set_target` takes.
+        intervals: (n,) h_i [s].
+        limits: the numbers of :class:`Limits`.
         lower, upper: (3 n - 2,).
         increments: a solver gets z itself.
     """
@@ -70,7 +74,7 @@ class SmoothingProblem:
         p = parameters
         self.nodes = nodes = nodes_of(p.horizon, p.block_growth)
         n, dt = len(nodes), model.time_step
-        self._limits = tuple(
+        self.limits = tuple(
             Limits(
                 dt,
                 model.decay,
@@ -89,13 +93,13 @@ class SmoothingProblem:
         H += p.effort_weight * accelerations.T @ np.diag(h) @ accelerations
         H += p.jerk_weight * jerks.T @ np.diag(between) @ jerks
         L = np.linalg.cholesky(H)
-        self._speeds_of = np.ascontiguousarray(np.linalg.inv(L.T))  # v = L'^-1 z
+        self.speeds_of = np.ascontiguousarray(np.linalg.inv(L.T))  # v = L'^-1 z
         distances = np.zeros((n, n))  # driven from v_1 on: trapezia
         for i in range(1, n):
             distances[i, :i] += h[1 : i + 1] / 2.0
             distances[i, 1 : i + 1] += h[1 : i + 1] / 2.0
         rows = np.concatenate([np.eye(n), accelerations[1:], distances[1:]])
-        self.rows = np.ascontiguousarray(rows @ self._speeds_of)
+        self.rows = np.ascontiguousarray(rows @ self.speeds_of)
         self.target = np.zeros(n)
         self.lower = np.empty(len(rows))
         self.upper = np.empty(len(rows))
@@ -103,13 +107,15 @@ class SmoothingProblem:
         to_z = np.ascontiguousarray(np.linalg.inv(L))
         of_speed = p.effort_weight * accelerations[0]
         of_speed = of_speed + p.jerk_weight * (jerks[0] - jerks[1]) / dt
-        self._of_speeds = np.ascontiguousarray(to_z @ np.diag(h))
-        self._of_speed = to_z @ of_speed
-        self._of_acceleration = to_z @ (p.jerk_weight * jerks[0])
+        self.gradients = (
+            np.ascontiguousarray(to_z @ np.diag(h)),
+            to_z @ of_speed,
+            to_z @ (p.jerk_weight * jerks[0]),
+        )
 
     def speeds(self, z: Array) -> Array:
         """(n,) the speeds [m/s] at the nodes."""
-        return np.asarray(self._speeds_of @ z)
+        return np.asarray(self.speeds_of @ z)
 
     def aim_at(self, speeds: Array, speed: float, acceleration: float) -> None:
         """Set the target.
@@ -119,8 +125,7 @@ class SmoothingProblem:
             speed: now [m/s].
             acceleration: before now [m/s^2].
         """
-        self.target[:] = self._of_speeds @ speeds
-        self.target += self._of_speed * speed + self._of_acceleration * acceleration
+        set_target(speeds, speed, acceleration, self.gradients, self.target)
 
     def bound(
         self,
@@ -153,7 +158,7 @@ class SmoothingProblem:
             calm,
             self.nodes,
             self.intervals,
-            self._limits,
+            self.limits,
             soft,
             self.lower,
             self.upper,
@@ -210,6 +215,24 @@ def fill(
         lower[i] -= WIDER
         upper[i] += WIDER
     return kept or soft
+
+
+@kernel
+def set_target(
+    speeds: Array,
+    speed: float,
+    acceleration: float,
+    gradients: tuple[Array, Array, Array],
+    target: Array,
+) -> None:
+    """As :meth:`SmoothingProblem.aim_at`, by the gradient at v = 0 in its three parts."""
+    of_speeds, of_speed, of_acceleration = gradients
+    n = len(target)
+    for i in range(n):
+        value = 0.0
+        for j in range(n):
+            value += of_speeds[i, j] * speeds[j]
+        target[i] = value + of_speed[i] * speed + of_acceleration[i] * acceleration
 
 
 @kernel

@@ -216,6 +216,8 @@ def closest_in_front(
     reach: float,
 ) -> tuple[float, bool]:
     """Station of the closest pedestrian in front; can any get there by walking ``reach``?"""
+    if first == last and reach == 0.0:
+        return closest_on_segment(vertices, stations, first, positions, front, half_width), False
     closest = np.inf
     reachable = False
     low_x, high_x = np.min(vertices[first : last + 2, 0]), np.max(vertices[first : last + 2, 0])
@@ -231,6 +233,29 @@ def closest_in_front(
         reachable |= near
         closest = min(closest, station)
     return closest, reachable
+
+
+@kernel
+def closest_on_segment(
+    vertices: Array, stations: Array, i: int, positions: Array, front: float, half_width: float
+) -> float:
+    """The station of :func:`closest_in_front` where only segment i of the path counts."""
+    closest, last = np.inf, len(vertices) - 2
+    x_0, y_0 = vertices[i, 0], vertices[i, 1]
+    length = stations[i + 1] - stations[i]
+    e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
+    for j in range(positions.shape[0]):
+        x, y = positions[j, 0], positions[j, 1]
+        along = (x - x_0) * e_x + (y - y_0) * e_y
+        station = stations[i] + along
+        if not front < station < closest:
+            continue
+        if (along < 0.0 and i > 0) or (along > length and i < last):
+            continue
+        d_x, d_y = x - (x_0 + along * e_x), y - (y_0 + along * e_y)
+        if np.sqrt(d_x * d_x + d_y * d_y) <= half_width:
+            closest = station
+    return closest
 
 
 @kernel

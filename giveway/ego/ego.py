@@ -11,7 +11,7 @@ from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight
 from giveway.ego.leader import FIRM, NO_LEADER, given_up
 from giveway.ego.path_view import PathView
-from giveway.ego.relevance import PREDICT_ALL, Relevance
+from giveway.ego.relevance import Nearby, Relevance
 from giveway.ego.safety import Guard
 from giveway.ego.seen import Seen
 from giveway.ego.speed_profile import SpeedProfile
@@ -84,7 +84,9 @@ class Ego:
             straight=round(_STRAIGHT / time_step) if waiting.controller.foresees else None,
         )
         size = shape.length + self.corridor.half_width
-        self._relevance = Relevance(waiting, waiting.horizon * time_step, size)
+        span = waiting.horizon * time_step
+        self._relevance = Relevance(waiting, span, size)
+        self._nearby = Nearby(waiting, path, span, shape.length, self.corridor.half_width)
         self._view = PathView(path)
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
         perception = Perception(config)
@@ -113,6 +115,8 @@ class Ego:
             waiting.predictor,
             self.path,
             self.shape,
+            horizon=waiting.horizon,
+            time_step=self._time_step,
             half_width=self.corridor.half_width,
             growth=planner.margin_growth,
             planned_speed=planner.planned_speed,
@@ -170,14 +174,16 @@ class Ego:
         ahead = corridor.empty
         predictor, predicted, relevant, foresight = self._predictor, None, None, None
         if reachable and predictor is not None:
-            if len(crowd) > PREDICT_ALL:
+            foresight = self._foresight
+            if foresight is None:
                 relevant = self._relevance.of(crowd, self.pose.x, self.pose.y, speed)
-            pedestrians = crowd if relevant is None else crowd.select(relevant)
-            horizon, foresight = poses[: predictor.horizon], self._foresight
-            if foresight is not None:
-                foresight.look(pedestrians, surroundings, horizon, row, front, speed)
             else:
-                predicted = predictor.predict(pedestrians, horizon, surroundings)
+                relevant = self._nearby.of(crowd, front, speed)
+            pedestrians = crowd if relevant is None else crowd.select(relevant)
+            if foresight is not None:
+                foresight.look(pedestrians, surroundings, poses, row, front, speed)
+            else:
+                predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
         leader, waits = NO_LEADER, math.inf
         if self._heed_vehicles and poses.shape[1] > 1:

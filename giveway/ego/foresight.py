@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from controller import Manoeuvre, Prospect, Trials, Verdict
+from controller import Heats, Manoeuvre, Prospect, Trials, Verdict
 from giveway.ego.corridor import fill_poses
 from giveway.ego.prospects import View, assess
 from giveway.ego.race import Lanes, run_race
@@ -13,7 +13,40 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.metrics.conflicts import CRITICAL_TTC
-from pedestrian_model import Crowd, Predictor, Surroundings
+from pedestrian_model import (
+    LONGEST_STEP,
+    Crowd,
+    ParameterError,
+    Predictor,
+    Surroundings,
+    VciParameters,
+    require_steady,
+)
+
+_STEP = 0.1  # [s] of the crowd under a manoeuvre, at most: twice the one in which it is simulated
+
+
+def plan_predictor(
+    parameters: VciParameters, time_step: float, horizon: int, **readings: bool
+) -> Predictor:
+    """Predicts the crowd for plans of ``horizon`` steps of ``time_step`` [s], some at once.
+
+    A step is as long as it can be up to 0.1 s. It is integrated at once, or where people's speeds
+    would swing in steps of the crowd's length.
+
+    Args:
+        parameters: the model by which people are believed to walk.
+        time_step: of the manoeuvres [s].
+        horizon: N of them.
+        readings: options of :class:`pedestrian_model.Predictor`.
+    """
+    every = min(max(1, int(_STEP / time_step + 1e-9)), horizon)
+    step, longest = every * time_step, _STEP
+    try:
+        require_steady(parameters, step, longest)
+    except ParameterError:
+        longest = LONGEST_STEP
+    return Predictor(parameters, step, horizon // every, longest_step=longest, **readings)
 
 
 class CrowdForesight:
@@ -22,9 +55,11 @@ class CrowdForesight:
     The manoeuvres are tried in poses of its own: what other egos see does not change by them.
 
     Args:
-        predictor: of N steps.
+        predictor: of M steps, each of them some of a manoeuvre's.
         path: the ego's.
         shape: of its body.
+        horizon: N [steps] of a manoeuvre.
+        time_step: of a manoeuvre [s]; the predictor's is some of them.
         half_width: of the corridor [m].
         growth: of it with the look-ahead, on each side [m/s].
         planned_speed: the crowd is predicted under the manoeuvre, else under the present speed.
@@ -40,6 +75,8 @@ class CrowdForesight:
         path: EgoPath,
         shape: VehicleShape,
         *,
+        horizon: int,
+        time_step: float,
         half_width: float,
         growth: float,
         planned_speed: bool,
@@ -48,13 +85,14 @@ class CrowdForesight:
         safety_layer: bool,
         conflict_time: float = CRITICAL_TTC,
     ) -> None:
-        N = predictor.horizon
-        self._predictor = predictor
+        N, M = horizon, predictor.horizon
+        every = round(predictor.time_step / time_step)
+        self._predictor, self._every = predictor, every
         self._path = path
         self._planned_speed = planned_speed
         # Plain tuples: each call would look the class of a named one up anew (2 us).
         self._view = tuple(
-            View(shape.length, shape.width, half_width, growth, conflict_time, predictor.time_step)
+            View(shape.length, shape.width, half_width, growth, conflict_time, time_step, every)
         )
         walking = predictor.parameters
         self._alarm = tuple(
@@ -68,12 +106,12 @@ class CrowdForesight:
             )
         )
         self._length = shape.length
-        self._constant = np.arange(N + 1) * predictor.time_step
+        self._constant = np.arange(N + 1) * time_step
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
         self._prospect = Prospect(np.empty(N), np.zeros(N), np.zeros(N))
-        self._predicted = np.empty((N, 0, 2))
-        self._best = np.empty((N, 0, 2))
-        self._poses = np.empty((N, 0, 7))
+        self._predicted = np.empty((M, 0, 2))
+        self._best = np.empty((M, 0, 2))
+        self._poses = np.empty((M, 0, 7))
         self._copied, self._stale, self._preferred = False, True, False
         self._winner: Array | None = None
         self._lanes: Lanes | None = None
@@ -106,10 +144,18 @@ class CrowdForesight:
 
     @property
     def best(self) -> Array | None:
-        """(N, n, 2) [m] positions at steps 1 ... N under the preferred manoeuvre, if any was."""
-        if self._winner is not None:
-            return self._winner
-        return self._best if self._preferred else None
+        """(N, n, 2) [m] positions at steps 1 ... N under the preferred manoeuvre, if any was.
+
+        Those between the steps of the prediction lie on straight lines between these.
+        """
+        if self._winner is None and not self._preferred:
+            return None
+        known = self._best if self._winner is None else self._winner
+        known = np.concatenate([self._pedestrians.position[None], known])
+        after = np.minimum(np.arange(1, len(self._distance)) / self._every, len(known) - 1.0)
+        before = np.minimum(after.astype(np.int64), len(known) - 2)
+        share = (after - before)[:, None, None]
+        return np.asarray((1.0 - share) * known[before] + share * known[before + 1])
 
     def prospect(self, manoeuvre: Manoeuvre) -> Prospect:
         """What a manoeuvre would lead to; valid until the next call."""
@@ -125,6 +171,7 @@ class CrowdForesight:
             path.vertices,
             path.stations,
             path.headings,
+            self._pedestrians.position,
             self._predicted,
             self._front,
             manoeuvre.distance,
@@ -140,8 +187,7 @@ class CrowdForesight:
     def _race(
         self,
         trials: Trials,
-        entrants: list[int],
-        known: bool,
+        heats: Heats,
         lead: bool,
         allowed: Array,
         weights: tuple[Any, ...],
@@ -156,8 +202,8 @@ class CrowdForesight:
         path, n = self._path, len(self._pedestrians)
         lanes = self._lanes
         if lanes is None or lanes.people < n or lanes.count < len(trials.handicap):
-            lanes = self._lanes = Lanes(len(trials.handicap), len(self._poses), n)
-        best = run_race(
+            lanes = self._lanes = Lanes(len(trials.handicap), len(allowed), len(self._poses), n)
+        best, clear, tried = run_race(
             (path.vertices, path.stations, path.headings),
             self._predictor.arrays(self._pedestrians, self._surroundings),
             self._predictor.law,
@@ -168,8 +214,7 @@ class CrowdForesight:
             self._alarm,
             tuple(trials),
             lanes.arrays,
-            lanes.order(entrants),
-            known,
+            lanes.line_up(heats),
             lead,
             allowed,
             weights,
@@ -178,7 +223,7 @@ class CrowdForesight:
             raise self._predictor.divergence(self._pedestrians, lanes.bad)
         if best >= 0:
             self._winner = lanes.positions(best, n)
-        return lanes.verdict(best, entrants[0])
+        return lanes.verdict(best, clear, tried)
 
     def prefer(self) -> None:
         """Keep the positions under the latest manoeuvre as those of the preferred one."""
@@ -196,8 +241,8 @@ class CrowdForesight:
             path.stations,
             path.headings,
             self._front,
-            distance,
-            speed,
+            self._middle(distance),
+            self._middle(speed),
             self._length,
             self._row,
             self._poses,
@@ -207,9 +252,15 @@ class CrowdForesight:
         )
         self._stale = False
 
+    def _middle(self, values: Array) -> Array:
+        """(M,) the mean over each step of the prediction of what acts on people in it."""
+        every, end = self._every, len(self._poses) * self._every
+        return np.asarray(0.5 * (values[:end:every] + values[every - 1 : end : every]))
+
     def _copy(self) -> None:
         """Take over the poses of this instant."""
-        if self._poses.shape != self._given.shape:
-            self._poses = np.empty_like(self._given)
-        self._poses[:] = self._given
+        M, vehicles = len(self._poses), self._given.shape[1]
+        if self._poses.shape[1] != vehicles:
+            self._poses = np.empty((M, vehicles, 7))
+        self._poses[:] = self._given[: M * self._every : self._every]
         self._copied = True

@@ -11,7 +11,6 @@ from giveway.geometry.passage import window
 from giveway.geometry.path import body_pose, segment_at
 
 PASSED = 0.3  # [m] behind the front bumper pedestrians still count as in front, being squeezed by
-_EVERY = 2  # steps from one search for conflicts to the next
 
 
 class View(NamedTuple):
@@ -22,7 +21,8 @@ class View(NamedTuple):
     half_width: float  # of the corridor [m]
     growth: float  # of it with the look-ahead, on each side [m/s]
     conflict_time: float  # time to collision of a conflict [s]
-    time_step: float  # [s]
+    time_step: float  # of a manoeuvre [s]
+    every: float  # steps of a manoeuvre, a whole number, in which the crowd is predicted at once
 
 
 @kernel
@@ -30,6 +30,7 @@ def assess(
     vertices: Array,
     stations: Array,
     headings: Array,
+    now: Array,
     predicted: Array,
     front: float,
     distance: Array,
@@ -42,16 +43,22 @@ def assess(
 ) -> None:
     """Fill gaps in front, persons on a collision course, and calm speeds at steps 1 ... N.
 
-    Conflicts and calm speeds are found at every second step and held in between. ``view`` and
-    ``alarm`` are the numbers of a :class:`View` and an :class:`Alarm`.
+    The crowd is known ``now`` (n, 2) [m] and at each ``every``-th step, ``predicted`` (M, n, 2),
+    and walks straight on in between. Conflicts and calm speeds are found at the first step after
+    each of these and held until the next. ``view`` and ``alarm`` are the numbers of a
+    :class:`View` and an :class:`Alarm`.
     """
-    for i in range(len(predicted)):
+    between = np.empty((now.shape[0], 2))
+    for j in range(len(predicted)):
         assess_step(
             vertices,
             stations,
             headings,
-            predicted,
-            i,
+            predicted[j - 1] if j > 0 else now,
+            predicted[j],
+            j,
+            len(predicted),
+            between,
             front,
             distance,
             speeds,
@@ -64,12 +71,28 @@ def assess(
 
 
 @inlined
+def interval_of(j: int, every: int, predicted: int, horizon: int) -> tuple[int, int]:
+    """The steps (less one) of a manoeuvre in the j-th of the predicted ones; the last has the rest.
+
+    Args:
+        j: from 0.
+        every: see :class:`View`.
+        predicted: M, how many.
+        horizon: N [steps] of the manoeuvre.
+    """
+    return j * every, horizon if j + 1 == predicted else (j + 1) * every
+
+
+@inlined
 def assess_step(
     vertices: Array,
     stations: Array,
     headings: Array,
-    predicted: Array,
-    i: int,
+    before: Array,
+    after: Array,
+    j: int,
+    predicted: int,
+    between: Array,
     front: float,
     distance: Array,
     speeds: Array,
@@ -79,17 +102,28 @@ def assess_step(
     conflicts: Array,
     calm: Array,
 ) -> None:
-    """As :func:`assess` for step i + 1 alone, the positions one step later being known, too."""
+    """As :func:`assess` for the j-th of the predicted steps alone.
+
+    ``before`` and ``after`` it people are there; ``between`` (n, 2) is memory.
+    """
     v, limits = View(*view), Alarm(*alarm)
-    length, time_step = v.length, v.time_step
+    length, time_step, every = v.length, v.time_step, int(v.every)
     first, last = window(stations, front, PASSED + length)
-    at = front + distance[i + 1]
-    wide = v.half_width + v.growth * (i + 1) * time_step
-    closest, _ = closest_in_front(
-        vertices, stations, first, last, predicted[i], at - PASSED, wide, 0.0
-    )
-    gap[i] = closest - at
-    if i % _EVERY == 0 and i + 1 < len(predicted):
+    begin, end = interval_of(j, every, predicted, len(gap))
+    for i in range(begin, end):
+        share = min((i + 1 - begin) / every, 1.0)
+        for p in range(between.shape[0]):
+            between[p, 0] = before[p, 0] + share * (after[p, 0] - before[p, 0])
+            between[p, 1] = before[p, 1] + share * (after[p, 1] - before[p, 1])
+        at = front + distance[i + 1]
+        wide = v.half_width + v.growth * (i + 1) * time_step
+        closest, _ = closest_in_front(
+            vertices, stations, first, last, between, at - PASSED, wide, 0.0
+        )
+        gap[i] = closest - at
+        if i > begin:
+            conflicts[i], calm[i] = conflicts[begin], calm[begin]
+            continue
         x, y, heading = body_pose(vertices, stations, headings, at, length)
         stop = at + speeds[i + 1] * (time_step + speeds[i + 1] / (2.0 * limits.braking))
         braking_heading = heading
@@ -97,8 +131,10 @@ def assess_step(
             x_s, y_s, _ = body_pose(vertices, stations, headings, stop, 0.0)
             braking_heading = np.arctan2(y_s - y, x_s - x)
         conflicts[i], calm[i] = conflicts_and_calm(
-            predicted[i],
-            predicted[i + 1],
+            between,
+            before,
+            after,
+            every * time_step,
             x,
             y,
             heading,
@@ -110,7 +146,3 @@ def assess_step(
             time_step,
             limits,
         )
-    elif i > 0:
-        conflicts[i], calm[i] = conflicts[i - 1], calm[i - 1]
-    else:
-        conflicts[i], calm[i] = 0.0, np.inf

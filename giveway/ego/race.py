@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import Prospect, Verdict, add_cost_of_others, own_cost
+from controller import Heats, Prospect, Verdict, add_cost_of_others, own_cost
 from giveway.ego.corridor import set_pose
-from giveway.ego.prospects import View, assess_step
+from giveway.ego.prospects import View, assess_step, interval_of
 from giveway.geometry.kernel import Array, inlined, kernel
-from pedestrian_model import march, start
+from pedestrian_model import leap, start
 
 Arrays = tuple[NDArray[Any], ...]
 
@@ -27,21 +27,22 @@ class Lanes:
     Args:
         count: of manoeuvres.
         horizon: N [steps].
+        predicted: M [steps] of the crowd.
         people: n, at most.
 
     Attributes:
         arrays: what the kernel takes.
     """
 
-    def __init__(self, count: int, horizon: int, people: int) -> None:
-        self.count, self.people, self._horizon = count, people, horizon
-        self._state = np.empty(count * horizon * people * 4)
-        self._index = np.empty(count * horizon * people, dtype=np.int64)
+    def __init__(self, count: int, horizon: int, predicted: int, people: int) -> None:
+        self.count, self.people, self._predicted = count, people, predicted
+        self._state = np.empty(count * predicted * people * 4)
+        self._index = np.empty(count * predicted * people, dtype=np.int64)
         self._prospects = np.zeros((3, count, horizon))  # gap, conflicts, calm
-        self._sums = np.zeros((4, count))  # own cost, of others, missing distance, the whole
+        self._sums = np.zeros((3, count))  # own cost, of others, missing distance
         self._steps = np.zeros((2, count), dtype=np.int64)  # predicted, assessed
         self._alike = np.zeros((count, count), dtype=np.int64)  # steps before they part
-        self._entrants = np.zeros(count + 1, dtype=np.int64)
+        self._entrants = np.zeros((3, count + 1), dtype=np.int64)
         self._bad = np.zeros(1, dtype=np.int64)
         self.arrays: Arrays = (
             self._state,
@@ -50,6 +51,7 @@ class Lanes:
             self._sums,
             self._steps,
             self._alike,
+            np.empty((people, 2)),
             self._bad,
         )
 
@@ -58,29 +60,25 @@ class Lanes:
         """A pedestrian whose predicted state is not finite; -1: none."""
         return int(self._bad[0])
 
-    def order(self, entrants: list[int]) -> NDArray[np.int64]:
-        """The entrants as an array."""
-        order = self._entrants[: len(entrants)]
-        order[:] = entrants
-        return order
+    def line_up(self, heats: Heats) -> NDArray[np.int64]:
+        """(3, k + 1) who runs when; -1 behind them."""
+        entrants = self._entrants
+        entrants[:] = -1
+        for heat, trials in enumerate(heats):
+            entrants[heat, : len(trials)] = trials
+        return entrants
 
     def positions(self, k: int, n: int) -> Array:
-        """(N, n, 2) [m] of the people under a manoeuvre that has finished."""
-        size = self._horizon * n * 4
-        return self._state[k * size : (k + 1) * size].reshape(self._horizon, n, 4)[:, :, :2]
+        """(M, n, 2) [m] of the people under a manoeuvre that has finished."""
+        M = self._predicted
+        size = M * n * 4
+        return self._state[k * size : (k + 1) * size].reshape(M, n, 4)[:, :, :2]
 
-    def verdict(self, best: int, first: int) -> Verdict:
+    def verdict(self, best: int, clear: bool, tried: int) -> Verdict:
         """How the race ended."""
-        _, others, missing, whole = self._sums
-        done = self._steps[1, first] == self._horizon
-        prospect = Prospect(*self._prospects[:, best])
-        return Verdict(
-            int(best),
-            float(whole[best]),
-            float(missing[best]),
-            bool(done and others[first] <= 0.0),
-            prospect,
-        )
+        gap, conflicts, calm = self._prospects
+        prospect = Prospect(gap[best], conflicts[best], calm[best])
+        return Verdict(best, float(self._sums[2, best]), clear, tried, prospect)
 
 
 @kernel
@@ -96,85 +94,94 @@ def run_race(
     trials: Arrays,
     memory: Arrays,
     entrants: NDArray[np.int64],
-    known: bool,
     lead: bool,
     allowed: Array,
     weights: tuple[Any, ...],
-) -> int:
+) -> tuple[int, bool, int]:
     """The row of the cheapest entrant, which has finished; -1: no cost is a number.
+
+    Also whether nobody is in the way of the first, and how many have been compared.
 
     Args:
         path: vertices, stations and headings of the ego's.
         people: what :func:`pedestrian_model.start` takes.
         law: the numbers of the model.
-        poses: (N, m, 7) of all vehicles; the ego's row is changed.
+        poses: (M, m, 7) of all vehicles; the ego's row is changed.
         row: the ego's.
         front: its front bumper's station [m].
         view: the numbers of a ``View``.
         alarm: the numbers of an ``Alarm``.
         trials: of ``Trials``.
         memory: of :class:`Lanes`.
-        entrants: rows of the trials; of equal ones the first wins.
-        known: the first has finished in the race before.
+        entrants: see :meth:`Lanes.line_up`.
         lead: the first runs until somebody is in its way, and wins if nobody is.
         allowed: (N,) [m].
         weights: of the cost.
     """
     distance, speed, acceleration, handicap = trials
-    sums, steps, alike, bad = memory[3:]
-    N, time_step = poses.shape[0], View(*view).time_step
-    begun = 1 if known else 0
+    sums, steps, alike, _, bad = memory[3:]
+    M, time_step = poses.shape[0], View(*view).time_step
     ahead, scene, scratch = start(people)
     bad[0] = _FINE
-    if not known:
-        steps[:] = -1
-    for e in range(begun, len(entrants)):
-        k = entrants[e]
-        enter(k, distance, speed, steps, alike)
-        sums[0, k] = own_cost(speed[k], acceleration[k], time_step, weights)
-        sums[1, k], sums[2, k] = 0.0, 0.0
-    first = entrants[0]
-    leads = lead
-    while True:
-        best, least = -1, np.inf
-        if leads:
-            best = first
-            if time_step * sums[1, first] > 0.0:
-                leads = False
-                continue
-            if steps[1, first] == N:
-                sums[3, first] = sums[0, first] + handicap[first]
+    steps[:] = -1
+    running = np.empty(entrants.shape[1], dtype=np.int64)
+    count, tried, best, first = 0, 0, -1, entrants[0, 0]
+    for heat in range(2):
+        row_of = 0
+        if heat == 1:
+            running[0], count = best, 1
+            row_of = 1 if sums[2, best] <= 0.0 else 2
+        for k in entrants[row_of]:
+            if k < 0:
                 break
-        else:
-            for e in range(len(entrants)):
-                k = entrants[e]
-                bound = sums[3, k] = sums[0, k] + time_step * sums[1, k] + handicap[k]
-                if bound < least:
-                    best, least = k, bound
-            if best < 0 or steps[1, best] == N:
-                break
-        bad[0] = advance(
-            best,
-            path,
-            people,
-            ahead,
-            scene,
-            scratch,
-            law,
-            poses,
-            row,
-            front,
-            view,
-            alarm,
-            distance,
-            speed,
-            memory,
-            allowed,
-            weights,
-        )
-        if bad[0] != _FINE:
+            enter(k, distance, speed, steps, alike)
+            sums[0, k] = own_cost(speed[k], acceleration[k], time_step, weights)
+            sums[1, k], sums[2, k] = 0.0, 0.0
+            running[count] = k
+            count += 1
+            tried += 1
+        leads = lead and heat == 0
+        while True:
+            best, least = -1, np.inf
+            if leads:
+                best = first
+                if time_step * sums[1, first] > 0.0:
+                    leads = False
+                    continue
+                if steps[1, first] == M:
+                    return first, True, tried
+            else:
+                for e in range(count):
+                    k = running[e]
+                    bound = sums[0, k] + time_step * sums[1, k] + handicap[k]
+                    if bound < least:
+                        best, least = k, bound
+                if best < 0 or steps[1, best] == M:
+                    break
+            bad[0] = advance(
+                best,
+                path,
+                people,
+                ahead,
+                scene,
+                scratch,
+                law,
+                poses,
+                row,
+                front,
+                view,
+                alarm,
+                distance,
+                speed,
+                memory,
+                allowed,
+                weights,
+            )
+            if bad[0] != _FINE:
+                return -1, False, tried
+        if best < 0:
             break
-    return best
+    return best, False, tried
 
 
 @kernel
@@ -218,76 +225,79 @@ def advance(
 ) -> int:
     """Roll manoeuvre k out by one step; -1, or a pedestrian whose state is not finite."""
     vertices, stations, headings = path
-    state, index, prospects, sums, steps, alike, _ = memory
-    x, v, at = ahead
-    N, n = poses.shape[0], x.shape[0]
-    i = steps[0, k]
-    here = (k * N + i) * n
+    state, index, prospects, sums, steps, alike, between, _ = memory
+    x, v, at = ahead.state
+    M, n, N, every = poses.shape[0], x.shape[0], distance.shape[1] - 1, int(View(*view).every)
+    j = steps[0, k]
+    here, step = (k * M + j) * n, j * every
+    late = step + every - 1
     donor = -1
     for other in range(steps.shape[1]):
-        if other != k and steps[0, other] > i and alike[k, other] > i:
+        if other != k and steps[0, other] > j and alike[k, other] > late:
             donor = other
     if donor >= 0:
-        there = (donor * N + i) * n
+        there = (donor * M + j) * n
         state[4 * here : 4 * (here + n)] = state[4 * there : 4 * (there + n)]
         index[here : here + n] = index[there : there + n]
     else:
-        if i == 0:
+        if j == 0:
             start(people)
         else:
             before = here - n
-            for j in range(n):
-                base = 4 * (before + j)
-                x[j, 0], x[j, 1] = state[base], state[base + 1]
-                v[j, 0], v[j, 1] = state[base + 2], state[base + 3]
-                at[j] = index[before + j]
-        station = front + distance[k, i]
-        set_pose(
-            vertices, stations, headings, station, speed[k, i], View(*view).length, poses[i, row]
-        )
-        bad = march(ahead, scene, poses[i], scratch, *law)
+            for p in range(n):
+                base = 4 * (before + p)
+                x[p, 0], x[p, 1] = state[base], state[base + 1]
+                v[p, 0], v[p, 1] = state[base + 2], state[base + 3]
+                at[p] = index[before + p]
+        station = front + 0.5 * (distance[k, step] + distance[k, late])
+        pace = 0.5 * (speed[k, step] + speed[k, late])
+        set_pose(vertices, stations, headings, station, pace, View(*view).length, poses[j, row])
+        bad = leap(ahead, scene, poses[j], scratch, *law)
         if bad != _FINE:
             return bad
-        for j in range(n):
-            base = 4 * (here + j)
-            state[base], state[base + 1] = x[j, 0], x[j, 1]
-            state[base + 2], state[base + 3] = v[j, 0], v[j, 1]
-            index[here + j] = at[j]
-    steps[0, k] = i + 1
-    predicted = state[4 * k * N * n : 4 * (k + 1) * N * n].reshape(N, n, 4)
-    while steps[1, k] < (i if i + 1 < N else N):
-        s = steps[1, k]
-        donor = -1
-        for other in range(steps.shape[1]):
-            if other != k and steps[1, other] > s and alike[k, other] - 1 > s:
-                donor = other
-        if donor >= 0:
-            prospects[:, k, s] = prospects[:, donor, s]
-        else:
-            assess_step(
-                vertices,
-                stations,
-                headings,
-                predicted,
-                s,
-                front,
-                distance[k],
-                speed[k],
-                view,
-                alarm,
-                prospects[0, k],
-                prospects[1, k],
-                prospects[2, k],
-            )
+        for p in range(n):
+            base = 4 * (here + p)
+            state[base], state[base + 1] = x[p, 0], x[p, 1]
+            state[base + 2], state[base + 3] = v[p, 0], v[p, 1]
+            index[here + p] = at[p]
+    steps[0, k] = j + 1
+    predicted = state[4 * k * M * n : 4 * (k + 1) * M * n].reshape(M, n, 4)
+    begin, end = interval_of(j, every, M, N)
+    donor = -1
+    for other in range(steps.shape[1]):
+        if other != k and steps[1, other] > j and alike[k, other] > end:
+            donor = other
+    if donor >= 0:
+        prospects[:, k, begin:end] = prospects[:, donor, begin:end]
+    else:
+        assess_step(
+            vertices,
+            stations,
+            headings,
+            predicted[j - 1] if j > 0 else people[0],
+            predicted[j],
+            j,
+            M,
+            between[:n],
+            front,
+            distance[k],
+            speed[k],
+            view,
+            alarm,
+            prospects[0, k],
+            prospects[1, k],
+            prospects[2, k],
+        )
+    for i in range(begin, end):
         sums[1, k], sums[2, k] = add_cost_of_others(
             sums[1, k],
             sums[2, k],
-            speed[k, s + 1],
-            prospects[0, k, s],
-            prospects[1, k, s],
-            prospects[2, k, s],
-            distance[k, s + 1] - allowed[s],
+            speed[k, i + 1],
+            prospects[0, k, i],
+            prospects[1, k, i],
+            prospects[2, k, i],
+            distance[k, i + 1] - allowed[i],
             weights,
         )
-        steps[1, k] = s + 1
+    steps[1, k] = j + 1
     return _FINE

@@ -28,7 +28,9 @@ class Alarm(NamedTuple):
 @kernel
 def conflicts_and_calm(
     here: Array,
-    there: Array,
+    before: Array,
+    after: Array,
+    interval: float,
     front_x: float,
     front_y: float,
     heading: float,
@@ -42,6 +44,7 @@ def conflicts_and_calm(
 ) -> tuple[float, float]:
     """Persons who would touch the ego within the conflict time if both kept their velocity.
 
+    They are ``here`` (n, 2) [m], on their ways from ``before`` to ``after`` in ``interval`` [s].
     ``heading`` is the body's, ``braking_heading`` that of the way on which the front would stop.
     Also the speed [m/s] from which on no pedestrian could force an emergency stop, see
     :func:`is_threat`; inf: ``speed`` is slow enough.
@@ -52,14 +55,14 @@ def conflicts_and_calm(
     turn = braking_heading - heading
     c_b, s_b = np.cos(turn), np.sin(turn)
     far = 2.0 * half_length + half_width + conflict_time * (speed + alarm.walking_speed)
-    conflicts, calm = 0.0, speed
+    conflicts, calm, braking = 0.0, speed, outline(speed, time_step, alarm)
     for j in range(here.shape[0]):
         d_x, d_y = here[j, 0] - front_x, here[j, 1] - front_y
         if d_x * d_x + d_y * d_y > far * far:
             continue
         x, y = to_frame(d_x, d_y, c, s)
-        w_x = (there[j, 0] - here[j, 0]) / time_step
-        w_y = (there[j, 1] - here[j, 1]) / time_step
+        w_x = (after[j, 0] - before[j, 0]) / interval
+        w_y = (after[j, 1] - before[j, 1]) / interval
         w_x, w_y = to_frame(w_x, w_y, c, s)
         # Who cannot come beside, before or behind the body in that time needs no more thought.
         apart = max(
@@ -77,43 +80,34 @@ def conflicts_and_calm(
         if turn != 0.0:
             x, y = to_frame(x, y, c_b, s_b)
             w_x, w_y = to_frame(w_x, w_y, c_b, s_b)
-        if is_threat(x, y, w_x, w_y, calm, half_width, time_step, alarm):
+        if is_threat(x, y, w_x, w_y, braking, half_width, time_step, alarm):
             low, high = 0.0, calm
             for _ in range(_HALVINGS):
                 middle = 0.5 * (low + high)
-                if is_threat(x, y, w_x, w_y, middle, half_width, time_step, alarm):
+                slower = outline(middle, time_step, alarm)
+                if is_threat(x, y, w_x, w_y, slower, half_width, time_step, alarm):
                     high = middle
                 else:
                     low = middle
             calm = low
+            braking = outline(calm, time_step, alarm)
     return conflicts, calm if calm < speed else np.inf
 
 
+class Outline(NamedTuple):
+    """What a full braking from a speed looks like, the same for everybody."""
+
+    speed: float  # [m/s] from which it is braked
+    step: float  # [m] driven until the brake acts
+    stop: int  # steps until standstill
+    clear: float  # [m] to be kept between a body's centre and the front
+    most: float  # [m] with the farthest that somebody can deviate until then
+    farthest: float  # [m] that the front gets at most
+
+
 @kernel
-def is_threat(
-    x: float,
-    y: float,
-    w_x: float,
-    w_y: float,
-    speed: float,
-    half_width: float,
-    time_step: float,
-    alarm: Alarm,
-) -> bool:
-    """Whether a pedestrian could get before the front while the ego brakes fully from here on.
-
-    The safety layer would act then (controller/safety.py knows exactly; this is its outline).
-
-    Args:
-        x: ahead of the front's middle [m].
-        y: to the left of it [m].
-        w_x: the velocity along the ego's heading [m/s].
-        w_y: across it [m/s].
-        speed: of the ego [m/s].
-        half_width: of the ego [m].
-        time_step: [s] until the brake acts.
-        alarm: the limits.
-    """
+def outline(speed: float, time_step: float, alarm: Alarm) -> Outline:
+    """The outline of a full braking from ``speed`` [m/s], which acts after ``time_step`` [s]."""
     step = speed * time_step
     # The instant of the stop counts too: in most of the cases it is the one that matters.
     stop = 1 + int(np.ceil(speed / (alarm.braking * time_step) - _WHOLE))
@@ -127,16 +121,45 @@ def is_threat(
     last = stop * time_step
     most = clear + 0.5 * alarm.walking_acceleration * last * last + _ROUNDING
     farthest = speed * (last + time_step) + 0.5 * alarm.braking * time_step * last
-    if max(x - farthest, -x) - abs(w_x) * last > most:
+    return Outline(speed, step, stop, clear, most, farthest)
+
+
+@kernel
+def is_threat(
+    x: float,
+    y: float,
+    w_x: float,
+    w_y: float,
+    o: Outline,
+    half_width: float,
+    time_step: float,
+    alarm: Alarm,
+) -> bool:
+    """Whether a pedestrian could get before the front while the ego brakes fully from here on.
+
+    The safety layer would act then (controller/safety.py knows exactly; this is its outline).
+
+    Args:
+        x: ahead of the front's middle [m].
+        y: to the left of it [m].
+        w_x: the velocity along the ego's heading [m/s].
+        w_y: across it [m/s].
+        o: of the braking.
+        half_width: of the ego [m].
+        time_step: [s] until the brake acts.
+        alarm: the limits.
+    """
+    last = o.stop * time_step
+    if max(x - o.farthest, -x) - abs(w_x) * last > o.most:
         return False
-    if abs(y) - half_width - abs(w_y) * last > most:
+    if abs(y) - half_width - abs(w_y) * last > o.most:
         return False
-    for i in range(stop + 1):
+    for i in range(o.stop + 1):
         t = i * time_step
-        braked = min(max(0.0, t - time_step), speed / alarm.braking)
-        low = speed * braked - 0.5 * alarm.braking * braked * braked
-        high = low + step + 0.5 * time_step * alarm.braking * braked  # by forward Euler
-        reach = clear + 0.5 * alarm.walking_acceleration * t * t
+        braked = min(max(0.0, t - time_step), o.speed / alarm.braking)
+        low = o.speed * braked - 0.5 * alarm.braking * braked * braked
+        high = low + o.step + 0.5 * time_step * alarm.braking * braked  # by forward Euler
+        reach = o.clear + 0.5 * alarm.walking_acceleration * t * t
         ahead = x + w_x * t
         off = max(0.0, low - ahead, ahead - high)
         aside = max(0.0, abs(y + w_y * t) - half_width)

@@ -8,6 +8,7 @@ from controller import Controller, SafetyParameters
 from fmus import FmuError, Vehicle
 from giveway.config import EgoRunConfig
 from giveway.config.presets import parameters_of
+from giveway.ego.foresight import plan_predictor
 from giveway.ego.recorded import NoController, RecordedVehicle
 from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
 from giveway.ego.worst_motion import people_at_worst
@@ -100,7 +101,8 @@ def make_waiting_ego(
         raise VehicleError(str(error)) from error
     ahead = controller.horizon
     readings = {"detour": config.crowd.detour, "creep": config.crowd.creep}
-    predictor = Predictor(expected, time_step, ahead, **readings) if ahead else None
+    make = plan_predictor if controller.foresees else Predictor
+    predictor = make(expected, time_step, ahead, **readings) if ahead else None
     fastest = max(crowd.max_speed, expected.max_speed)
     safety = safety_parameters(config, time_step) if config.safety_layer else None
     return WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety)

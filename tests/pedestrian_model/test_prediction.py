@@ -14,6 +14,7 @@ from pedestrian_model import (
     VehicleError,
     Vehicles,
 )
+from pedestrian_model._constants import pack
 
 
 @pytest.mark.parametrize("n", [0, 1, 30, 90])
@@ -84,3 +85,37 @@ def test_bad_trajectories_horizons_and_states_are_named(random_crowd):
     crowd.position[3, 0] = np.nan
     with pytest.raises(DivergenceError, match="pedestrian 3"):
         predictor.predict(crowd, np.zeros((4, 0, 7)))
+
+
+def test_a_longer_step_takes_somebody_alone_where_two_of_the_crowds_do(walkers):
+    crowd = walkers([(0.0, 0.0)], [(20.0, 0.0)])
+    crowd.velocity[:] = 0.7, 0.1  # the limit of the acceleration does not act
+    free = Vehicles.empty()
+    fine = Predictor(horizon=40).predict(crowd, constant_speed(free, 0.05, 40))[1::2]
+    poses = constant_speed(free, 0.1, 20)
+    long = Predictor(time_step=0.1, horizon=20, longest_step=0.1)
+    error = np.abs(long.predict(crowd, poses) - fine).max()
+    long.law = (pack(long.parameters), *long.law[1:4], 0.0)  # as the crowd would make the step
+    assert error < 5e-3
+    assert error < 0.3 * np.abs(long.predict(crowd, poses) - fine).max()
+
+
+@pytest.mark.parametrize("speed", [0.0, 2.0, 4.0])
+def test_a_longer_step_is_near_two_of_the_crowds_among_others_and_a_car(walkers, speed):
+    car, g = Vehicles.create(-6.0, 0.0, 0.0, speed), np.random.default_rng(0)
+    x, y = (a.ravel() + g.uniform(-0.5, 0.5, 20) for a in np.mgrid[0.0:10.0:2.5, -5.0:5.0:2.0])
+    crowd = walkers(np.column_stack([x, y]), np.column_stack([x, -3.0 * y]))
+    fine = Predictor(horizon=60).predict(crowd, constant_speed(car, 0.05, 60))[1::2]
+    poses = constant_speed(car, 0.1, 30)
+    poses[:, :, 0] += 0.025 * speed  # where the car is on the average in two steps
+    long = Predictor(time_step=0.1, horizon=30, longest_step=0.1)
+    error = np.abs(long.predict(crowd, poses) - fine).max(axis=2)
+    assert error[9].mean() < 0.015
+    assert error[-1].mean() < 0.08
+
+
+def test_a_step_of_the_crowds_length_is_the_crowds_whatever_is_allowed(random_crowd):
+    crowd, poses = random_crowd(20, 1), constant_speed(Vehicles.empty(), 0.05, 10)
+    usual = Predictor(horizon=10).predict(crowd, poses)
+    allowed = Predictor(horizon=10, longest_step=0.1).predict(crowd, poses)
+    assert usual.tobytes() == allowed.tobytes()

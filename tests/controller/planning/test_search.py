@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -11,7 +13,6 @@ from controller import ControllerError, Manoeuvre, ManoeuvreParameters, PlannerP
 from controller.planning.costs import corridor, cost, stopping_need
 from controller.planning.motions import aim, approach, shift
 from controller.planning.parameters import Weights
-from controller.planning.search import copy
 
 DT = 0.05
 FREE = np.inf
@@ -94,8 +95,7 @@ def test_an_acceleration_is_approached_with_the_jerk_and_then_held():
 
 def test_a_shifted_plan_is_what_was_planned():
     m = aimed(4.0, 0.0, -2.5, 1.4, 4.0)
-    later = Manoeuvre.empty(60)
-    copy(m, later)
+    later = deepcopy(m)
     shift(m.speed[1], True, 6.0, DT, later.distance, later.speed, later.acceleration)
     assert np.array_equal(later.speed[:-1], m.speed[1:])
     assert later.speed[-1] == m.speed[-1]  # held
@@ -192,8 +192,7 @@ def test_an_admissible_plan_is_admissible_one_step_later(
     gap = person[1:-1] - m.distance[1:]
     assert cost_missing(m, gap, w) <= 1e-9
     holds = gap[-1] - DT * m.speed[-1] >= need[-1]
-    later = Manoeuvre.empty(N)
-    copy(m, later)
+    later = deepcopy(m)
     shift(m.speed[1], holds, deceleration, DT, later.distance, later.speed, later.acceleration)
     assert cost_missing(later, person[2:] - m.distance[1] - later.distance[1:], w) <= 1e-9
 

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import shapely
 
 from controller import LongitudinalModel, Manoeuvre, SafetyLayer, SafetyParameters
-from giveway.ego.foresight import CrowdForesight
+from giveway.ego.foresight import CrowdForesight, plan_predictor
 from giveway.ego.prospects import PASSED, View, assess
 from giveway.ego.safety import FrontPoses
-from giveway.ego.threats import Alarm, is_threat
+from giveway.ego.threats import Alarm, is_threat, outline
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
-from pedestrian_model import OPEN_GROUND, SIM, Crowd, Predictor
+from pedestrian_model import OPEN_GROUND, SIM, Crowd
 
 N, DT = 20, 0.05
+EVERY = 2  # steps of a manoeuvre in one of the prediction
+LOOKS = range(0, N - 1, EVERY)  # where conflicts are looked for
 LENGTH, WIDTH, RADIUS = 5.0, 2.0, SIM.body_radius
 HALF_WIDTH, CONFLICT_TIME = 1.25, 1.5
 FRONT = 20.0  # [m]
@@ -46,17 +49,18 @@ def manoeuvre(speed, acceleration=0.0):
     return m
 
 
-def assessed(path, people, m, *, growth=0.0, alarm=ALARM):
+def assessed(path, people, m, *, growth=0.0, alarm=ALARM, every=EVERY):
     out = np.empty(N), np.empty(N), np.empty(N)
     assess(
         path.vertices,
         path.stations,
         path.headings,
-        people,
+        2.0 * people[0] - people[1],  # they walk straight on
+        np.ascontiguousarray(people[every - 1 :: every]),
         FRONT,
         m.distance,
         m.speed,
-        View(LENGTH, WIDTH, HALF_WIDTH, growth, CONFLICT_TIME, DT),
+        View(LENGTH, WIDTH, HALF_WIDTH, growth, CONFLICT_TIME, DT, every),
         alarm,
         *out,
     )
@@ -103,13 +107,28 @@ def test_the_gap_is_to_the_closest_person_in_the_corridor(name, seed, growth):
         assert gaps[i] == pytest.approx(expected, abs=1e-9 if name == "straight" else 5e-2)
 
 
+def test_who_is_predicted_at_each_step_is_looked_at_at_each_step():
+    people, m = walkers(np.random.default_rng(1), STRAIGHT), manoeuvre(4.0)
+    often, seldom = (assessed(STRAIGHT, people, m, every=every) for every in (1, 2))
+    assert np.allclose(often[0], seldom[0])
+    assert not np.array_equal(often[1][:-1:2], often[1][1::2])
+    assert np.array_equal(often[1][::2], seldom[1][::2])
+
+
+def test_steps_that_are_left_over_belong_to_the_last_prediction():
+    people, m = walkers(np.random.default_rng(2), STRAIGHT), manoeuvre(3.0)
+    gaps, conflicts, calm = assessed(STRAIGHT, people[:18], m, every=3)
+    for values in (conflicts, calm, gaps + m.distance[1:]):
+        assert values[-2:] == pytest.approx(np.repeat(values[-3], 2))
+
+
 @pytest.mark.parametrize("seed", range(15))
 @pytest.mark.parametrize("name", PATHS)
 def test_conflicts_are_people_on_a_course_into_the_ego(name, seed):
     path, g = PATHS[name], np.random.default_rng(100 + seed)
     people, m = walkers(g, path), manoeuvre(g.uniform(1.0, 6.0), g.uniform(-3.0, 1.0))
     _, conflicts, _ = assessed(path, people, m)
-    for i in range(0, N - 1, 2):
+    for i in LOOKS:
         if m.speed[i + 1] > 0.2:
             surely, perhaps = touching_courses(path, people, m, i)
             assert surely <= conflicts[i] <= surely + perhaps
@@ -132,11 +151,19 @@ def test_up_to_the_calm_speed_somebody_is_no_threat_and_beyond_it_is(seed):
 
     def threatened(i, speed):
         return any(
-            is_threat(x - FRONT - m.distance[i + 1], y, *w, speed, WIDTH / 2, DT, ALARM)
+            is_threat(
+                x - FRONT - m.distance[i + 1],
+                y,
+                *w,
+                outline(speed, DT, ALARM),
+                WIDTH / 2,
+                DT,
+                ALARM,
+            )
             for (x, y), w in zip(people[i], (people[i + 1] - people[i]) / DT, strict=True)
         )
 
-    for i in range(0, N - 1, 2):
+    for i in LOOKS:
         if np.isinf(calm[i]):
             assert not threatened(i, v)
         else:
@@ -162,7 +189,7 @@ def test_threats_outline_when_the_safety_layer_would_act():
         layer.reset()
         way, here = np.array([[0.0, 0.0, 1.0, 0.0]]), np.array([[x, y]])
         acted = layer.filter(100.0 * v, v, way, 0.1, here, w[None]).acted
-        seen[int(acted), int(is_threat(x, y, *w, v, WIDTH / 2, DT, ALARM))] += 1
+        seen[int(acted), int(is_threat(x, y, *w, outline(v, DT, ALARM), WIDTH / 2, DT, ALARM))] += 1
     assert seen[1].sum() > 300
     assert seen[1, 1] / seen[1].sum() > 0.995  # of the acts
     assert seen[0, 1] / seen[0].sum() < 0.03  # false alarms
@@ -193,6 +220,8 @@ def test_whoever_stands_where_the_safety_layer_would_act_is_a_threat(name):
 
 def foresight(**changes):
     settings = {
+        "horizon": N,
+        "time_step": DT,
         "half_width": HALF_WIDTH,
         "growth": 0.0,
         "conflict_time": CONFLICT_TIME,
@@ -202,7 +231,7 @@ def foresight(**changes):
         "safety_layer": True,
     }
     shape = VehicleShape(LENGTH, WIDTH)
-    return CrowdForesight(Predictor(SIM, DT, N), STRAIGHT, shape, **(settings | changes))
+    return CrowdForesight(plan_predictor(SIM, DT, N), STRAIGHT, shape, **(settings | changes))
 
 
 def look(ahead, *, speed=4.0):
@@ -211,6 +240,33 @@ def look(ahead, *, speed=4.0):
     poses = np.zeros((N, 1, 7))
     poses[:, :, 4:] = LENGTH / 2, LENGTH / 2, WIDTH
     ahead.look(crowd, OPEN_GROUND, poses, 0, FRONT, speed)
+
+
+def test_a_plan_is_predicted_in_steps_of_a_tenth_of_a_second():
+    for time_step, horizon, every, count in ((0.05, 60, 2, 30), (0.02, 17, 5, 3), (0.1, 8, 1, 8)):
+        made = plan_predictor(SIM, time_step, horizon)
+        assert made.time_step == pytest.approx(every * time_step)
+        assert made.horizon == count
+        assert made.law[1:3] == (pytest.approx(every * time_step), 1)
+    assert plan_predictor(SIM, 0.02, 4).horizon == 1
+
+
+def test_people_who_are_too_quick_for_such_a_step_are_predicted_in_their_own():
+    quick = replace(SIM, destination_gain=1000.0)
+    made = plan_predictor(quick, DT, N)
+    assert (made.time_step, made.horizon) == (0.1, N // 2)
+    assert made.law[1:3] == (DT, 2)
+
+
+def test_positions_are_known_at_each_step():
+    ahead = foresight()
+    look(ahead)
+    ahead.prospect(manoeuvre(4.0))
+    ahead.prefer()
+    y = np.concatenate([[-2.0], ahead.best[:, 0, 1]])
+    assert ahead.best.shape == (N, 1, 2)
+    assert y[1::2] == pytest.approx((y[:-1:2] + y[2::2]) / 2.0)
+    assert (np.diff(y) != 0.0).all()
 
 
 def test_people_answer_to_the_manoeuvre():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from controller import LongitudinalModel, ManoeuvreParameters, Planner, PlannerParameters
-from giveway.ego.foresight import CrowdForesight
+from giveway.ego.foresight import CrowdForesight, plan_predictor
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import (
@@ -15,7 +15,6 @@ from pedestrian_model import (
     Crowd,
     CrowdModel,
     DivergenceError,
-    Predictor,
     Vehicles,
 )
 
@@ -34,6 +33,8 @@ class OneByOne:
 
 def foresight(**changes):
     settings = {
+        "horizon": N,
+        "time_step": DT,
         "half_width": 1.25,
         "growth": 0.1,
         "planned_speed": True,
@@ -42,7 +43,7 @@ def foresight(**changes):
         "safety_layer": True,
     }
     return CrowdForesight(
-        Predictor(SIM, DT, N), BEND, VehicleShape(LENGTH, WIDTH), **(settings | changes)
+        plan_predictor(SIM, DT, N), BEND, VehicleShape(LENGTH, WIDTH), **(settings | changes)
     )
 
 
@@ -99,8 +100,8 @@ def test_who_has_lost_is_not_rolled_out_any_farther():
     ahead.look(crowd, OPEN_GROUND, poses(), 0, FRONT, 4.0)
     planner.plan(4.0, 0.0, 4.0, np.full(N, 30.0), ahead)
     predicted = ahead._lanes.arrays[4][0]
-    assert predicted.max() == N
-    assert (predicted[predicted >= 0] < N // 2).any()
+    assert predicted.max() == N // 2
+    assert (predicted[predicted >= 0] < N // 4).any()
 
 
 def test_a_crowd_without_a_finite_future_is_named():

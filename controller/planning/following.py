@@ -1,0 +1,163 @@
+"""From the chosen manoeuvre to a plan, in one compiled call: corridor, QP, what becomes of it."""
+
+from typing import Any
+
+import numpy as np
+
+from controller._jit import Array, kernel
+from controller.exact_solver import solve_verified
+from controller.planning.costs import add_cost_of_others, corridor, stopping_need
+from controller.planning.parameters import Weights
+from controller.planning.smoothing import fill, set_target, unfold
+
+NO_PLAN = -2  # the corridor is hard, and cannot be kept
+UNSOLVED = -1  # the exact methods did not end: OSQP has to
+_WORSE = 1e-6  # [m] by which a smoothed plan may come closer than the manoeuvre it follows
+
+Motion = tuple[Array, Array, Array]  # distance, speed, acceleration
+
+
+@kernel
+def follow(
+    state: tuple[float, float, float, float],
+    best: Motion,
+    prospect: tuple[Array, Array, Array],
+    missing: float,
+    allowed: Array,
+    lane_speeds: Array,
+    problem: tuple[Any, ...],
+    solver: tuple[Array, Array],
+    room: Array,
+    plan: Motion,
+    chosen: bool,
+    soft: bool,
+    soon: int,
+    weights: tuple[Any, ...],
+) -> tuple[int, bool, bool]:
+    """Set the QP of the smooth plan, solve it exactly, and fill the plan.
+
+    Args:
+        state: the speed [m/s], the acceleration before [m/s^2], the force before [N], the speed
+            wanted [m/s].
+        best: the manoeuvre.
+        prospect: the arrays of what it would lead to; calm speeds are confined to ``soon``.
+        missing: stopping distance that it lacks [m].
+        allowed: (N,) [m].
+        lane_speeds: (N,) [m/s]; inf: any.
+        problem: nodes, intervals, limits, rows, lower, upper, target, speeds_of, gradients.
+        solver: multipliers and solution.
+        room: (N,) [m] receives the corridor.
+        plan: filled, unless the QP has no solution or is unsolved.
+        chosen: whether the manoeuvre was searched for; else the speed wanted is aimed at.
+        soft: whether the corridor gives way.
+        soon: steps in which calm speeds are kept to.
+        weights: of the cost.
+
+    Returns:
+        The corrections of the active set, ``NO_PLAN`` or ``UNSOLVED``; whether the manoeuvre
+        itself is the plan; whether a stop stays possible beyond it if the last speed is kept.
+    """
+    speed, before, force, fastest = state
+    gap, _, calm = prospect
+    nodes, intervals, limits, rows, lower, upper, target, _, gradients = problem
+    corridor(best[0], best[1], gap, allowed, chosen, weights, room)
+    for i in range(len(calm)):
+        calm[i] = min(calm[i] if i < soon else np.inf, lane_speeds[i])
+    wanted = np.empty(len(nodes))
+    for i in range(len(nodes)):
+        wanted[i] = best[1][nodes[i]] if chosen else fastest
+    set_target(wanted, speed, before, gradients, target)
+    if not fill(speed, force, fastest, room, calm, nodes, intervals, limits, soft, lower, upper):
+        return NO_PLAN, False, False
+    corrections = solve_verified(rows, lower, upper, target, *solver)
+    if corrections < 0:
+        return UNSOLVED, False, False
+    itself, holds = unfold_and_judge(
+        speed, best, prospect, missing, allowed, problem, solver[1], plan, chosen, weights
+    )
+    return corrections, itself, holds
+
+
+@kernel
+def unfold_and_judge(
+    speed: float,
+    best: Motion,
+    prospect: tuple[Array, Array, Array],
+    missing: float,
+    allowed: Array,
+    problem: tuple[Any, ...],
+    solution: Array,
+    plan: Motion,
+    chosen: bool,
+    weights: tuple[Any, ...],
+) -> tuple[bool, bool]:
+    """Fill the plan from the QP's solution; the manoeuvre itself where that comes less close.
+
+    The arguments are those of :func:`follow`, as are the last two that it returns.
+    """
+    nodes, limits, speeds_of = problem[0], problem[2], problem[7]
+    n = len(solution)
+    at_nodes = np.empty(n)
+    for i in range(n):
+        value = 0.0
+        for j in range(n):
+            value += speeds_of[i, j] * solution[j]
+        at_nodes[i] = value
+    unfold(speed, at_nodes, nodes, limits[0], *plan)
+    closer = chosen and missing_of(plan, best, prospect, allowed, weights) > missing + _WORSE
+    if closer:
+        return True, take_over(best, plan, prospect, limits[0], weights)
+    return False, may_hold(plan, best, prospect, limits[0], weights)
+
+
+@kernel
+def take_over(
+    best: Motion,
+    plan: Motion,
+    prospect: tuple[Array, Array, Array],
+    time_step: float,
+    weights: tuple[Any, ...],
+) -> bool:
+    """Fill the plan with the manoeuvre; whether a stop stays possible beyond it."""
+    plan[0][:], plan[1][:], plan[2][:] = best[0], best[1], best[2]
+    return may_hold(plan, best, prospect, time_step, weights)
+
+
+@kernel
+def missing_of(
+    plan: Motion,
+    best: Motion,
+    prospect: tuple[Array, Array, Array],
+    allowed: Array,
+    weights: tuple[Any, ...],
+) -> float:
+    """The longest stopping distance [m] that a plan lacks, people doing as under the manoeuvre."""
+    gap, conflicts, calm = prospect
+    others, missing = 0.0, 0.0
+    for i in range(len(gap)):
+        others, missing = add_cost_of_others(
+            others,
+            missing,
+            plan[1][i + 1],
+            gap[i] + best[0][i + 1] - plan[0][i + 1],
+            conflicts[i],
+            calm[i],
+            plan[0][i + 1] - allowed[i],
+            weights,
+        )
+    return missing
+
+
+@kernel
+def may_hold(
+    plan: Motion,
+    best: Motion,
+    prospect: tuple[Array, Array, Array],
+    time_step: float,
+    weights: tuple[Any, ...],
+) -> bool:
+    """Whether a stop stays possible if the plan's last speed is kept on."""
+    v = plan[1][-1]
+    gap = prospect[0][-1] + best[0][-1] - plan[0][-1]
+    holds: bool = gap - time_step * v >= stopping_need(v, Weights(*weights))
+    return holds
