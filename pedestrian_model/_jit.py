@@ -83,6 +83,19 @@ def _add_block(_typing: Any, to_array: Any, to: Any, array: Any, at: Any) -> Any
     return types.void(to_array, to, array, at), generate
 
 
+def _borrow(_typing: Any, array: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        seen = context.make_array(signature.args[0])(context, builder, arguments[0])
+        seen.meminfo = ir.Constant(seen.meminfo.type, None)
+        seen.parent = ir.Constant(seen.parent.type, None)
+        return seen._getvalue()
+
+    return array(array), generate
+
+
+#: The same array without a count of its users, for kernels that hand many arrays on and on: each
+#: time would change each count. Only for arrays that somebody else keeps as long.
+borrowed = cast("Callable[[NDArray[Any]], NDArray[Any]]", intrinsic(_borrow))
 #: a * b + c, rounded once: one instruction, and the same result wherever it runs.
 fma = cast("Callable[[float, float, float], float]", intrinsic(_fma))
 #: The bits of a float64 as an int64.

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from pedestrian_model._cells import add_near_pairs
 from pedestrian_model._detour import detour
-from pedestrian_model._jit import fma, inlined
+from pedestrian_model._jit import borrowed, fma, inlined
 from pedestrian_model._ring import add_all_pairs
 from pedestrian_model._routes import Routes, set_targets
 from pedestrian_model._rows import (
@@ -190,5 +190,16 @@ def march(
 @inlined
 def parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
     """What Python has handed over as one plain tuple, by name."""
-    scene = Scene(arrays[3], arrays[4], Routes(*arrays[5:9]), *arrays[9:12])
-    return State(*arrays[:3]), scene, Scratch(*arrays[12:])
+    routes = Routes(
+        borrowed(arrays[5]), borrowed(arrays[6]), borrowed(arrays[7]), borrowed(arrays[8])
+    )
+    closed, walls, cells = borrowed(arrays[9]), borrowed(arrays[10]), borrowed(arrays[11])
+    scene = Scene(borrowed(arrays[3]), borrowed(arrays[4]), routes, closed, walls, cells)
+    state = State(borrowed(arrays[0]), borrowed(arrays[1]), borrowed(arrays[2]))
+    return (
+        state,
+        scene,
+        Scratch(
+            borrowed(arrays[12]), borrowed(arrays[13]), borrowed(arrays[14]), borrowed(arrays[15])
+        ),
+    )

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pedestrian_model._constants import pack
-from pedestrian_model._jit import inlined, kernel
+from pedestrian_model._jit import borrowed, inlined, kernel
 from pedestrian_model._rows import Arrays, Scratch, Workspace
 from pedestrian_model._step import FINE, Scene, State, march, parts
 from pedestrian_model.crowd import Crowd
@@ -155,12 +155,12 @@ def start(arrays: Arrays) -> tuple[Ahead, Scene, Scratch]:
         arrays: those of :meth:`Predictor.arrays`.
     """
     state, scene, scratch = parts(arrays[:-4])
-    ahead = State(*arrays[-4:-1])
+    ahead = State(borrowed(arrays[-4]), borrowed(arrays[-3]), borrowed(arrays[-2]))
     for i in range(state.position.shape[0]):
         ahead.position[i, 0], ahead.position[i, 1] = state.position[i, 0], state.position[i, 1]
         ahead.velocity[i, 0], ahead.velocity[i, 1] = state.velocity[i, 0], state.velocity[i, 1]
         ahead.waypoint_index[i] = state.waypoint_index[i]
-    return Ahead(ahead, arrays[-1]), scene, scratch
+    return Ahead(ahead, borrowed(arrays[-1])), scene, scratch
 
 
 @inlined
