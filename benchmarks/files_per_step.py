@@ -46,6 +46,7 @@ def files_of(scenario: str, controller: str) -> list[str]:
     settings = {"scenario": scenario, "controller": controller, "time_limit": 20.0}
     if scenario == "shared_space":
         settings["crowd"] = {"pedestrians": 30}
+    giveway.run(settings)  # loads the machine code that is first needed in the midst of a run
     watcher = StepFiles()
     try:
         giveway.run(settings, watcher=watcher)
