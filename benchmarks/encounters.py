@@ -66,7 +66,7 @@ def examine(task: Task) -> Found:
 @styled
 def picture(seed: int) -> Figure:
     """The crowds of a seed at departure, where they walk in two seconds, and the ego."""
-    figure = Figure(figsize=(10.0, 4.2), layout="constrained")
+    figure = Figure(figsize=(10.0, 3.9), layout="compressed")
     panels = figure.subplots(1, len(DENSITIES), sharex=True, sharey=True)
     for axes, (name, people) in zip(panels, DENSITIES.items(), strict=True):
         config = {

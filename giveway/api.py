@@ -43,6 +43,7 @@ from giveway.results.folder import (
 from giveway.results.provenance import manifest
 from giveway.results.run_result import RunResult
 from giveway.sumo.library import is_refusal
+from giveway.sumo.road_marks import road_marks
 from pedestrian_model import PedestrianModelError
 from sumo_scenarios import Scenario
 
@@ -357,6 +358,7 @@ def _result(
         ),
         sumo_messages=parts.sumo.messages,
         road=parts.sumo.lanes.areas(),
+        marks=road_marks(parts.sumo.lanes),
         remarks=remarks,
     )
 

@@ -33,18 +33,16 @@ def influence_figure(
     *,
     speeds: Sequence[float] = (0.0, 1.0, 2.0, 4.0),
     shape: VehicleShape | None = None,
-    centre: tuple[float, float] = (15.0, 15.0),
     title: str = "Vehicle influence on a standing pedestrian",
 ) -> Figure:
     """Magnitude (contours) and direction (arrows) of f_v around the vehicle, a panel per speed.
 
-    Figure 2 of Yang & Özgüner 2019: the vehicle's centre at (15, 15), heading along +x.
+    Figure 2 of Yang & Özgüner 2019, seen from the vehicle: x ahead of its centre, y to its left.
 
     Args:
-        influence: the model; its vehicle must stand at ``centre`` with heading 0.
+        influence: the model; its vehicle's centre must be at (0, 0), its heading 0.
         speeds: of the vehicle [m/s].
         shape: the vehicle's rectangle; the paper's 5 m x 2 m if left out.
-        centre: of the rectangle [m].
         title: of the whole figure.
 
     Raises:
@@ -55,8 +53,8 @@ def influence_figure(
     shape = shape or VehicleShape()
     ahead = FRONT_MARGIN + FRONT_MARGIN_PER_SPEED * max(abs(speed) for speed in speeds)
     behind = ahead if min(speeds) < 0.0 else REAR_MARGIN
-    x = (centre[0] - shape.length / 2 - behind, centre[0] + shape.length / 2 + ahead)
-    y = (centre[1] - shape.width / 2 - SIDE_MARGIN, centre[1] + shape.width / 2 + SIDE_MARGIN)
+    x = (-shape.length / 2 - behind, shape.length / 2 + ahead)
+    y = (-shape.width / 2 - SIDE_MARGIN, shape.width / 2 + SIDE_MARGIN)
 
     columns = min(len(speeds), 2)
     rows = -(-len(speeds) // columns)
@@ -64,11 +62,11 @@ def influence_figure(
     height = 0.9 * panel * (y[1] - y[0]) / (x[1] - x[0]) + 0.4
     figure = Figure(figsize=(columns * panel + 1.1, rows * height + 0.7), layout="compressed")
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    panels = keep_panels(grid, len(speeds))
+    panels = keep_panels(grid, len(speeds), x="ahead of its centre [m]", y="to its left [m]")
     for axes, speed in zip(panels, speeds, strict=True):
         contours, lines = _draw_magnitude(axes, influence, speed, x, y)
-        arrows = _draw_arrows(axes, influence, speed, x, y, shape, centre)
-        _draw_vehicle(axes, shape, centre)
+        arrows = _draw_arrows(axes, influence, speed, x, y, shape)
+        _draw_vehicle(axes, shape)
         axes.set(aspect="equal", xlim=x, ylim=y, title=f"{speed:g} m/s")
     bar = figure.colorbar(contours, ax=panels, label="Magnitude [N]", shrink=0.9, aspect=30)
     bar.add_lines(lines)
@@ -119,15 +117,14 @@ def _draw_arrows(
     x: tuple[float, float],
     y: tuple[float, float],
     shape: VehicleShape,
-    centre: tuple[float, float],
 ) -> Quiver:
     xs = np.arange(x[0] + ARROW_SPACING / 2, x[1], ARROW_SPACING)
-    half = np.arange(ARROW_SPACING / 2, y[1] - centre[1], ARROW_SPACING)
-    ys = centre[1] + np.concatenate((-half[::-1], half))  # as many to the left as to the right
+    half = np.arange(ARROW_SPACING / 2, y[1], ARROW_SPACING)
+    ys = np.concatenate((-half[::-1], half))  # as many to the left as to the right
     across, up = np.meshgrid(xs, ys)
     force = _sample(influence, speed, xs, ys)
     magnitude = np.linalg.norm(force, axis=2)
-    outside = (abs(across - centre[0]) > shape.length / 2) | (abs(up - centre[1]) > shape.width / 2)
+    outside = (abs(across) > shape.length / 2) | (abs(up) > shape.width / 2)
     shown = outside & (magnitude >= FAINTEST_ARROW)
     arrows = force[shown] * np.minimum(1.0, LONGEST_ARROW / magnitude[shown])[:, None]
     return axes.quiver(
@@ -137,8 +134,8 @@ def _draw_arrows(
     )  # fmt: skip
 
 
-def _draw_vehicle(axes: Axes, shape: VehicleShape, centre: tuple[float, float]) -> None:
-    corner = (centre[0] - shape.length / 2, centre[1] - shape.width / 2)
+def _draw_vehicle(axes: Axes, shape: VehicleShape) -> None:
+    corner = (-shape.length / 2, -shape.width / 2)
     axes.add_patch(
         Rectangle(corner, shape.length, shape.width, facecolor="#404040", edgecolor=BLACK, zorder=4)
     )

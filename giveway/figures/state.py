@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from numpy.typing import NDArray
 
 from giveway.figures.style import (
     BLACK,
@@ -29,14 +30,30 @@ from giveway.figures.style import (
 )
 from giveway.records.tracks import EgoTrack
 
-VEHICLE: dict[str, Any] = {"color": GREY, "linewidth": 1.2, "label": "distance to vehicle"}
-STOP: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "label": "distance to its next stop"}
+VEHICLE: dict[str, Any] = {"color": GREY, "linewidth": 1.4, "label": "to a vehicle"}
+STOP: dict[str, Any] = {"color": PURPLE, "linewidth": 1.8, "label": "to its next stop"}
+STOP_LINE: dict[str, Any] = {
+    "color": BLACK, "linewidth": 0.9, "linestyle": (0, (1, 2)), "label": "to a stop line",
+}  # fmt: skip
+WAITS = {
+    "light": (VERMILION, "stands at a red light"),
+    "yield": (PURPLE, "stands to yield"),
+    "person": (GREEN, "stands for a person"),
+    "vehicle": (GREY, "stands behind a vehicle"),
+    "stop": (BLACK, "scheduled stop"),
+    "plan": (SKY_BLUE, "stands, people expected"),
+    "none": (ORANGE, "stands, nothing in front"),
+}
+FASTEST_WALK = 3.0  # [m/s] along the way; a gap that changes faster is somebody else's
+FASTEST_VEHICLE = 60.0  # [m/s]; likewise
 # Colour and opacity of a phase.
 SHADES = {"mpc": (SKY_BLUE, 0.14), "pid": (ORANGE, 0.28), "safety": (PURPLE, 0.40)}
 NAMES = {"mpc": "MPC acts", "pid": "PID acts", "safety": "safety layer acts"}
 DASHES = (0, (4, 2))
 DOTS = (0, (1, 2))
-LEAST_DISTANCE_SHOWN = 40.0  # [m] to a vehicle or a light are shown at least
+FARTHEST_SHOWN = 40.0  # [m] of the distances to vehicles and stops
+RESOLUTION = 1e-3  # [m] of distances on record, generously
+SHOWN_ALWAYS = 3  # panels
 SINGLE_INSTANT = 0.5  # [s] shown to either side of a run of one instant
 
 
@@ -46,14 +63,19 @@ def state_figure(
     *,
     safe_distance: float,
     buffer_distance: float,
+    stop_lines: Sequence[float] = (),
     title: str = "",
 ) -> Figure:
     """Speed, gap and force of one run, or of several side by side on the same scales.
+
+    Where there are vehicles, stops or stop lines, a panel of its own has the distances to them. A
+    bar above the speed says what the ego stands for.
 
     Args:
         runs: the ego's track, or pairs of a label and a track.
         safe_distance: d_safe [m], drawn into the gap's panel.
         buffer_distance: d_buffer [m], drawn on top of it; 0: not.
+        stop_lines: positions [m] of the front bumper, as in the track, at which lights hold it.
         title: of the whole figure.
 
     Raises:
@@ -62,28 +84,36 @@ def state_figure(
     columns = [("", runs)] if isinstance(runs, EgoTrack) else list(runs)
     if not columns or any(not ego.time.size for _, ego in columns):
         raise ValueError("state figure: a run has no instants; pass tracks of at least one")
-    figure = NotebookFigure(figsize=(4.2 + 3.8 * len(columns), 6.2), layout="constrained")
-    grid = figure.subplots(3, len(columns), sharex=True, sharey="row", squeeze=False)
+    egos = [ego for _, ego in columns]
+    far = bool(stop_lines) or any(
+        np.isfinite((ego.vehicle_gap, ego.stop_gap)).any() for ego in egos
+    )
+    names = ["Speed [m/s]", "Gap to closest pedestrian\nin front [m]"]
+    names += ["Distance\nalong the way [m]"] * far + ["Force [kN]"]
+    figure = NotebookFigure(
+        figsize=(4.2 + 3.8 * len(columns), 6.2 + 1.6 * far), layout="constrained"
+    )
+    grid = figure.subplots(len(names), len(columns), sharex=True, sharey="row", squeeze=False)
     for column, (label, ego) in enumerate(columns):
-        speed, gap, force = grid[:, column]
-        for axes in (speed, gap, force):
+        for axes in grid[:, column]:
             shade_phases(axes, ego)
             quiet_grid(axes)
-        _draw_speed(speed, ego)
-        _draw_gap(gap, ego, safe_distance, buffer_distance)
-        draw_force(force, ego)
-        speed.set_title(label)
-        force.set_xlabel("Time [s]")
-    _scale(grid, [ego for _, ego in columns], safe_distance + buffer_distance)
+        _draw_speed(grid[0, column], ego)
+        draw_gap(grid[1, column], ego, safe_distance, buffer_distance)
+        if far:
+            _draw_distances(grid[2, column], ego, stop_lines)
+        draw_force(grid[-1, column], ego)
+        grid[0, column].set_title(label)
+        grid[-1, column].set_xlabel("Time [s]")
+    _scale(grid, egos, safe_distance + buffer_distance)
+    for column, ego in enumerate(egos):
+        _draw_waits(grid[0, column], ego)
     _name_distances(grid[1, -1], safe_distance, buffer_distance)
-    for axes, name in zip(
-        grid[:, 0], ("Speed [m/s]", "Gap to closest pedestrian\nin front [m]", "Force [kN]"),
-        strict=True,
-    ):  # fmt: skip
+    for axes, name in zip(grid[:, 0], names, strict=True):
         axes.set_ylabel(name)
     figure.align_ylabels(grid[:, 0])
     figure.suptitle(title)
-    figure.legend(handles=_legend([ego for _, ego in columns]), loc="outside lower center", ncols=6)
+    figure.legend(handles=_legend(egos, bool(stop_lines)), loc="outside lower center", ncols=4)
     return figure
 
 
@@ -122,23 +152,74 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
     axes.plot(ego.time, ego.speed, color=BLUE, label="speed", marker=_marker(ego), zorder=3)
 
 
-def _draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: float) -> None:
+def draw_gap(axes: Axes, ego: EgoTrack, safe_distance: float, buffer_distance: float) -> None:
+    """The gap to whoever is in front, one stroke for each person, and the safe distances."""
     draw_safe_distances(axes, safe_distance, buffer_distance)
-    pedestrian_in_front = np.isfinite(ego.gap)
-    if not pedestrian_in_front.any():
+    if not np.isfinite(ego.gap).any():
         axes.text(
             0.5, 0.25, "nobody in front", transform=axes.transAxes, ha="center", color=GREY
         )  # fmt: skip
-    gap = np.where(pedestrian_in_front, ego.gap, np.nan)
-    axes.plot(ego.time, gap, color=GREEN, label="gap", zorder=3)
-    # A single instant with a pedestrian in front has no line: it is drawn as a point.
-    around = np.concatenate(([False], pedestrian_in_front, [False]))
-    alone = pedestrian_in_front & ~around[:-2] & ~around[2:]
-    axes.plot(ego.time[alone], gap[alone], ".", color=GREEN, markersize=4, zorder=3)
-    for distance, look in ((ego.vehicle_gap, VEHICLE), (ego.stop_gap, STOP)):
+    time, gap = strokes(ego, ego.gap, FASTEST_WALK)
+    axes.plot(time, gap, color=GREEN, label="gap", zorder=3)
+    # A single instant has no line: it is drawn as a point.
+    around = np.concatenate(([False], np.isfinite(gap), [False]))
+    alone = around[1:-1] & ~around[:-2] & ~around[2:]
+    axes.plot(time[alone], gap[alone], ".", color=GREEN, markersize=4, zorder=3)
+
+
+def strokes(
+    ego: EgoTrack, distance: NDArray[np.float64], fastest: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Times and distances [m] to draw, with nan wherever another one is in front from there on.
+
+    Args:
+        ego: whose the distances are.
+        distance: (T,) [m] to what is in front; inf: nothing.
+        fastest: [m/s] at which one and the same may move along the way.
+    """
+    known = np.where(np.isfinite(distance), distance, np.nan)
+    elapsed = np.diff(ego.time)
+    moved = np.diff(known) + np.diff(ego.position)  # of what is in front, along the way
+    other = np.flatnonzero(np.abs(moved) > fastest * elapsed + RESOLUTION) + 1
+    return np.insert(ego.time, other, np.nan), np.insert(known, other, np.nan)
+
+
+def _draw_distances(axes: Axes, ego: EgoTrack, stop_lines: Sequence[float]) -> None:
+    """How far it is to the vehicle in front, to where it has to stop, and to stop lines."""
+    axes.axhline(0.0, color=GREY, linewidth=0.8)
+    for distance, fastest, look in (
+        (ego.vehicle_gap, FASTEST_VEHICLE, VEHICLE),
+        (ego.stop_gap, 0.0, STOP),
+    ):
         if np.isfinite(distance).any():
-            there = np.where(np.isfinite(distance), distance, np.nan)
-            axes.plot(ego.time, there, zorder=2.5, **look)
+            axes.plot(*strokes(ego, distance, fastest), zorder=2.5, **look)
+    for position in stop_lines:
+        left = position - ego.position
+        axes.plot(ego.time, np.where(left >= -0.5, left, np.nan), zorder=2.4, **STOP_LINE)
+
+
+def waits(ego: EgoTrack) -> list[tuple[str, float, float]]:
+    """What the ego stood for from when to when [s], one entry per uninterrupted wait."""
+    edges = np.flatnonzero(ego.waits_for[1:] != ego.waits_for[:-1]) + 1
+    starts = np.concatenate(([0], edges))
+    ends = np.append(edges, ego.time.size - 1)
+    return [
+        (str(ego.waits_for[start]), float(ego.time[start]), float(ego.time[end]))
+        for start, end in zip(starts, ends, strict=True)
+        if ego.waits_for[start] in WAITS
+    ]
+
+
+def _draw_waits(axes: Axes, ego: EgoTrack) -> None:
+    """A bar along the panel's upper edge wherever the ego stands, in the colour of the cause."""
+    found = waits(ego)
+    if not found:
+        return
+    for name, start, end in found:
+        axes.plot(
+            (start, end), (0.965, 0.965), transform=axes.get_xaxis_transform(), linewidth=5.0,
+            color=WAITS[name][0], solid_capstyle="butt", label=name, zorder=3.5,
+        )  # fmt: skip
 
 
 def draw_safe_distances(axes: Axes, safe_distance: float, buffer_distance: float) -> None:
@@ -164,15 +245,15 @@ def _marker(ego: EgoTrack) -> str:
     return "o" if ego.time.size == 1 else ""
 
 
-def _scale(grid: np.ndarray, egos: Sequence[EgoTrack], distance: float) -> None:
+def _scale(grid: NDArray[Any], egos: Sequence[EgoTrack], distance: float) -> None:
     """One scale for all runs, zero always on it, so that heights can be compared."""
     scale_time_and_speed(grid[0, 0], egos)
     gaps = np.concatenate([ego.gap[np.isfinite(ego.gap)] for ego in egos])
-    others = any(np.isfinite((ego.vehicle_gap, ego.stop_gap)).any() for ego in egos)
-    nearest = gaps.min(initial=0.0)
-    farthest = gaps.max(initial=max(distance, LEAST_DISTANCE_SHOWN) if others else distance)
-    grid[1, 0].set_ylim(1.1 * nearest, 1.1 * farthest)
-    scale_force(grid[2, 0], egos)
+    grid[1, 0].set_ylim(1.1 * gaps.min(initial=0.0), 1.1 * gaps.max(initial=distance))
+    if len(grid) > SHOWN_ALWAYS:
+        # What stands at a stop line is at 0: there has to be room below.
+        grid[2, 0].set_ylim(-0.06 * FARTHEST_SHOWN, FARTHEST_SHOWN)
+    scale_force(grid[-1, 0], egos)
 
 
 def scale_force(axes: Axes, egos: Sequence[EgoTrack]) -> None:
@@ -190,7 +271,8 @@ def scale_time_and_speed(axes: Axes, egos: Sequence[EgoTrack]) -> None:
     margin = SINGLE_INSTANT if end == start else 0.0
     fastest = max(max(ego.speed.max(), ego.reference_speed.max()) for ego in egos)
     axes.set_xlim(start - margin, end + margin)
-    axes.set_ylim(0.0, 1.1 * max(fastest, 1.0))
+    room = 1.2 if any(waits(ego) for ego in egos) else 1.1  # for the bars of waits
+    axes.set_ylim(0.0, room * max(fastest, 1.0))
 
 
 def _name_distances(axes: Axes, safe_distance: float, buffer_distance: float) -> None:
@@ -206,7 +288,7 @@ def _name_distances(axes: Axes, safe_distance: float, buffer_distance: float) ->
         )  # fmt: skip
 
 
-def _legend(egos: Sequence[EgoTrack]) -> list[Artist]:
+def _legend(egos: Sequence[EgoTrack], stop_lines: bool) -> list[Artist]:
     handles: list[Artist] = [
         Line2D([], [], color=BLUE, label="speed"),
         Line2D([], [], color=BLACK, linewidth=0.9, linestyle=DASHES, label="reference speed"),
@@ -216,6 +298,14 @@ def _legend(egos: Sequence[EgoTrack]) -> list[Artist]:
     for name, look in (("vehicle_gap", VEHICLE), ("stop_gap", STOP)):
         if any(np.isfinite(getattr(ego, name)).any() for ego in egos):
             handles.append(Line2D([], [], **look))
+    if stop_lines:
+        handles.append(Line2D([], [], **STOP_LINE))
+    stood = {name for ego in egos for name, _, _ in waits(ego)}
+    handles += [
+        Line2D([], [], color=colour, linewidth=5.0, solid_capstyle="butt", label=label)
+        for name, (colour, label) in WAITS.items()
+        if name in stood
+    ]
     return [*handles, *phase_handles(egos)]
 
 

@@ -16,7 +16,7 @@ from giveway.figures.state import (
     DASHES,
     DOTS,
     draw_force,
-    draw_safe_distances,
+    draw_gap,
     phase_handles,
     scale_force,
     scale_time_and_speed,
@@ -64,7 +64,7 @@ def pair_figure(sides: Sequence[PairSide], *, title: str = "") -> Figure:
             quiet_grid(axes)
             shade_phases(axes, side.ego)
         _draw_speed(speed, side.ego)
-        _draw_gap(gap, side)
+        draw_gap(gap, side.ego, side.safe_distance, side.buffer_distance)
         draw_force(force, side.ego)
         speed.set_title(wrapped(side.label, 50))
         force.set_xlabel("Time [s]")
@@ -84,16 +84,6 @@ def _draw_speed(axes: Axes, ego: EgoTrack) -> None:
         label="reference speed", zorder=3,
     )  # fmt: skip
     axes.plot(ego.time, ego.speed, color=BLUE, label="speed", zorder=4)
-
-
-def _draw_gap(axes: Axes, side: PairSide) -> None:
-    draw_safe_distances(axes, side.safe_distance, side.buffer_distance)
-    gap = np.where(np.isfinite(side.ego.gap), side.ego.gap, np.nan)
-    axes.plot(side.ego.time, gap, color=GREEN, label="gap", zorder=3)
-    if not np.isfinite(gap).any():
-        axes.text(
-            0.5, 0.2, "nobody in front", transform=axes.transAxes, ha="center", color=GREY
-        )  # fmt: skip
 
 
 def _scale(grid: np.ndarray, sides: Sequence[PairSide]) -> None:

@@ -3,13 +3,24 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
+from matplotlib.transforms import Bbox
 
 from giveway.figures.study_rows import with_unit, wrapped
 from giveway.figures.style import GREY, quiet_grid, styled
 
 SAME_PLACE = 0.05  # of the picture's width and height
+DOT = 4.0  # [pt] half of what a point takes up
+PLACES: tuple[tuple[tuple[float, float], str], ...] = tuple(
+    ((sign * across, up), side)
+    for reach in (1, 2, 4)
+    for up in (5.0 * reach, -5.0 * reach - 7.0)
+    for sign, side, across in ((1, "left", 5.0), (-1, "right", 5.0))
+)
+"""Offsets [pt] of a name from its point, and how it is aligned there, the best first."""
 
 
 @dataclass(frozen=True)
@@ -70,11 +81,13 @@ def tradeoff_figure(
         axes.plot((point.x, point.x), point.y_interval, color=colour, linewidth=1.4, zorder=2)
         axes.plot(point.x, point.y, "o", color=colour, markersize=6, zorder=3, label=point.level)
     if len(contexts) > 1:
-        for (x, y), text in tags(points):
+        named = [
             axes.annotate(
-                wrapped(text), (x, y), (5, 5), textcoords="offset points", fontsize=7,
+                wrapped(text), place, PLACES[0][0], textcoords="offset points", fontsize=7,
                 color="#505050", zorder=4,
-            )  # fmt: skip
+            )
+            for place, text in tags(points)
+        ]  # fmt: skip
     axes.set_xlabel(with_unit(*x_label))
     axes.set_ylabel(with_unit(*y_label))
     axes.margins(0.08)
@@ -85,7 +98,40 @@ def tradeoff_figure(
     ]
     figure.suptitle(title)
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 3))
+    if len(contexts) > 1:
+        _move_apart(figure, axes, named, points)
     return figure
+
+
+def _move_apart(
+    figure: Figure, axes: Axes, named: Sequence[Annotation], points: Sequence[TradeOffPoint]
+) -> None:
+    """Have each name stand at the first of ``PLACES`` that is free of names and points."""
+    figure.draw_without_rendering()  # now the layout is known
+    dot = figure.dpi / 72.0 * DOT
+    centres = axes.transData.transform([(point.x, point.y) for point in points])
+    taken = [Bbox.from_bounds(x - dot, y - dot, 2 * dot, 2 * dot) for x, y in centres]
+    frame = axes.get_window_extent()
+    for name in named:
+        best: tuple[float, int, Bbox] | None = None
+        for number, (offset, side) in enumerate(PLACES):
+            name.set(position=offset, horizontalalignment=side)
+            box = name.get_window_extent()
+            covered = sum(_common(box, other) for other in taken)
+            outside = box.width * box.height - _common(box, frame)
+            cost = covered + outside
+            if best is None or cost < best[0] - 1e-6:
+                best = cost, number, box
+        assert best is not None
+        offset, side = PLACES[best[1]]
+        name.set(position=offset, horizontalalignment=side)
+        taken.append(best[2])
+
+
+def _common(one: Bbox, other: Bbox) -> float:
+    """The area that two boxes share [px^2]."""
+    both = Bbox.intersection(one, other)
+    return 0.0 if both is None else float(both.width * both.height)
 
 
 def tags(points: Sequence[TradeOffPoint]) -> list[tuple[tuple[float, float], str]]:

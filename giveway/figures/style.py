@@ -106,15 +106,17 @@ def quiet_grid(axes: Axes) -> None:
     axes.grid(color=BLACK, alpha=0.08, linewidth=0.7)
 
 
-def keep_panels(grid: NDArray[Any], count: int) -> list[Axes]:
+def keep_panels(
+    grid: NDArray[Any], count: int, *, x: str = "x [m]", y: str = "y [m]"
+) -> list[Axes]:
     """The first ``count`` map panels of a grid with shared axes, labelled along its outside."""
     columns = grid.shape[1]
     panels: list[Axes] = list(grid.flat)
     for axes in panels[count:]:
         axes.remove()
     for axes in panels[:count:columns]:
-        axes.set_ylabel("y [m]")
+        axes.set_ylabel(y)
     for axes in panels[max(count - columns, 0) : count]:  # nothing is below these
-        axes.set_xlabel("x [m]")
+        axes.set_xlabel(x)
         axes.tick_params(labelbottom=True)
     return panels[:count]

@@ -6,18 +6,19 @@ After the screenshots figure of Yang & Özgüner 2019 (section 5).
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
-from matplotlib.colors import Normalize
+from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
 from giveway.figures.conflict_points import Conflict, mark_conflicts
+from giveway.figures.road import Road, draw_marks, draw_road, states_at
 from giveway.figures.style import (
     BLACK,
     GREY,
-    LIGHT_GREY,
     VERMILION,
     NotebookFigure,
     keep_panels,
@@ -26,12 +27,11 @@ from giveway.figures.style import (
 from giveway.figures.view import Box
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.groups import PedestrianGroups
-from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack
+from giveway.records.road_marks import UNMARKED, RoadMarks
+from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, SignalTrack
 
-Road = Sequence[NDArray[np.float64]]
-"""Lines (k, 2) [m] to draw underneath; one that ends where it starts is a filled area."""
-
-TIME_COLOURS = "viridis"
+TIME_COLOURS = ListedColormap(colormaps["plasma"](np.linspace(0.0, 0.61, 256)), "time")
+"""Its last third is too light for a line on white."""
 SNAPSHOTS = 6
 ENCOUNTER = 10.0  # [m] snapshots show the time in which a pedestrian is this close to the ego
 MARGIN = 2.0  # [m] around all trajectories
@@ -54,6 +54,8 @@ def top_view_figure(
     times: Sequence[float] | None = None,
     background: BackgroundTrack | None = None,
     road: Road | None = None,
+    marks: RoadMarks = UNMARKED,
+    signals: SignalTrack | None = None,
     conflicts: Sequence[Conflict] = (),
     title: str = "",
 ) -> Figure:
@@ -64,11 +66,14 @@ def top_view_figure(
         crowd: the crowd's track; may be empty.
         shape: the ego's rectangle.
         body_radius: radius of a pedestrian [m].
-        times: of the snapshots [s], each taken at the nearest control instant; left out: six,
-            evenly over the time in which a pedestrian is within 10 m of the ego.
+        times: of the snapshots [s], each taken at the nearest control instant; left out: six over
+            the time in which a pedestrian is within 10 m of the ego, one of them at the closest
+            approach and the others evenly.
         background: other vehicles, drawn in the snapshots; from their latest instant on they are
             taken to drive straight on.
         road: areas and lines to draw underneath.
+        marks: crossings and stop lines.
+        signals: the lights' states; in a snapshot stop lines have the colour of the instant.
         conflicts: marked among the trajectories.
         title: of the whole figure.
 
@@ -77,7 +82,8 @@ def top_view_figure(
     """
     if not ego.time.size:
         raise ValueError("top view: the run has no instants; pass tracks of at least one")
-    steps = _encounter(ego, crowd) if times is None else _nearest_steps(ego, times)
+    closest = closest_approach(ego, crowd, shape)
+    steps = _encounter(ego, crowd, closest) if times is None else _nearest_steps(ego, times)
     corners = np.array([rectangle(ego, k, shape) for k in range(ego.time.size)])
     places = np.column_stack((crowd.x, crowd.y))
     whole = Box.around(np.concatenate((corners.reshape(-1, 2), places)), MARGIN)
@@ -90,7 +96,8 @@ def top_view_figure(
     figure, overview, panels = _arrange(whole, parts)
     colours = _colours(ego.time)
     road = [line for line in road or () if whole.touches(line)]
-    _draw_road(overview, road)
+    draw_road(overview, road)
+    draw_marks(overview, marks, None, whole)
     lines = _draw_pedestrian_trajectories(overview, ego.time, crowd, colours)
     _draw_ego_trajectory(overview, ego, colours)
     mark_conflicts(overview, conflicts)
@@ -105,12 +112,14 @@ def top_view_figure(
     )
     figure.colorbar(lines, ax=overview, label="Time [s]", shrink=0.8, aspect=30)
     for axes, k, part in zip(panels, steps, parts, strict=True):
-        _draw_road(axes, [line for line in road if part.touches(line)])
+        draw_road(axes, [line for line in road if part.touches(line)])
+        draw_marks(axes, marks, states_at(signals, float(ego.time[k])), part)
         if background is not None:
             _draw_background(axes, float(ego.time[k]), background)
         _draw_scene(axes, k, corners[k], crowd, body_radius)
         part.apply(axes)
-        axes.set_title(f"t = {ego.time[k]:.2f} s", fontsize=9)
+        told = ", closest approach" if k == closest else ""
+        axes.set_title(f"t = {ego.time[k]:.2f} s{told}", fontsize=9)
     figure.suptitle(title)
     return figure
 
@@ -138,7 +147,7 @@ def crowd_view_figure(
         layout="constrained", figsize=(height / whole.aspect + 1.6, height + 0.8)
     )
     axes = figure.subplots()
-    _draw_road(axes, [line for line in road or () if whole.touches(line)])
+    draw_road(axes, [line for line in road or () if whole.touches(line)])
     lines = _draw_pedestrian_trajectories(axes, time, crowd, _colours(time))
     whole.apply(axes)
     axes.set(xlabel="x [m]", ylabel="y [m]", title="Trajectories, begun at the circles")
@@ -167,14 +176,36 @@ def _corners(
     return np.asarray(turned + front, dtype=np.float64)
 
 
-def _encounter(ego: EgoTrack, crowd: CrowdTrack) -> NDArray[np.int64]:
-    """Instants spread evenly over the encounter, or over the run if no pedestrian came close."""
+def closest_approach(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape) -> int | None:
+    """The first instant at which a pedestrian is closest to the ego's body; None: nobody is there.
+
+    Somebody inside the rectangle is the closer the deeper.
+    """
+    if not crowd.x.size:
+        return None
+    step = crowd.step
+    cos, sin = np.cos(ego.heading[step]), np.sin(ego.heading[step])
+    x, y = crowd.x - ego.front_x[step], crowd.y - ego.front_y[step]
+    along = np.abs(x * cos + y * sin + shape.length / 2) - shape.length / 2
+    aside = np.abs(y * cos - x * sin) - shape.width / 2
+    beyond = np.hypot(np.maximum(along, 0.0), np.maximum(aside, 0.0))
+    return int(step[np.argmin(beyond + np.minimum(np.maximum(along, aside), 0.0))])
+
+
+def _encounter(ego: EgoTrack, crowd: CrowdTrack, closest: int | None) -> NDArray[np.int64]:
+    """Instants over the encounter, the closest approach among them.
+
+    Over the whole run if no pedestrian came close.
+    """
     step = crowd.step
     apart = np.hypot(crowd.x - ego.front_x[step], crowd.y - ego.front_y[step])
     close = step[apart < ENCOUNTER]
     first, last = (close[0], close[-1]) if close.size else (0, ego.time.size - 1)
     count = min(SNAPSHOTS, int(last - first) + 1)
-    return np.round(np.linspace(first, last, count)).astype(np.int64)
+    steps = np.round(np.linspace(first, last, count)).astype(np.int64)
+    if close.size and closest is not None and closest not in steps:
+        steps[np.abs(steps - closest).argmin()] = closest
+    return np.sort(steps)
 
 
 def _nearest_steps(ego: EgoTrack, times: Sequence[float]) -> NDArray[np.int64]:
@@ -212,14 +243,6 @@ def _arrange(whole: Box, parts: Sequence[Box]) -> tuple[Figure, Axes, list[Axes]
     return figure, overview, keep_panels(grid, count)
 
 
-def _draw_road(axes: Axes, road: Road) -> None:
-    for line in road:
-        if len(line) > 2 and np.array_equal(line[0], line[-1]):
-            axes.add_patch(Polygon(line, facecolor=LIGHT_GREY, edgecolor="white", zorder=0))
-        else:
-            axes.plot(*np.asarray(line).T, color="#C8C8C8", linewidth=0.8, zorder=0.5)
-
-
 def _draw_background(axes: Axes, time: float, background: BackgroundTrack) -> None:
     """Other vehicles at ``time`` [s], as light rectangles."""
     known = background.time[background.time <= time + 1e-9]
@@ -250,8 +273,10 @@ def _draw_pedestrian_trajectories(
         known = np.diff(pauses[kept]) == 0
         segments.append(np.stack((places[kept[:-1]], places[kept[1:]]), axis=1)[known])
         ages.append(times[kept[:-1]][known])
+    ends, age = np.concatenate(segments), np.concatenate(ages)
+    latest_on_top = np.argsort(age, kind="stable")
     lines = LineCollection(
-        list(np.concatenate(segments)), array=np.concatenate(ages), norm=colours, cmap=TIME_COLOURS,
+        list(ends[latest_on_top]), array=age[latest_on_top], norm=colours, cmap=TIME_COLOURS,
         linewidths=1.0, capstyle="round", label="pedestrians",
     )  # fmt: skip
     axes.add_collection(lines, autolim=False)

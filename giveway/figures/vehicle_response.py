@@ -24,6 +24,7 @@ DASHES = (0, (4, 2))
 MODEL: dict[str, Any] = {"color": BLACK, "linewidth": 0.9, "linestyle": DASHES, "zorder": 4}
 MEASURED: dict[str, Any] = {"color": BLUE, "zorder": 3}
 FINER: dict[str, Any] = {"color": ORANGE, "linewidth": 2.6, "zorder": 2.5}
+EXACT = 1e-6  # [m] a position error below is that of rounding; its distribution is no picture
 LARGEST = 1e30  # what matplotlib can still draw; diverging FMUs go beyond
 ROWS = ("Force [kN]", "Speed [m/s]", "Acceleration [m/s²]", "Position [m]")
 
@@ -104,12 +105,19 @@ def identification_figure(found: Identification, *, title: str = "") -> Figure:
     figure = Figure(figsize=(9.4, 6.4), layout="constrained")
     left, right = figure.subfigures(1, 2, width_ratios=(1.9, 1.0), squeeze=False)[0]
     force, speed, acceleration = left.subplots(3, 1, sharex=True)
-    tests, errors = right.subplots(2, 1)
-    for axes in (force, speed, acceleration, tests, errors):
+    exact = found.model.position_error < EXACT
+    tests, *errors = right.subplots(1 if exact else 2, 1, squeeze=False)[:, 0]
+    for axes in (force, speed, acceleration, tests, *errors):
         quiet_grid(axes)
     _draw_validation((force, speed, acceleration), found)
     _draw_tests(tests, found)
-    _draw_errors(errors, found)
+    for axes in errors:
+        _draw_errors(axes, found)
+    if exact:
+        tests.text(
+            0.05, 0.95, f"MPC's prediction, {found.model.horizon:g} s ahead:\nwithin a micrometre",
+            transform=tests.transAxes, va="top", fontsize=8,
+        )  # fmt: skip
     left.align_ylabels([force, speed, acceleration])
     figure.suptitle(title)
     return figure

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from giveway.records.road_marks import UNMARKED, RoadMarks
 from giveway.records.way import EgoWay
 
 SCENE_FILE = "scene.json"
@@ -27,11 +28,13 @@ class Scene:
         road: closed outlines [m] of lanes, crossings and walkingareas.
         bodies: length and width [m] of vehicles, by their ids.
         ways: of the egos, where the law of the road has a say on them.
+        marks: crossings and stop lines.
     """
 
     road: tuple[Outline, ...] = ()
     bodies: dict[str, Body] | None = None
     ways: tuple[EgoWay, ...] = ()
+    marks: RoadMarks = UNMARKED
 
     def body(self, vehicle: str, otherwise: Body) -> Body:
         """Length and width [m] of a vehicle; ``otherwise`` if they are not known."""
@@ -40,6 +43,7 @@ class Scene:
     def to_json(self) -> str:
         """The scene as one line of JSON."""
         kept: dict[str, Any] = {"road": self.road, "bodies": self.bodies}
+        kept |= self.marks.as_dict()
         if self.ways:
             kept |= {"ways": [way.as_dict() for way in self.ways]}
         return json.dumps(kept, separators=(",", ":"), ensure_ascii=False) + "\n"
@@ -55,6 +59,7 @@ class Scene:
                 for name, (length, width) in (kept["bodies"] or {}).items()
             }
             ways = tuple(map(EgoWay.from_dict, kept.get("ways", ())))
+            marks = RoadMarks.from_dict(kept)
         except (OSError, ValueError, TypeError, KeyError, AttributeError):
             return cls()
-        return cls(road, bodies, ways)
+        return cls(road, bodies, ways, marks)

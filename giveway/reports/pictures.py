@@ -259,7 +259,8 @@ def _trade_off(study: StudyFolder) -> Iterator[Picture]:
     points = [
         TradeOffPoint(
             " / ".join(context.key), label, float(x[cell].mean()), float(y[cell].mean()),
-            mean_interval(x[cell], confidence), mean_interval(y[cell], confidence),
+            possible(mean_interval(x[cell], confidence)),
+            possible(mean_interval(y[cell], confidence), float(y[cell].min())),
         )
         for context in contexts(study)
         for label, cell in context.cells.items()
@@ -276,9 +277,9 @@ def _trade_off(study: StudyFolder) -> Iterator[Picture]:
         section="trade-off",
         caption=(
             f"Mean {time.label} against mean {clearance.label} of each cell, with "
-            f"{100.0 * confidence:g} % intervals of the means (Student's t). Up and to the left is "
-            f"better; a thin line joins cells that differ in {study.definition.comparison.factor} "
-            f"alone.{tags}"
+            f"{100.0 * confidence:g} % intervals of the means (Student's t, as far as they are "
+            f"possible). Up and to the left is better; a thin line joins cells that differ in "
+            f"{study.definition.comparison.factor} alone.{tags}"
         ),
         alt="; ".join(
             f"{p.context} {p.level}: {p.x:.2f} {time.unit}, {p.y:.2f} {clearance.unit}"
@@ -343,6 +344,16 @@ def _front_point(row: Mapping[Any, Any], compared: str) -> FrontPoint:
         (float(row["people_delay_low"]), float(row["people_delay_high"])),
         bool(row["front"]),
     )
+
+
+def possible(interval: tuple[float, float], least: float = 0.0) -> tuple[float, float]:
+    """An interval of a mean without what cannot be: neither times nor clearances are below 0.
+
+    Student's interval knows no bounds. Where bodies overlapped, ``least``, the least value that was
+    measured, is below 0 and bounds it instead.
+    """
+    low, high = interval
+    return max(low, min(least, 0.0)), high
 
 
 def mean_interval(values: NDArray[np.float64], confidence: float) -> tuple[float, float]:

@@ -16,6 +16,7 @@ from giveway.figures import (
 )
 from giveway.figures.conflict_points import Conflict
 from giveway.figures.density import density_figure
+from giveway.figures.state import FARTHEST_SHOWN
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.measures import density_map
@@ -23,8 +24,6 @@ from giveway.results.ego_result import EgoResult
 from giveway.results.names import MARKS
 from giveway.results.run_tables import RunTables
 from pedestrian_model import VciParameters, Vehicles, vehicle_influence
-
-_CENTRE = (15.0, 15.0)  # [m] where the paper's figure 2 places the vehicle
 
 
 def write_pictures(result: RunTables, folder: Path) -> None:
@@ -59,8 +58,18 @@ def state_picture(result: RunTables, ego: EgoResult) -> Figure:
         ego.track,
         safe_distance=ego.config.regulation.safe_distance,
         buffer_distance=ego.config.buffer_distance,
+        stop_lines=_stop_lines(ego),
         title=_title(result, ego),
     )
+
+
+def _stop_lines(ego: EgoResult) -> list[float]:
+    """Positions [m] of an ego's track at which traffic lights hold it, as far as it came."""
+    if ego.law is None or not ego.track.position.size:
+        return []
+    way, last = ego.law.way, ego.track.position[-1] + FARTHEST_SHOWN
+    places = (line.station - way.departure for line in way.lines)
+    return [place for place in places if 0.0 <= place <= last]
 
 
 def top_view_picture(result: RunTables, ego: EgoResult) -> Figure:
@@ -72,6 +81,8 @@ def top_view_picture(result: RunTables, ego: EgoResult) -> Figure:
         ego.body_radius,
         background=result.background_track,
         road=result.road,
+        marks=result.marks,
+        signals=result.signal_track,
         conflicts=_conflicts(ego),
         title=_title(result, ego),
     )
@@ -121,7 +132,7 @@ def influence_picture(
 
     def influence(points: Array, speed: float) -> Array:
         half = shape.length / 2
-        vehicle = Vehicles.create(*_CENTRE, 0.0, speed, half, half, shape.width)
+        vehicle = Vehicles.create(0.0, 0.0, 0.0, speed, half, half, shape.width)
         return vehicle_influence(points, np.zeros_like(points), vehicle, parameters)[0]
 
-    return influence_figure(influence, speeds=speeds, shape=shape, centre=_CENTRE)
+    return influence_figure(influence, speeds=speeds, shape=shape)

@@ -33,6 +33,7 @@ from giveway.records.columns import (
     Column,
 )
 from giveway.records.progress import Ending
+from giveway.records.road_marks import UNMARKED, RoadMarks
 from giveway.records.tracks import (
     BackgroundTrack,
     CrowdTrack,
@@ -76,6 +77,7 @@ class RunTables:
         road: outlines (k, 2) [m] of the network's lanes, crossings and walkingareas.
         remarks: what differs from the scenario, or from what the user may expect.
         effect: the people beside those of the run's twin; None: there is no twin.
+        marks: the network's crossings and stop lines.
     """
 
     config: RunConfig
@@ -95,6 +97,7 @@ class RunTables:
     road: tuple[Array, ...]
     remarks: tuple[str, ...]
     effect: Effect | None = None
+    marks: RoadMarks = UNMARKED
 
     @property
     def completed(self) -> bool:

@@ -123,6 +123,10 @@ class Lanes:
         """All crossings of the network."""
         return crossings(self._sumo, self.signals)
 
+    def width(self, lane: str) -> float:
+        """Width [m] of a lane."""
+        return float(self._sumo.lane.getWidth(lane))
+
     def shape(self, lane: str) -> Array:
         """(k, 2) [m] centre line of a lane."""
         shape = self._shapes.get(lane)
@@ -287,7 +291,7 @@ class Lanes:
             if _WALKINGAREA.search(name):
                 outlines.append(np.concatenate([shape, shape[:1]]))
             elif len(shape) > 1:
-                outlines.append(lane_area(shape, float(self._sumo.lane.getWidth(name))))
+                outlines.append(lane_area(shape, self.width(name)))
         return tuple(outlines)
 
 

@@ -1,5 +1,6 @@
 """The pictures of checks and identifications: they are drawn whatever an FMU did."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -46,3 +47,14 @@ def test_an_identification_shows_measured_and_fitted(car, tmp_path):
     figure = identification_figure(found, title="car")
     assert len(figure.axes) == 5
     figure.savefig(tmp_path / "car.png")
+
+
+def test_a_model_without_error_leaves_no_panel_empty(car):
+    found = identify(
+        car(), path=Path("car.fmu"), step_size=0.05, horizon=15, force_limit=8000.0,
+        speeds=(0.0, 4.0),
+    )  # fmt: skip
+    model = found.model.model_copy(update={"position_error": 1.4e-14})  # the bundled FMU's
+    figure = identification_figure(replace(found, model=model), title="car")
+    assert len(figure.axes) == 4
+    assert any("within a micrometre" in text.get_text() for text in figure.axes[-1].texts)

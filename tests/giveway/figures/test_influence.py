@@ -10,7 +10,7 @@ from pedestrian_model import SIM, Vehicles, vehicle_influence
 
 
 def vci(points, speed):
-    vehicle = Vehicles.create(15.0, 15.0, 0.0, speed)
+    vehicle = Vehicles.create(0.0, 0.0, 0.0, speed)
     return vehicle_influence(points, np.zeros_like(points), vehicle, SIM)[0]
 
 
@@ -32,6 +32,17 @@ def test_a_panel_per_speed_on_the_same_scale():
     assert bar.get_ylabel() == "Magnitude [N]"
 
 
+def test_the_coordinates_are_the_vehicles_own():
+    above, below = panels(influence_figure(vci, speeds=(1.0, 2.0, 4.0)))[::2]
+    assert above.get_ylabel() == "to its left [m]"
+    assert below.get_xlabel() == "ahead of its centre [m]"
+    left, right = above.get_xlim()
+    assert left < 0.0 < right
+    assert sum(above.get_ylim()) == pytest.approx(0.0)  # as much to the left as to the right
+    (body,) = above.patches[:1]
+    assert (body.get_x(), body.get_y()) == (-2.5, -1.0)
+
+
 def test_arrows_point_where_the_model_pushes():
     (axes,) = panels(influence_figure(vci, speeds=[4.0]))
     arrows = quiver(axes)
@@ -42,7 +53,7 @@ def test_arrows_point_where_the_model_pushes():
     np.testing.assert_allclose(
         np.sum(shown * force, axis=1), magnitude * np.minimum(magnitude, 400.0)
     )
-    inside = (np.abs(arrows.X - 15.0) < 2.5) & (np.abs(arrows.Y - 15.0) < 1.0)
+    inside = (np.abs(arrows.X) < 2.5) & (np.abs(arrows.Y) < 1.0)
     assert not inside.any()
 
 

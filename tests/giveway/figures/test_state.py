@@ -9,7 +9,7 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from giveway.figures import state_figure
-from giveway.figures.state import SHADES, phases
+from giveway.figures.state import FASTEST_WALK, SHADES, WAITS, phases, strokes
 
 DISTANCES = {"safe_distance": 8.0, "buffer_distance": 10.0}
 
@@ -43,9 +43,11 @@ def test_the_three_quantities_are_drawn_with_their_units(run):
     np.testing.assert_array_equal(line(speed, "speed").get_ydata(), ego.speed)
     np.testing.assert_array_equal(line(speed, "reference speed").get_ydata(), ego.reference_speed)
     np.testing.assert_array_equal(line(force, "force").get_ydata(), ego.force / 1000.0)
-    drawn = line(gap, "gap").get_ydata()
-    np.testing.assert_array_equal(drawn[np.isfinite(ego.gap)], ego.gap[np.isfinite(ego.gap)])
-    assert np.isnan(drawn[np.isinf(ego.gap)]).all()
+    drawn = line(gap, "gap").get_xydata()
+    seen = np.isfinite(ego.gap)
+    np.testing.assert_array_equal(
+        drawn[np.isfinite(drawn[:, 1])], np.column_stack((ego.time, ego.gap))[seen]
+    )
     assert line(gap, "d_safe").get_ydata() == [8.0, 8.0]
     assert line(gap, "d_safe + d_buffer").get_ydata() == [18.0, 18.0]
 
@@ -150,3 +152,61 @@ def test_nothing_to_draw_is_refused(run, nothing):
         runs = first(run(0, 1, "mpc")[0], 0)
     with pytest.raises(ValueError, match="no instants"):
         state_figure(runs, **DISTANCES)
+
+
+def standing(run, **columns):
+    """Two seconds of an ego that stands, with other columns than those of the drive."""
+    ego = first(run(0, 1, "mpc")[0], 41)
+    return replace(ego, position=np.zeros(41), speed=np.zeros(41), **columns)
+
+
+def test_no_stroke_joins_the_gaps_of_different_people(run):
+    gap = np.full(41, 5.0)
+    gap[20:] = 9.0  # somebody else is in front from here on
+    ego = standing(run, gap=gap)
+    time, drawn = strokes(ego, ego.gap, FASTEST_WALK)
+    (cut,) = np.flatnonzero(np.isnan(drawn))
+    assert (drawn[cut - 1], drawn[cut + 1]) == (5.0, 9.0)
+    assert (time[cut - 1], time[cut + 1]) == (ego.time[19], ego.time[20])
+    panel = line(state_figure(ego, **DISTANCES).axes[1], "gap").get_ydata()
+    np.testing.assert_array_equal(panel, drawn)
+
+
+def test_a_gap_that_the_ego_closes_is_one_stroke(run):
+    ego = first(run(0, 1, "mpc")[0], 41)
+    toward = 30.0 - ego.position - 1.4 * (ego.time - ego.time[0])
+    assert not np.isnan(strokes(ego, toward, FASTEST_WALK)[1]).any()
+
+
+def test_distances_to_vehicles_and_stops_have_a_panel_of_their_own(run):
+    ego = standing(run, vehicle_gap=np.full(41, 12.0), stop_gap=np.full(41, -0.2))
+    figure = state_figure(ego, **DISTANCES, stop_lines=[0.7])
+    _, gap, distance, _ = figure.axes
+    assert distance.get_ylabel() == "Distance\nalong the way [m]"
+    assert not {"to a vehicle", "to its next stop"} & {one.get_label() for one in gap.lines}
+    assert set(line(distance, "to a vehicle").get_ydata()) == {12.0}
+    assert set(line(distance, "to a stop line").get_ydata()) == {0.7}
+    assert distance.get_ylim()[0] < -0.2  # who stands at the line is seen
+    assert line(distance, "to its next stop").get_ydata()[0] == -0.2
+    assert len(state_figure(standing(run), **DISTANCES).axes) == 3
+
+
+def test_a_stop_line_is_drawn_until_the_ego_is_over_it(run):
+    ego, _ = run(0, 1, "mpc")
+    panel = state_figure(ego, **DISTANCES, stop_lines=[10.0]).axes[2]
+    left = line(panel, "to a stop line").get_ydata()
+    np.testing.assert_allclose(left[ego.position < 10.0], 10.0 - ego.position[ego.position < 10.0])
+    assert np.isnan(left[ego.position > 10.6]).all()
+
+
+def test_bars_say_what_the_ego_stands_for(run):
+    cause = np.array([""] * 10 + ["light"] * 10 + ["yield"] * 21)
+    ego = standing(run, waits_for=cause)
+    figure = state_figure(ego, **DISTANCES)
+    speed = figure.axes[0]
+    assert list(line(speed, "light").get_xdata()) == [ego.time[10], ego.time[20]]
+    assert list(line(speed, "yield").get_xdata()) == [ego.time[20], ego.time[40]]
+    assert to_rgb(line(speed, "yield").get_color()) == to_rgb(WAITS["yield"][0])
+    named = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"stands at a red light", "stands to yield"} <= named
+    assert "stands for a person" not in named

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import matplotlib.pyplot as plt
@@ -229,6 +230,16 @@ class TestTradeOff:
         figure = tradeoff_figure(points, {"mpc": BLUE}, x_label=("t", "s"), y_label=("g", "m"))
         assert [text.get_text() for text in figure.axes[0].texts] == ["10, 20", "30"]
 
+    def test_names_keep_clear_of_each_other(self):
+        places = [(14.0 + 0.16 * i, 0.2 + 0.008 * (i % 2)) for i in range(5)]
+        points = [self.point(f"context number {i}", "mpc", *at) for i, at in enumerate(places)]
+        points += [self.point("far", "mpc", 16.0, 0.3)]
+        figure = tradeoff_figure(points, {"mpc": BLUE}, x_label=("t", "s"), y_label=("g", "m"))
+        figure.draw_without_rendering()
+        boxes = [text.get_window_extent() for text in figure.axes[0].texts]
+        assert len(boxes) == 6
+        assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+
 
 class TestPairs:
     """Both runs of a pair, side by side."""
@@ -243,7 +254,7 @@ class TestPairs:
             reference = lines(speed, "reference speed")[0].get_ydata()
             np.testing.assert_array_equal(reference, side.ego.reference_speed)
             drawn, seen = lines(gap, "gap")[0].get_ydata(), np.isfinite(side.ego.gap)
-            np.testing.assert_array_equal(drawn[seen], side.ego.gap[seen])
+            np.testing.assert_array_equal(drawn[np.isfinite(drawn)], side.ego.gap[seen])
             assert lines(gap, "d_safe")[0].get_ydata() == [8.0, 8.0]
             np.testing.assert_array_equal(
                 lines(force, "force")[0].get_ydata(), side.ego.force / 1000.0

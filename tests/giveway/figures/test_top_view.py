@@ -7,14 +7,18 @@ from math import pi
 
 import numpy as np
 import pytest
-from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
+from matplotlib.colors import to_rgba
 from matplotlib.patches import Polygon
 
 from giveway.figures import crowd_view_figure, top_view_figure
+from giveway.figures.road import LIGHTS
 from giveway.figures.top_view import VIEW, rectangle
 from giveway.figures.view import SLENDEREST
 from giveway.geometry.bodies import VehicleShape
-from giveway.records.tracks import BackgroundTrack, CrowdTrack
+from giveway.metrics import pedestrian_metrics
+from giveway.records.road_marks import RoadMarks, SignalHead, Zebra
+from giveway.records.tracks import BackgroundTrack, CrowdTrack, SignalTrack
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27
@@ -75,15 +79,54 @@ def test_velocity_ticks_are_a_second_of_walking(run):
     np.testing.assert_allclose(ends, np.column_stack((crowd.vx[here], crowd.vy[here])))
 
 
-def test_six_snapshots_of_the_encounter(run):
+def test_six_snapshots_of_the_encounter_the_closest_approach_among_them(run):
     ego, crowd = run(30, 1, "mpc")
     _, snapshots = panels(top_view_figure(ego, crowd, CAR, R))
-    times = [float(axes.get_title().split()[2]) for axes in snapshots]
+    times = [float(axes.get_title().split()[2].rstrip(",")) for axes in snapshots]
     assert len(times) == 6
     apart = np.hypot(crowd.x - ego.front_x[crowd.step], crowd.y - ego.front_y[crowd.step])
     close = ego.time[crowd.step[apart < 10.0]]
     assert (times[0], times[-1]) == pytest.approx((close.min(), close.max()), abs=0.005)
-    np.testing.assert_allclose(np.diff(times), np.mean(np.diff(times)), atol=0.06)
+    assert times == sorted(times)
+    (named,) = [axes for axes in snapshots if axes.get_title().endswith("closest approach")]
+    clearance = pedestrian_metrics(ego, crowd, CAR, R)["minimum_clearance"].min()
+    k = np.abs(ego.time - times[snapshots.index(named)]).argmin()
+    here = crowd.step == k
+    x, y = np.abs(crowd.x[here] - ego.front_x[k] + 2.5), np.abs(crowd.y[here])
+    gap = np.hypot(np.maximum(x - 2.5, 0.0), np.maximum(y - 1.0, 0.0)).min()
+    assert gap - R == pytest.approx(clearance, abs=1e-6)
+
+
+def test_late_trajectories_stand_out_on_white_and_lie_on_top(run):
+    ego, crowd = run(30, 1, "mpc")
+    overview, _ = panels(top_view_figure(ego, crowd, CAR, R))
+    lines = drawn(overview, LineCollection, "pedestrians")
+    for share in np.linspace(0.0, 1.0, 11):
+        linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+                  for c in lines.cmap(share)[:3]]  # fmt: skip
+        luminance = float(np.dot((0.2126, 0.7152, 0.0722), linear))
+        assert 1.05 / (luminance + 0.05) >= 3.0  # WCAG 2.2, 1.4.11
+    assert (np.diff(lines.get_array()) >= 0.0).all()
+
+
+def test_crossings_have_stripes_and_stop_lines_the_colour_of_the_light(run):
+    ego, crowd = run(10, 2, "mpc")
+    marks = RoadMarks(
+        (Zebra(((30.0, -3.5), (30.0, 3.5)), 4.0), Zebra(((900.0, 0.0), (900.0, 7.0)), 4.0)),
+        (SignalHead(((27.0, 0.0), (27.0, -3.5)), "j", (1,)),),
+    )
+    signals = SignalTrack(np.array([0.0, 2.0]), np.array(["j", "j"]), np.array(["Gr", "rG"]))
+    figure = top_view_figure(ego, crowd, CAR, R, times=[1.0, 2.0], marks=marks, signals=signals)
+    overview, (before, after) = panels(figure)
+    for axes in (overview, before, after):
+        stripes = [path.vertices for path in drawn(axes, PolyCollection, "stripes").get_paths()]
+        assert len(stripes) == 7  # the crossing out of the view has none
+        for stripe in stripes:  # along the way of the vehicles, within the crossing
+            assert np.ptp(stripe[:, 0]) == pytest.approx(4.0)
+            assert np.ptp(stripe[:, 1]) == pytest.approx(0.5)
+            assert np.abs(stripe[:, 1]).max() <= 3.5
+    shown = [drawn(axes, LineCollection, "lights").get_color()[0] for axes in (before, after)]
+    assert [tuple(colour) for colour in shown] == [to_rgba(LIGHTS["r"]), to_rgba(LIGHTS["G"])]
 
 
 def test_the_overview_holds_every_trajectory_in_the_colour_of_its_time(run):

@@ -1,0 +1,102 @@
+"""The road underneath a picture: lanes, crossings, and the lights as coloured stop lines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.patches import Polygon
+from numpy.typing import NDArray
+
+from giveway.figures.style import GREY, LIGHT_GREY
+from giveway.figures.view import Box
+from giveway.records.road_marks import RoadMarks, Zebra, shown
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from giveway.records.tracks import SignalTrack
+
+Road = Sequence[NDArray[np.float64]]
+"""Lines (k, 2) [m] to draw underneath; one that ends where it starts is a filled area."""
+
+STRIPE = 0.5  # [m] of paint, and as much without
+LONGEST = 20.0  # [m] of a crossing: one that reaches into the view ends no farther outside
+UNPAINTED = "#CFCFCF"  # of a crossing, so that white stripes are seen
+LIGHTS = {"G": "#009E73", "y": "#E69F00", "r": "#D7191C", "": GREY}
+
+
+def draw_road(axes: Axes, road: Road) -> None:
+    """Areas in light grey, lines in grey."""
+    for line in road:
+        if len(line) > 2 and np.array_equal(line[0], line[-1]):
+            axes.add_patch(Polygon(line, facecolor=LIGHT_GREY, edgecolor="white", zorder=0))
+        else:
+            axes.plot(*np.asarray(line).T, color="#C8C8C8", linewidth=0.8, zorder=0.5)
+
+
+def draw_marks(axes: Axes, marks: RoadMarks, states: Mapping[str, str] | None, view: Box) -> None:
+    """Stripes on crossings, and a bar at each stop line in the colour of its light.
+
+    Args:
+        axes: to draw into.
+        marks: crossings and stop lines.
+        states: of the lights by their ids; None: stop lines are grey.
+        view: what is outside is left out.
+    """
+    marks = marks.within(
+        (view.left - LONGEST, view.bottom - LONGEST), (view.right + LONGEST, view.top + LONGEST)
+    )
+    if marks.zebras:
+        ground = [outline for zebra in marks.zebras for outline in bands(zebra, whole=True)]
+        stripes = [stripe for zebra in marks.zebras for stripe in bands(zebra)]
+        for shapes, colour, name in (
+            (ground, UNPAINTED, "crossings"),
+            (stripes, "white", "stripes"),
+        ):
+            painted = PolyCollection(shapes, facecolors=colour, linewidths=0.0, label=name)
+            painted.set_zorder(0.6 if name == "crossings" else 0.7)
+            axes.add_collection(painted, autolim=False)
+    if marks.heads:
+        told = states or {}
+        colours = [
+            LIGHTS[shown("".join(_letters(told.get(head.system, ""), head.links)))]
+            for head in marks.heads
+        ]
+        lines = LineCollection(
+            [np.array(head.ends) for head in marks.heads], colors=colours, linewidths=2.4,
+            capstyle="butt", zorder=1.0, label="lights",
+        )  # fmt: skip
+        axes.add_collection(lines, autolim=False)
+
+
+def states_at(signals: SignalTrack | None, time: float) -> dict[str, str]:
+    """The latest state on record of each light at ``time`` [s]."""
+    if signals is None:
+        return {}
+    until = signals.time <= time + 1e-9
+    return dict(zip(signals.system[until].tolist(), signals.state[until].tolist(), strict=True))
+
+
+def bands(zebra: Zebra, *, whole: bool = False) -> list[NDArray[np.float64]]:
+    """The stripes (4, 2) [m] of a crossing, or its outline as the only one."""
+    start, end = np.array(zebra.ends)
+    length = float(np.hypot(*(end - start)))
+    if length <= 0.0:
+        return []
+    along = (end - start) / length
+    aside = zebra.width / 2 * np.array((-along[1], along[0]))
+    count = max(1, int(length / (2.0 * STRIPE) + 1e-6))
+    first = (length - (2 * count - 1) * STRIPE) / 2
+    spans = [(first + 2 * k * STRIPE, first + (2 * k + 1) * STRIPE) for k in range(count)]
+    return [
+        start + np.array((a * along - aside, b * along - aside, b * along + aside,
+                          a * along + aside))
+        for a, b in ([(0.0, length)] if whole else spans)
+    ]  # fmt: skip
+
+
+def _letters(state: str, links: tuple[int, ...]) -> list[str]:
+    return [state[link] for link in links if 0 <= link < len(state)]
