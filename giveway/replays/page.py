@@ -20,6 +20,7 @@ from giveway.geometry.path import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
 from giveway.replays.contours import influence_contours
 from giveway.replays.events import events, why
+from giveway.replays.marks import pack_marks
 from giveway.replays.packing import (
     Frame,
     longest_gap,
@@ -123,6 +124,7 @@ def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> d
         "step": run.step,
         "radius": float(parameters_of(run.config.crowd.preset).body_radius),
         "road": _road(run, frame),
+        "marks": pack_marks(run, frame),
         "tracks": tracks,
         "egos": egos,
         "contours": contours,

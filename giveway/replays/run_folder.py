@@ -15,7 +15,13 @@ from giveway.config.layers import build_config, read_toml
 from giveway.errors import ConfigError, ResultsError
 from giveway.geometry.kernel import Array
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS
-from giveway.records.columns import EGO_COLUMNS, PREDICTION_COLUMNS, TRAJECTORY_COLUMNS, Column
+from giveway.records.columns import (
+    EGO_COLUMNS,
+    PREDICTION_COLUMNS,
+    SIGNAL_COLUMNS,
+    TRAJECTORY_COLUMNS,
+    Column,
+)
 from giveway.records.scene import Scene
 
 PREDICTIONS = "predictions.csv"
@@ -34,6 +40,7 @@ class RunFolder:
         summary: of ``summary.json``: the first ego's row, all rows under ``egos`` if several.
         manifest: of ``manifest.json``.
         scene: the road and the bodies.
+        signals: what the lights showed from when on; empty where no light is on record.
         time: (T,) [s] every instant that has a row.
     """
 
@@ -46,6 +53,7 @@ class RunFolder:
     summary: dict[str, Any]
     manifest: dict[str, Any]
     scene: Scene
+    signals: pd.DataFrame
     time: Array
 
     @property
@@ -98,6 +106,7 @@ class RunFolder:
             summary=_json(folder / "summary.json"),
             manifest=_json(folder / "manifest.json"),
             scene=Scene.read(folder),
+            signals=_table(folder / "signals.csv", SIGNAL_COLUMNS),
             time=time,
         )
 

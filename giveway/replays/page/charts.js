@@ -17,7 +17,7 @@ const plotWidth = () => chart.clientWidth - MARGIN.left - MARGIN.right;
 const chartTime = (px) => clamp(START + ((px - MARGIN.left) / plotWidth()) * span, START, END);
 
 function drawCharts(t) {
-  const key = [chart.clientWidth, chart.clientHeight, devicePixelRatio, selected.ego, colours.ink];
+  const key = [below, chart.clientWidth, chart.clientHeight, devicePixelRatio, selected.ego, colours.ink];
   if (String(key) !== charted) {
     fitCanvas(chart);
     fitCanvasTo(backdrop, chart);
@@ -57,15 +57,67 @@ function drawBackdrop(g, ratio) {
   shadePhases(g, ego, top, height);
   const middle = top + height * 0.48;
   const upper = plot(g, "speed [m/s]", top + 2, middle - 8, 0, fastest(ego));
-  curve(g, ego, ego.reference_speed, upper, colours.quiet, [5, 3], true);
+  curve(g, ego, ego.reference_speed, upper, colours.quiet, [5, 3], { steps: true });
   curve(g, ego, ego.speed, upper, colours.speed, []);
-  const [least, most] = gaps(ego);
-  const lower = plot(g, "gap [m]", middle + 6, top + height - 2, least, most);
-  level(g, lower, ego.safe, "d_safe");
-  curve(g, ego, ego.vehicle_gap, lower, colours.car, []);
-  curve(g, ego, ego.stop_gap, lower, colours.overlap, [2, 2]);
-  curve(g, ego, ego.gap, lower, colours.gap, []);
+  BELOW[below](g, ego, middle + 6, top + height - 2);
   drawEvents(g, ego);
+}
+
+let below = "gap"; // what the lower chart shows
+
+const BELOW = {
+  gap(g, ego, top, bottom) {
+    const [least, most] = gaps(ego);
+    const where = plot(g, "gap [m]", top, bottom, least, most);
+    level(g, where, ego.safe, "safe distance");
+    curve(g, ego, ego.vehicle_gap, where, colours.car, [], { fastest: FASTEST_VEHICLE });
+    curve(g, ego, ego.stop_gap, where, colours.overlap, [2, 2], { fastest: 0 });
+    curve(g, ego, ego.gap, where, colours.gap, [], { fastest: FASTEST_WALK });
+  },
+  force(g, ego, top, bottom) {
+    const force = ego.force.map((newton) => newton / 1000);
+    const most = 1.1 * greatest(force, 1);
+    const least = 1.1 * force.reduce((a, b) => (b < a ? b : a), -1);
+    curve(g, ego, force, plot(g, "force [kN]", top, bottom, least, most), colours.inside, [], { steps: true });
+  },
+  ttc(g, ego, top, bottom) {
+    const where = plot(g, "TTC [s]", top, bottom, 0, LONGEST_TTC);
+    curve(g, ego, ego.ttc ??= leastTtc(ego), where, colours.gap, []);
+  },
+};
+
+const LONGEST_TTC = 8; // [s] shown
+const MOST_TTC = 2000; // instants at which the time to collision is computed
+
+/** The least time to collision [s] with anybody, at the ego's instants; Infinity: with nobody. */
+function leastTtc(ego) {
+  const least = new Float32Array(ego.count).fill(Infinity);
+  const every = Math.ceil(ego.count / MOST_TTC);
+  for (let i = 0; i < ego.count; i += every) {
+    const state = ego.at(ego.time(i));
+    let first = Infinity;
+    PEOPLE.each(ego.time(i), (at) => {
+      first = Math.min(first, timeToCollision(ego, state, at));
+    });
+    least.fill(first, i, i + every);
+  }
+  return least;
+}
+
+/** What the charts show, for those who cannot see them. */
+function chartWords(ego) {
+  if (!ego) return "no ego on the road";
+  const finite = (values) => Array.from(values).filter(Number.isFinite);
+  const least = (values, unit) =>
+    finite(values).length ? `${readable(Math.min(...finite(values)), 2)} ${unit} at least` : "none";
+  const lower = {
+    gap: () => `gap to the closest person in front: ${least(ego.gap, "m")}`,
+    force: () => `force: ${readable(greatest(ego.force, -Infinity) / 1000, 2)} kN at most, `
+      + least(ego.force.map((f) => f / 1000), "kN"),
+    ttc: () => `time to a collision: ${least(ego.ttc ??= leastTtc(ego), "s")}`,
+  }[below]();
+  return `Over ${readable(END - START, 1)} s, speed: ${readable(greatest(ego.speed, 0), 2)} m/s at `
+    + `most; ${lower}; ${ego.events.length} events`;
 }
 
 const greatest = (values, floor) => values.reduce((a, b) => (b > a ? b : a), floor);
@@ -92,13 +144,13 @@ function plot(g, name, top, bottom, least, most) {
   g.textBaseline = "middle";
   const room = (TICK_ROOM * (most - least)) / Math.max(bottom - top, 1);
   const round = [1, 2, 4, 5, 10, 20, 50, 100].find((step) => step >= room) ?? most;
-  for (let value = 0; value <= most; value += round) {
+  for (let value = Math.ceil(Math.min(least, 0) / round) * round; value <= most; value += round) {
     const py = Math.round(y(value)) + 0.5;
     g.beginPath();
     g.moveTo(MARGIN.left, py);
     g.lineTo(MARGIN.left + plotWidth(), py);
     g.stroke();
-    g.fillText(String(value), MARGIN.left - 6, py);
+    g.fillText(String(value).replace("-", "−"), MARGIN.left - 6, py);
   }
   g.save();
   g.translate(11, (top + bottom) / 2);
@@ -109,8 +161,16 @@ function plot(g, name, top, bottom, least, most) {
   return { y, top, bottom };
 }
 
-/** A line that is broken where there is no number, and stands out where it is a single one. */
-function curve(g, ego, values, where, colour, dashes, steps = false) {
+const FASTEST_WALK = 3; // [m/s] along the way; a gap that changes faster is somebody else's
+const FASTEST_VEHICLE = 60; // [m/s]; likewise
+
+/**
+ * A line that is broken where there is no number, and stands out where it is a single one.
+ *
+ * With `fastest` [m/s], values are distances to what moves no faster along the way, and the line is
+ * broken where another one is in front from there on.
+ */
+function curve(g, ego, values, where, colour, dashes, { steps = false, fastest = Infinity } = {}) {
   g.save();
   g.beginPath();
   g.rect(MARGIN.left, where.top - 2, plotWidth() + 2, where.bottom - where.top + 4);
@@ -122,6 +182,10 @@ function curve(g, ego, values, where, colour, dashes, steps = false) {
   let before = false;
   for (let i = 0; i < ego.count; i++) {
     const there = Number.isFinite(values[i]);
+    if (there && before) {
+      const moved = values[i] - values[i - 1] + ego.station[i] - ego.station[i - 1];
+      before = Math.abs(moved) <= fastest * (ego.time(i) - ego.time(i - 1)) + 2e-3;
+    }
     const [x, y] = [timeX(ego.time(i)), where.y(values[i])];
     if (there && before) {
       if (steps) g.lineTo(x, where.y(values[i - 1]));
@@ -139,7 +203,8 @@ function curve(g, ego, values, where, colour, dashes, steps = false) {
 function level(g, where, value, name) {
   const y = Math.round(where.y(value)) + 0.5;
   g.save();
-  g.strokeStyle = g.fillStyle = colours.pid;
+  g.strokeStyle = colours.pid;
+  g.fillStyle = colours.quiet;
   g.setLineDash([6, 3]);
   g.beginPath();
   g.moveTo(MARGIN.left, y);

@@ -19,13 +19,14 @@ class Tracks {
 
   /** Calls `see` for everybody present; what it is given changes with the next call. */
   each(t, see) {
-    const at = { who: 0, x: 0, y: 0, vx: 0, vy: 0, heading: 0 };
+    const at = { who: 0, x: 0, y: 0, vx: 0, vy: 0, heading: 0, first: 0, sample: 0 };
     for (let track = 0; track < this.who.length; track++) {
       const first = this.start[track];
       if (t < FRAMES[this.frame[first]] - 1e-9 || t > this.until[track]) continue;
       const i = this.#seek(track, first, this.start[track + 1], t);
       this.#place(at, i, i + 1 < this.start[track + 1], t);
       at.who = this.who[track];
+      [at.first, at.sample] = [first, i];
       see(at);
     }
   }

@@ -29,7 +29,7 @@ function writeNow(t, states) {
     $("badge").textContent = state ? acting.toUpperCase() : "–";
   }
   write("why", state ? state.kind.text : NO_EGO);
-  write("infeasible", state && state.kind.infeasible ? "QP infeasible" : "");
+  write("infeasible", state && state.kind.infeasible ? "no solution" : "");
   const of = (values) => (state ? values[state.i] : NaN);
   write("now-speed", readable(state ? state.speed : NaN, 2));
   write("now-reference", readable(of(ego?.reference_speed ?? []), 2));
@@ -79,8 +79,7 @@ function writeEgo() {
     item.append(button);
     events.append(item);
   }
-  $("key-vehicle").hidden = !ego?.vehicle_gap.some(Number.isFinite);
-  $("key-light").hidden = !ego?.stop_gap.some(Number.isFinite);
+  showBelow();
   $("no-events").hidden = events.children.length > 0;
   const summary = $("summary");
   summary.replaceChildren();
@@ -90,6 +89,17 @@ function writeEgo() {
     const digits = Number.isInteger(value) ? 0 : 2;
     summary.append(name, element("dd", readable(value, digits, unit)));
   }
+}
+
+/** Key and words of the lower chart. */
+function showBelow() {
+  const ego = EGOS[selected.ego];
+  $("key-gap").hidden = below !== "gap";
+  $("key-vehicle").hidden = below !== "gap" || !ego?.vehicle_gap.some(Number.isFinite);
+  $("key-light").hidden = below !== "gap" || !ego?.stop_gap.some(Number.isFinite);
+  $("key-ttc").hidden = below !== "ttc";
+  $("key-force").hidden = below !== "force";
+  $("charts").setAttribute("aria-label", chartWords(ego));
 }
 
 function writeOnce() {
@@ -117,6 +127,7 @@ function writeOnce() {
       player.redraw();
     });
   }
+  $("lights-box").hidden = LIGHTS.length === 0;
   const predicted = EGOS.some((ego) => ego.predicted);
   if (!predicted) {
     const box = document.querySelector("[data-layer=predictions]");

@@ -74,8 +74,8 @@ function readTime() {
   const found = /^#t=(-?\d+(?:\.\d*)?|-?\.\d+)(&follow)?$/.exec(location.hash);
   if (!found || location.hash === written) return;
   player.play(false);
-  if (found[2] && !view.follow) setFollow(true);
   player.seek(Number(found[1]));
+  if (found[2] && !view.follow) setFollow(true);
 }
 
 // --- the loop -----------------------------------------------------------------------------------
@@ -94,8 +94,16 @@ function tick(now) {
     writePerson(person, states);
     const share = String(player.time);
     if ($("scrubber").value !== share) $("scrubber").value = share;
+    if (!player.playing) tellTime(player.time, states[selected.ego]);
   }
   requestAnimationFrame(tick);
+}
+
+/** The slider's value in words; while the run plays nobody could follow them. */
+function tellTime(t, state) {
+  const ego = state
+    ? `, ${readable(state.speed, 1)} m/s, ${state.kind.acting.toUpperCase()} acts` : "";
+  $("scrubber").setAttribute("aria-valuetext", `${t.toFixed(2)} s of ${END.toFixed(2)} s${ego}`);
 }
 
 // --- buttons and keys ---------------------------------------------------------------------------
@@ -219,6 +227,11 @@ function wire() {
     player.redraw();
   });
   $("speed").addEventListener("change", () => setSpeed(Number($("speed").value)));
+  $("below").addEventListener("change", () => {
+    below = $("below").value;
+    showBelow();
+    player.redraw();
+  });
   const scrubber = $("scrubber");
   [scrubber.min, scrubber.max, scrubber.step] = [START, END, "any"];
   scrubber.addEventListener("input", () => player.seek(Number(scrubber.value)));
@@ -259,7 +272,7 @@ writeEgo();
 wire();
 measureStage();
 showAll();
-if (EGOS.length && Math.max(EXTENT[2] - EXTENT[0], EXTENT[3] - EXTENT[1]) > WHOLE) follow(true);
+if (EGOS.length && Math.max(EXTENT[2] - EXTENT[0], EXTENT[3] - EXTENT[1]) > WHOLE) follow(true, true);
 showFollow();
 setSpeed(1);
 setLoop(false);

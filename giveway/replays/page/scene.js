@@ -13,6 +13,40 @@ const ROAD = (() => {
   return road;
 })();
 
+/** Paint on the road: one path of quadrangles. */
+function quadrangles(packed) {
+  const x = metres(packed.x);
+  const y = metres(packed.y);
+  const path = new Path2D();
+  for (let i = 0; i + 3 < x.length; i += 4) {
+    path.moveTo(x[i], y[i]);
+    for (let k = 1; k < 4; k++) path.lineTo(x[i + k], y[i + k]);
+    path.closePath();
+  }
+  return path;
+}
+
+const CROSSINGS = quadrangles(RUN.marks.ground);
+const STRIPES = quadrangles(RUN.marks.stripes);
+
+/** The stop lines of lights: their ends, and what they show from when on. */
+const LIGHTS = (() => {
+  const { heads } = RUN.marks;
+  const x = metres(heads.x);
+  const y = metres(heads.y);
+  return heads.letters.map((letters, k) => ({
+    letters,
+    times: unpack(heads.times[k], Float64Array),
+    ends: [[x[2 * k], y[2 * k]], [x[2 * k + 1], y[2 * k + 1]]],
+  }));
+})();
+const LIGHT_COLOURS = { G: "green", y: "yellow", r: "red", "-": "dark" };
+
+/** What a light shows at a time: G, y, r, or - where that is not known. */
+function lightAt(light, t) {
+  return light.letters[lastBefore(light.times.length, (k) => light.times[k], t)] ?? "-";
+}
+
 const LABEL_SIDES = [[-1, 0], [0, 1], [1, 0]]; // of 10, 100, 1000 N in the vehicle's frame
 
 /** Lines of equal force: one path per speed and level, in the vehicle's frame. */
@@ -38,11 +72,12 @@ const CONTOURS = RUN.contours.map((kind) => {
   return { speeds: kind.speeds, levels: kind.levels, paths };
 });
 
-const layers = { corridor: true, influence: true, predictions: true, people: true, road: true };
+const layers = { corridor: true, influence: true, predictions: true, people: true, road: true, lights: true, trails: false };
 const selected = { person: -1, ego: 0 };
 const FADED = [1, 0.3]; // opacity of the nearest and the farthest prediction
 const CORRIDOR_BEYOND = 12; // [m] of corridor drawn beyond the safe distance
 const LEAD = 3; // [m] that the middle of the picture is ahead of a followed ego
+const TRAIL = 5; // [s] of way behind everybody
 const SIGHT = 100; // [m] along its path an ego looks out for people
 
 function toScene() {
@@ -69,6 +104,8 @@ function drawScene(t) {
   if (layers.corridor) for (const [ego, state] of present) drawCorridor(ego, state);
   if (layers.influence) for (const [ego, state] of present) drawInfluence(ego, state);
   if (layers.predictions) for (const [ego] of present) drawPredictions(ego, t);
+  if (layers.trails) drawTrails(t, present);
+  if (layers.lights) drawLights(t);
   VEHICLES.each(t, drawVehicle);
   const person = drawPeople(t, present);
   for (const [ego, state] of present) drawEgo(ego, state);
@@ -88,6 +125,59 @@ function drawRoad() {
   pen.globalAlpha = 0.45; // lanes cross on a junction
   pen.lineWidth = 1 / view.scale;
   pen.stroke(ROAD);
+  pen.globalAlpha = 1;
+  pen.fillStyle = colours.unpainted;
+  pen.fill(CROSSINGS);
+  pen.fillStyle = colours.paint;
+  pen.fill(STRIPES);
+}
+
+/** A bar along each stop line in the colour of its light, a lamp at its end. */
+function drawLights(t) {
+  toPixels();
+  pen.lineCap = "butt";
+  for (const light of LIGHTS) {
+    const [[x0, y0], [x1, y1]] = light.ends.map(([x, y]) => [toScreenX(x), toScreenY(y)]);
+    const thick = clamp(0.5 * view.scale, 3, 8);
+    pen.strokeStyle = pen.fillStyle = colours[LIGHT_COLOURS[lightAt(light, t)]];
+    pen.lineWidth = thick;
+    pen.beginPath();
+    pen.moveTo(x0, y0);
+    pen.lineTo(x1, y1);
+    pen.stroke();
+    pen.beginPath(); // at the kerb, on the driver's right where people drive on the right
+    dot(x1, y1, 0.9 * thick);
+    pen.fill();
+    pen.strokeStyle = colours.ink;
+    pen.lineWidth = 1;
+    pen.stroke();
+  }
+}
+
+/** The last seconds of everybody's way. */
+function drawTrails(t, present) {
+  toScene();
+  pen.lineWidth = 1.6 / view.scale;
+  pen.lineJoin = pen.lineCap = "round";
+  pen.globalAlpha = 0.75;
+  for (const [tracks, colour] of [[VEHICLES, "car"], [PEOPLE, "person"]]) {
+    pen.strokeStyle = colours[colour];
+    pen.beginPath();
+    tracks.each(t, (at) => {
+      pen.moveTo(at.x, at.y);
+      for (let i = at.sample; i >= at.first && FRAMES[tracks.frame[i]] >= t - TRAIL; i--) {
+        pen.lineTo(tracks.x[i], tracks.y[i]);
+      }
+    });
+    pen.stroke();
+  }
+  for (const [ego, state] of present) {
+    pen.strokeStyle = colours[state.kind.acting] ?? colours.mpc;
+    pen.beginPath();
+    pen.moveTo(state.x, state.y);
+    for (let i = state.i; i >= 0 && ego.time(i) >= t - TRAIL; i--) pen.lineTo(ego.x[i], ego.y[i]);
+    pen.stroke();
+  }
   pen.globalAlpha = 1;
 }
 
@@ -133,6 +223,7 @@ function drawInfluence(ego, state) {
     const [x, y] = turned(state, label.x, label.y);
     toPixels();
     pen.globalAlpha = 1;
+    pen.fillStyle = colours.ink;
     pen.font = "10px system-ui, sans-serif";
     pen.textAlign = "center";
     pen.textBaseline = "middle";

@@ -8,6 +8,7 @@ const view = {
   y: 0,
   scale: 10,
   follow: false,
+  company: false, // following began with people in view
   chosen: false, // by hand: not to be fitted to another size
   width: 0,
   height: 0,
@@ -61,20 +62,38 @@ function showAll() {
 const NEARBY = 36; // [m] of way that following shows
 const WHOLE = 110; // [m] a larger scene is followed, not shown whole, to begin with
 
-function follow(on) {
+/** Keep the ego in view; with `company`, from so far above that people around are in it. */
+function follow(on, company = false) {
   view.follow = on && EGOS.length > 0;
+  view.company = company;
   if (view.follow) {
     const across = Math.min(view.width, 1.6 * view.height);
-    view.scale = Math.max(view.scale, across / NEARBY);
+    view.scale = Math.max(view.scale, Math.min(across / NEARBY, company ? scaleForCompany() : Infinity));
   }
+}
+
+const COMPANY = 5; // people to be seen around a followed ego, if there are so many
+
+/** The largest scale that has `COMPANY` people, or all there are, around the ego in view. */
+function scaleForCompany() {
+  const state = EGOS[selected.ego].at(player.time);
+  if (!state) return Infinity;
+  const scales = [];
+  PEOPLE.each(player.time, (at) => {
+    const dx = Math.abs(at.x - state.x - LEAD * state.cos) + 1;
+    const dy = Math.abs(at.y - state.y - LEAD * state.sin) + 1;
+    scales.push(Math.min(view.width / dx, view.height / dy) / 2);
+  });
+  scales.sort((a, b) => b - a);
+  return scales[Math.min(COMPANY, scales.length) - 1] ?? Infinity;
 }
 
 /** The same in a window of another size. */
 function refit() {
   if (view.chosen) return;
-  const followed = view.follow;
+  const { follow: followed, company } = view;
   showAll();
-  if (followed) follow(true);
+  if (followed) follow(true, company);
 }
 
 /** Magnifies about a point of the canvas; the ego stays where it is while it is followed. */
@@ -101,7 +120,7 @@ function readColours() {
   const names = [
     "ground", "road", "kerb", "ink", "quiet", "line", "mpc", "pid", "safety", "person", "close",
     "inside", "prediction", "influence", "car", "corridor", "safe", "speed", "gap", "stop", "overlap",
-    "panel",
+    "panel", "paint", "unpainted", "green", "yellow", "red", "dark",
   ];
   colours = Object.fromEntries(
     names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]),
