@@ -1,13 +1,14 @@
 """Examples of pairs: both runs are made again and drawn side by side."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 from giveway.errors import GivewayError
 from giveway.figures.study_pairs import PairSide, pair_figure
+from giveway.records.tracks import EgoTrack
 from giveway.reports.choice import ExamplePair
 from giveway.reports.pictures import Picture
 from giveway.reports.wording import quantity, shown_ego
-from giveway.results.ego_result import EgoResult
 from giveway.results.run_result import RunResult
 from giveway.studies.statistics import metric
 
@@ -20,20 +21,45 @@ TITLES = {
 }
 
 
+@dataclass(frozen=True)
+class Drive:
+    """How one ego of a run drove.
+
+    Attributes:
+        ego: its id.
+        track: of the run.
+        safe_distance: d_safe [m].
+        buffer_distance: d_buffer [m].
+    """
+
+    ego: str
+    track: EgoTrack
+    safe_distance: float
+    buffer_distance: float
+
+
+def drives_of(result: RunResult) -> list[Drive]:
+    """The drives of a run's egos."""
+    return [
+        Drive(ego.id, ego.track, ego.config.regulation.safe_distance, ego.config.buffer_distance)
+        for ego in result.egos
+    ]
+
+
 def example_pictures(
-    pairs: Sequence[ExamplePair], rerun: Callable[[str], RunResult]
+    pairs: Sequence[ExamplePair], drives: Callable[[str], Sequence[Drive]]
 ) -> tuple[list[tuple[ExamplePair, Picture]], list[str]]:
     """A picture of each pair, and a sentence for each that could not be made again.
 
     Args:
         pairs: which ones.
-        rerun: makes a run of the study again, by its id.
+        drives: gives those of a run of the study, by its id.
     """
     drawn, missing = [], []
     for number, pair in enumerate(pairs, start=1):
         try:
             sides = [
-                _side(rerun(run), pair, label)
+                _side(drives(run), pair, label)
                 for run, label in ((pair.run, pair.treatment), (pair.run_baseline, pair.baseline))
             ]
         except (GivewayError, LookupError) as error:
@@ -43,21 +69,11 @@ def example_pictures(
     return drawn, missing
 
 
-def _side(result: RunResult, pair: ExamplePair, label: str) -> PairSide:
-    ego = _ego(result, pair.ego)
-    return PairSide(
-        label,
-        ego.track,
-        ego.config.regulation.safe_distance,
-        ego.config.buffer_distance,
-    )
-
-
-def _ego(result: RunResult, name: str) -> EgoResult:
-    for ego in result.egos:
-        if ego.id == name:
-            return ego
-    raise LookupError(f"no ego '{name}' in this run")
+def _side(drives: Sequence[Drive], pair: ExamplePair, label: str) -> PairSide:
+    for drive in drives:
+        if drive.ego == pair.ego:
+            return PairSide(label, drive.track, drive.safe_distance, drive.buffer_distance)
+    raise LookupError(f"no ego '{pair.ego}' in this run")
 
 
 def _picture(pair: ExamplePair, sides: Sequence[PairSide], number: int) -> Picture:

@@ -21,13 +21,12 @@ from giveway.metrics.law import LAW_FIELDS
 from giveway.reports import findings, tables
 from giveway.reports.choice import ExamplePair, WorstRun, example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
-from giveway.reports.examples import TITLES, example_pictures
+from giveway.reports.examples import TITLES, Drive, example_pictures
 from giveway.reports.labels import contexts
 from giveway.reports.levels import levels_section
 from giveway.reports.pictures import Picture, study_pictures
 from giveway.reports.published import published_frame, published_table
 from giveway.reports.wording import pretty_unit
-from giveway.results.run_result import RunResult
 from giveway.studies.folder import StudyFolder
 from giveway.studies.statistics import METRICS
 
@@ -67,7 +66,7 @@ def write_report(
     *,
     examples: int = 4,
     worst: int = 5,
-    rerun: Callable[[str], RunResult] | None = None,
+    drives: Callable[[str], Sequence[Drive]] | None = None,
     replay: Callable[[str], Path | None] | None = None,
     target: Path | None = None,
 ) -> Path:
@@ -77,7 +76,7 @@ def write_report(
         study: its folder, read.
         examples: pairs of which speed, gap and force are drawn, at most; 0: none.
         worst: runs that are listed, for each reason.
-        rerun: makes a run again, by its id, for the examples; None: the report has no examples.
+        drives: gives those of a run, by its id, for the examples; None: there are no examples.
         replay: gives the page that plays a run, by its id, or None; None: no links.
         target: the file to write; None: ``report.html`` in the study's folder. Figures go to
             the folder ``figures`` of the study.
@@ -97,7 +96,7 @@ def write_report(
         target.parent.mkdir(parents=True, exist_ok=True)
         _clear(folder)
         pictures = [_drawn(picture, folder) for picture in study_pictures(study)]
-        shown, missing = _examples(folder, pairs, rerun, replays)
+        shown, missing = _examples(folder, pairs, drives, replays)
         content = _content(study, extremes, replays)
         by_section = {
             name: [drawn for drawn in pictures if drawn.picture.section == name]
@@ -154,12 +153,12 @@ def _drawn(
 def _examples(
     folder: Path,
     pairs: Sequence[ExamplePair],
-    rerun: Callable[[str], RunResult] | None,
+    drives: Callable[[str], Sequence[Drive]] | None,
     replays: dict[str, str],
 ) -> tuple[list[Drawn], list[str]]:
-    if rerun is None:
+    if drives is None:
         return [], []
-    pictures, missing = example_pictures(pairs, rerun)
+    pictures, missing = example_pictures(pairs, drives)
     shown = []
     for pair, picture in pictures:
         runs = ((pair.treatment, pair.run), (pair.baseline, pair.run_baseline))

@@ -1,19 +1,19 @@
 """The report of a study, with the runs that it shows made again and played on pages."""
 
-import shutil
 import tempfile
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from giveway.errors import GivewayError
 from giveway.records.progress import Ending
 from giveway.replays import write_replay
-from giveway.reports import write_report
+from giveway.reports import shown_runs, write_report
+from giveway.reports.examples import Drive, drives_of
+from giveway.reports.kept_runs import KeptRuns
 from giveway.results.run_result import RunResult
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run, rerun
-
-REPLAYS = "replays"
 
 
 def write_report_of(
@@ -24,26 +24,57 @@ def write_report_of(
     Args:
         study: its folder.
         replays: make the runs that the report shows once more, for pages that play them and
-            for the examples of speed and gap.
+            for the examples of speed and gap; those that a former report has made are kept.
         tell: takes one line at each step.
 
     Raises:
         GivewayError: the disk is full.
         KeyboardInterrupt: the user has ended it.
     """
-
-    def result(run: str) -> RunResult:
-        tell(f"Run {run} for an example ...")
-        return _whole(rerun(study, run, None))
-
-    def page(run: str) -> Path | None:
-        tell(f"Run {run} for its replay ...")
-        return _replay(study, run)
-
-    shutil.rmtree(study.path / REPLAYS, ignore_errors=True)
     if not replays:
         return write_report(study)
-    return write_report(study, rerun=result, replay=page)
+    runs, kept = shown_runs(study), KeptRuns(study)
+    kept.only(runs)
+    lost = _make([run for run in runs if not kept.has(run)], study, kept, tell)
+
+    def drives(run: str) -> Sequence[Drive]:
+        if run in lost:
+            raise lost[run]
+        return kept.drives(run)
+
+    tell("Drawing the figures ...")
+    return write_report(study, drives=drives, replay=lambda run: _page(kept, run, lost))
+
+
+def _page(kept: KeptRuns, run: str, lost: dict[str, GivewayError]) -> Path | None:
+    return None if run in lost else kept.page(run)
+
+
+def _make(
+    runs: Sequence[str], study: StudyFolder, kept: KeptRuns, tell: Callable[[str], None]
+) -> dict[str, GivewayError]:
+    """Make runs again, and keep their pages and drives.
+
+    Returns:
+        Why some of them cannot be made any more.
+    """
+    lost: dict[str, GivewayError] = {}
+    begun = time.monotonic()
+    for done, run in enumerate(runs):
+        left = (time.monotonic() - begun) / done * (len(runs) - done) if done else 0.0
+        about = f", about {left:.0f} s left" if left >= 1.0 else ""
+        tell(f"Making run {run} again for its replay, {done + 1} of {len(runs)}{about} ...")
+        with tempfile.TemporaryDirectory(prefix="giveway-replay-") as temporary:
+            folder = Path(temporary) / run
+            try:
+                checked = checked_run(study, run, predictions=True)
+                result = _whole(rerun(study, run, folder, checked=checked, pictures=False))
+            except GivewayError as error:
+                lost[run] = error  # its scenario has changed or is missing
+                continue
+            write_replay(folder, kept.page(run))
+            kept.keep(run, drives_of(result))
+    return lost
 
 
 def _whole(result: RunResult) -> RunResult:
@@ -55,17 +86,3 @@ def _whole(result: RunResult) -> RunResult:
     if result.ending is Ending.INTERRUPTED:
         raise KeyboardInterrupt
     return result
-
-
-def _replay(study: StudyFolder, run: str) -> Path | None:
-    """Write the page that plays a run; None where the run cannot be made any more."""
-    with tempfile.TemporaryDirectory(prefix="giveway-replay-") as temporary:
-        folder = Path(temporary) / run
-        try:
-            checked = checked_run(study, run, predictions=True)
-            _whole(rerun(study, run, folder, checked=checked, pictures=False))
-        except GivewayError:
-            return None  # its scenario has changed or is missing
-        target = study.path / REPLAYS / f"{run}.html"
-        target.parent.mkdir(exist_ok=True)
-        return write_replay(folder, target)

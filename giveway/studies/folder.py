@@ -209,6 +209,15 @@ class StudyFolder:
         """
         return self._kept_record(*self.cell_of(run))
 
+    def key_of(self, run: str) -> str:
+        """The key of a run's record: another one where settings, input files or code differ.
+
+        Raises:
+            ResultsError: this study has no such run.
+        """
+        cell, seed = self.cell_of(run)
+        return run_key(self._digests[cell.number], seed)
+
     def _kept_record(self, cell: Cell, seed: int) -> RunRecord | None:
         record = self._store.get(run_key(self._digests[cell.number], seed))
         return None if record is None else record.called(run_id(cell.number, seed))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from giveway.reports.examples import drives_of
 from giveway.studies.definition import parse_definition
 from giveway.studies.design import design
 from giveway.studies.folder import StudyFolder
@@ -100,8 +101,8 @@ def lost(changed: Callable[..., StudyFolder]) -> StudyFolder:
 
 @pytest.fixture(scope="session")
 def again(study: StudyFolder) -> Callable[[str], Any]:
-    """Makes a run again, each only once."""
-    return cache(lambda run: rerun(study, run, None))
+    """The drives of a run that is made again, each only once."""
+    return cache(lambda run: drives_of(rerun(study, run, None)))
 
 
 class Page(HTMLParser):

@@ -31,7 +31,7 @@ def report(study, again):
         page.write_text("a replay")
         return page
 
-    return write_report(study, rerun=again, replay=replay)
+    return write_report(study, drives=again, replay=replay)
 
 
 def test_it_needs_nothing_but_itself(report, parsed):
@@ -185,7 +185,7 @@ def test_the_same_study_gives_the_same_bytes(study, again, report):
     def replay(run):
         return study.path / "replays" / f"{run}.html"
 
-    assert write_report(study, rerun=again, replay=replay).read_bytes() == known
+    assert write_report(study, drives=again, replay=replay).read_bytes() == known
     second = {path.name: path.read_bytes() for path in (study.path / "figures").iterdir()}
     assert second == first
     assert {name.rpartition(".")[2] for name in second} == {"png", "svg"}
@@ -229,7 +229,7 @@ def test_an_example_that_cannot_be_made_again_is_left_out(study, tmp_path, parse
     def rerun(run):
         raise GivewayError(f"run {run}: other numbers")
 
-    page = parsed(write_report(study, rerun=rerun, target=tmp_path / "report.html"))
+    page = parsed(write_report(study, drives=rerun, target=tmp_path / "report.html"))
     assert "are not drawn: run c1-s" in page.text
     assert not [name for name in page.ids if name.startswith("figure-example")]
 

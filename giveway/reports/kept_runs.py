@@ -1,0 +1,148 @@
+"""What a report keeps of the runs that it shows, so that the next one need not make them again."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import fields
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+
+from giveway.errors import ResultsError
+from giveway.records.tracks import EgoTrack
+from giveway.reports.examples import Drive
+from giveway.studies.folder import StudyFolder
+
+REPLAYS = "replays"
+_LIST = "kept.json"
+_COLUMNS = tuple(field.name for field in fields(EgoTrack))
+
+
+class KeptRuns:
+    """Pages and drives of runs, in the folder ``replays`` of a study.
+
+    A list beside them names, for each run, the key of its record, the code that drew its page, and
+    the SHA-256 of both files; whatever does not fit its line is not used.
+
+    Args:
+        study: whose runs.
+    """
+
+    def __init__(self, study: StudyFolder) -> None:
+        self._study = study
+        self._folder = study.path / REPLAYS
+        self._list: dict[str, Any] = {}
+        try:
+            kept = json.loads((self._folder / _LIST).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return
+        self._list = kept if isinstance(kept, dict) else {}
+
+    def has(self, run: str) -> bool:
+        """Whether page and drives of a run are there, as they were made of the study's record."""
+        try:
+            return bool(self._list.get(run) == self._line(run))
+        except OSError:
+            return False
+
+    def page(self, run: str) -> Path:
+        """The page that plays a run."""
+        return self._folder / f"{run}.html"
+
+    def drives(self, run: str) -> list[Drive]:
+        """The drives of a run's egos.
+
+        Raises:
+            LookupError: they are not kept.
+        """
+        try:
+            with np.load(self._drives(run), allow_pickle=False) as kept:
+                about = json.loads(str(kept["egos"]))
+                return [
+                    Drive(name, EgoTrack(*(kept[f"{i}_{c}"] for c in _COLUMNS)), safe, buffer)
+                    for i, (name, safe, buffer) in enumerate(about)
+                ]
+        except (OSError, BadZipFile, KeyError, ValueError, TypeError) as error:
+            raise LookupError(f"no drives of run {run} are kept") from error
+
+    def keep(self, run: str, drives: Sequence[Drive]) -> None:
+        """Keep the drives of a run whose page has been written.
+
+        Raises:
+            ResultsError: the disk is full.
+        """
+        columns: dict[str, Any] = {
+            f"{i}_{name}": getattr(drive.track, name)
+            for i, drive in enumerate(drives)
+            for name in _COLUMNS
+        }
+        about = [(drive.ego, drive.safe_distance, drive.buffer_distance) for drive in drives]
+        with self._told():
+            np.savez_compressed(self._drives(run), egos=np.array(json.dumps(about)), **columns)
+            self._list[run] = self._line(run)
+            self._write()
+
+    def only(self, runs: Iterable[str]) -> None:
+        """Remove what is kept of all other runs.
+
+        Raises:
+            ResultsError: the folder cannot be written.
+        """
+        shown = set(runs)
+        with self._told():
+            for path in self._folder.glob("*"):
+                if path.suffix in {".html", ".npz"} and path.stem not in shown:
+                    path.unlink(missing_ok=True)
+            if self._list.keys() - shown:
+                self._list = {run: line for run, line in self._list.items() if run in shown}
+                self._write()
+
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise ResultsError(
+                f"{error.filename or self._folder}: cannot be written ({error.strerror}); "
+                "free the disk"
+            ) from error
+
+    def _drives(self, run: str) -> Path:
+        return self._folder / f"{run}.npz"
+
+    def _line(self, run: str) -> dict[str, str]:
+        return {
+            "record": self._study.key_of(run),
+            "drawn by": page_code(),
+            "page": hashlib.sha256(self.page(run).read_bytes()).hexdigest(),
+            "drives": hashlib.sha256(self._drives(run).read_bytes()).hexdigest(),
+        }
+
+    def _write(self) -> None:
+        text = json.dumps(self._list, indent=1, sort_keys=True) + "\n"
+        (self._folder / _LIST).write_text(text, encoding="utf-8")
+
+
+@functools.cache
+def page_code() -> str:
+    """Changes with the code that turns results into a page; no record of a run does with that."""
+    digest = hashlib.sha256()
+    for path in _code(files("giveway.replays")):
+        digest.update(path.name.encode() + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _code(folder: Traversable) -> Iterable[Traversable]:
+    for path in sorted(folder.iterdir(), key=lambda path: path.name):
+        if path.is_dir() and path.name != "__pycache__":
+            yield from _code(path)
+        elif path.is_file():
+            yield path
