@@ -106,11 +106,16 @@ def tradeoff_figure(
 def _move_apart(
     figure: Figure, axes: Axes, named: Sequence[Annotation], points: Sequence[TradeOffPoint]
 ) -> None:
-    """Have each name stand at the first of ``PLACES`` that is free of names and points."""
+    """Have each name stand at the first of ``PLACES`` that is free of names, points, intervals."""
     figure.draw_without_rendering()  # now the layout is known
     dot = figure.dpi / 72.0 * DOT
     centres = axes.transData.transform([(point.x, point.y) for point in points])
     taken = [Bbox.from_bounds(x - dot, y - dot, 2 * dot, 2 * dot) for x, y in centres]
+    for point in points:
+        x, y = point.x_interval, point.y_interval
+        for ends in ([(x[0], point.y), (x[1], point.y)], [(point.x, y[0]), (point.x, y[1])]):
+            (left, low), (right, high) = axes.transData.transform(ends)
+            taken.append(Bbox.from_extents(left - 1, low - 1, right + 1, high + 1))
     frame = axes.get_window_extent()
     for name in named:
         best: tuple[float, int, Bbox] | None = None
