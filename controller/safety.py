@@ -19,6 +19,7 @@ from controller._stopping import Limits, is_safe
 from controller.defaults import FORCE_LIMIT, STANDSTILL
 from controller.model import LongitudinalModel
 from controller.parameters import require, require_not_negative, require_positive
+from controller.worst_motion import RECORDED, WorstMotion
 
 LONGEST_STOP = 20.0  # [s] what has not stopped by then does not count as stopping
 LETS_THROUGH, ACTS, UNAVOIDABLE = 0, 1, 2
@@ -26,6 +27,7 @@ _MOST_DECAY = 50.0  # e-foldings by friction in that time: from any speed
 _RESOLUTION = 4.0  # [N] to which the largest safe force is found
 _SLACK = 1e-9  # [m] that a new plan keeps and the fallback need not: above rounding, below a hair
 _WHOLE_STEPS = 1e-6  # of a step: a reaction time of so little more is no step more
+_PEOPLE = RECORDED["recorded-99.9"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +38,8 @@ class SafetyParameters:
         ParameterError: a value is not finite or out of range.
     """
 
-    walking_acceleration: float = 5.0  # a_max [m/s^2] of the VCI model (TSAS 2020)
-    walking_speed: float = 2.5  # v_max [m/s] of the VCI model (TSAS 2020)
+    walking_acceleration: float = _PEOPLE.acceleration  # a_max [m/s^2]
+    walking_speed: float = _PEOPLE.speed  # v_max [m/s]
     body_radius: float = 0.27  # R [m] of the VCI model (TSAS 2020)
     width: float = 2.0  # of the ego [m] (Yang & Özgüner 2019)
     margin: float = 0.05  # [m] kept between the front and a body (ours)
@@ -59,6 +61,11 @@ class SafetyParameters:
         require_not_negative("reaction_time", self.reaction_time, "s")
         short = self.reaction_time < LONGEST_STOP
         require(short, "reaction_time", self.reaction_time, f"less than {LONGEST_STOP:g} s")
+
+    @property
+    def worst(self) -> WorstMotion:
+        """What people are taken to do at worst."""
+        return WorstMotion(self.walking_acceleration, self.walking_speed)
 
 
 class SafeForce(NamedTuple):

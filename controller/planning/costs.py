@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from controller._jit import Array, kernel
 from controller.planning.parameters import Weights
 
@@ -44,7 +46,7 @@ def cost(
         The whole cost; the part of it that other people and vehicles cause; the longest missing
         stopping distance [m].
     """
-    own = own_cost(speeds, accelerations, time_step, weights)
+    own = own_cost(distance[-1], speeds, accelerations, allowed, time_step, weights)
     others, missing = 0.0, 0.0
     for i in range(len(gap)):
         beyond = distance[i + 1] - allowed[i]
@@ -56,15 +58,29 @@ def cost(
 
 @kernel
 def own_cost(
-    speeds: Array, accelerations: Array, time_step: float, weights: tuple[Any, ...]
+    driven: float,
+    speeds: Array,
+    accelerations: Array,
+    allowed: Array,
+    time_step: float,
+    weights: tuple[Any, ...],
 ) -> float:
-    """The part of a manoeuvre's cost [s] that is its own, whoever is about: time and comfort."""
+    """The part of a manoeuvre's cost [s] that is its own, whoever is about: time and comfort.
+
+    ``driven`` [m] is its distance at the horizon's end. What it gains there counts as far as the
+    way goes on: of its last speed only so much as can be braked to what is ``allowed`` then.
+    """
     w, N = Weights(*weights), len(speeds) - 1
     own = 0.0
     for i in range(N):
         share = speeds[i + 1] / w.reference_speed
         own += w.time * max(0.0, 1.0 - share) + w.acceleration * accelerations[i] ** 2
-    total: float = time_step * own + w.final * max(0.0, 1.0 - speeds[N] / w.reference_speed)
+    last = speeds[N]
+    if allowed[N - 1] < np.inf:
+        pace = max(0.0, allowed[N - 1] - allowed[N - 2]) / time_step if N > 1 else 0.0
+        left = max(0.0, allowed[N - 1] - driven)
+        last = min(last, np.sqrt(pace**2 + 2.0 * w.deceleration * left))
+    total: float = time_step * own + w.final * max(0.0, 1.0 - last / w.reference_speed)
     return total
 
 
@@ -96,7 +112,7 @@ def add_cost_of_others(
     """
     w = Weights(*weights)
     share = speed / w.reference_speed
-    others += w.conflict * conflicts
+    others += w.conflict * conflicts * np.sqrt(share)
     others += w.threat * max(0.0, speed - calm) / w.reference_speed
     if gap < w.safe_distance:
         others += w.nearness * (1.0 - max(gap, 0.0) / w.safe_distance) * share

@@ -29,13 +29,13 @@ class ManoeuvreParameters:
     slowest: tuple[float, ...] = (0.0, 0.0, 0.6, 0.35, 0.175, 0.0, 0.0)  # of v_r: braking ends
     jerk: float = 8.0  # [m/s^3] with which they are approached
     deceleration: float = 6.0  # b [m/s^2]: a stop is kept possible that is no harder
-    minimum_distance: float = 1.0  # [m] to a person in front at standstill
+    minimum_distance: float = 0.5  # [m] to a person in front at standstill
     headway: float = 0.1  # [s] more of it the faster
     time_weight: float = 1.0  # of the share of the reference speed that is not driven
     acceleration_weight: float = 0.05  # of (m/s^2)^2
-    nearness_weight: float = 0.3  # of the share of d_safe that is missing, times v / v_r
-    closeness_weight: float = 20.0  # of a metre too little to stop in, times v / v_r
-    conflict_weight: float = 0.6  # of a person on a collision course (``Prospect.conflicts``)
+    nearness_weight: float = 3.0  # of the share of d_safe that is missing, times v / v_r
+    closeness_weight: float = 100.0  # of a metre too little to stop in, times v / v_r
+    conflict_weight: float = 0.65  # of a person on a collision course, times sqrt(v / v_r)
     threat_weight: float = 1.0  # of the speed beyond the calm one, over v_r
     final_weight: float = 1.0  # [s] of the missing speed at the horizon's end
     persistence: float = 0.02  # [s] that another manoeuvre must be better than the last plan
@@ -81,7 +81,7 @@ class PlannerParameters:
         ParameterError: a value is not finite or out of range.
     """
 
-    horizon: int = 60  # N [steps]
+    horizon: int = 80  # N [steps]
     reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
     safe_distance: float = SAFE_DISTANCE  # d_safe [m]
     speed_max: float = SPEED_MAX  # v_max [m/s]

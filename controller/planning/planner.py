@@ -93,6 +93,7 @@ class Planner:
         allowed: Array,
         foresight: Foresight | None,
         lane_speeds: Array | None = None,
+        gap: float = inf,
     ) -> Plan:
         """The force at t_k.
 
@@ -104,6 +105,8 @@ class Planner:
             foresight: of the crowd; None: nobody can get in the way.
             lane_speeds: (N,) [m/s] that the plan does not exceed at steps 1 ... N, as far as
                 braking can help it; None: any.
+            gap: [m] to the closest person in front now. Who stands drives up to d_safe of a
+                person who stays, as up to where the way ends.
 
         Raises:
             ParameterError: a value is not a number.
@@ -114,9 +117,11 @@ class Planner:
                 "m/s: expected numbers"
             )
         before = self._acceleration(speed, previous_force)
-        search = self._search
-        seek = search.choose if self.parameters.gap_choice else search.follow
-        chosen = seek(speed, before, fastest, allowed, foresight)
+        search, end = self._search, float(allowed[-1])
+        if speed <= STANDSTILL:
+            end = min(end, gap - self.parameters.safe_distance)
+        seen = (speed, before, fastest, allowed, foresight)
+        chosen = search.choose(*seen, end) if self.parameters.gap_choice else search.follow(*seen)
         return self._smooth(speed, previous_force, before, fastest, allowed, chosen, lane_speeds)
 
     def _acceleration(self, speed: float, force: float) -> float:
@@ -234,7 +239,13 @@ class PlanningController:
             observation.position + observation.safe_distance
         )
         plan = self.planner.plan(
-            speed, previous, reference, allowed, observation.foresight, observation.lane_speeds
+            speed,
+            previous,
+            reference,
+            allowed,
+            observation.foresight,
+            observation.lane_speeds,
+            gap,
         )
         if plan.found:
             force = plan.force

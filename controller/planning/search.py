@@ -89,10 +89,12 @@ class Search:
         fastest: float,
         allowed: Array,
         foresight: Foresight | None,
+        end: float,
     ) -> str:
         """Search: driving on, what was planned, and the others in turn or all at once.
 
-        Where the way ends within the horizon, driving up to there is among the first.
+        Where the way ends within the horizon, ``end`` [m] from here, driving up to there is among
+        the first.
 
         All are tried where the best so far comes too close to somebody. Else, what is best
         changes slowly: besides the plan, driving on and one of the others are tried by turns, so
@@ -102,7 +104,7 @@ class Search:
         others = [k for k, (a, least) in enumerate(kinds) if k and (a >= 0.0 or speed > least)]
         self._turn += 1
         drive_on = not planned or self._drives_on or self._turn % 2 == 1
-        ends = bool(allowed[-1] < fastest * self._time_step * len(allowed))
+        ends = bool(end < fastest * self._time_step * len(allowed))
         first = [
             *([_DRIVE_ON] if drive_on else []),
             *([self._as_planned] if planned else []),
@@ -112,7 +114,7 @@ class Search:
         if planned:
             content = [] if self._turn % 2 else [others[self._turn // 2 % len(others)]]
         heats = Heats(first, content, others if drive_on else [_DRIVE_ON, *others])
-        self._lay_out(speed, before, fastest, float(allowed[-1]) if ends else inf)
+        self._lay_out(speed, before, fastest, end if ends else inf)
         if self._compare(heats, drive_on, allowed, foresight):
             self._drives_on = True
             return "clear"

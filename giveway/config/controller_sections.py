@@ -164,7 +164,7 @@ class PlannerConfig(Section):
     """The planning MPC (controller = "mpc"); every ingredient is a switch, docs/controllers.md."""
 
     horizon: float = option(
-        3.0,
+        4.0,
         "s",
         "how far it plans",
         ge=0.3,
@@ -200,15 +200,16 @@ class PlannerConfig(Section):
         because="beyond, a plan is made of that weight alone",
     )
     conflict_weight: float = option(
-        0.6,
+        0.65,
         None,
-        "seconds of delay that one person-second with less than 1.5 s to a collision is worth",
+        "seconds of delay that one person-second at v_r with less than 1.5 s to a collision is "
+        "worth",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
     )
     nearness_weight: float = option(
-        0.3,
+        3.0,
         None,
         "seconds of delay that a second at v_r right before somebody is worth, none at d_safe",
         ge=0,
@@ -224,7 +225,7 @@ class PlannerConfig(Section):
         because="beyond, a plan is made of that weight alone",
     )
     minimum_distance: float = option(
-        1.0,
+        0.5,
         "m",
         "least distance to a person in front, at standstill",
         ge=0,
@@ -277,7 +278,7 @@ class SafetyConfig(Section):
         flag="--safety",
     )
     people: Literal["worst-case", "recorded-99.9", "responsible"] = option(
-        "worst-case",
+        "recorded-99.9",
         None,
         "what it takes them to do at worst: worst-case, all that the simulated ones can; "
         "recorded-99.9, 3 m/s^2, which real people near cars exceed once in 1,000 instants; "

@@ -122,7 +122,7 @@ class Ego:
             planned_speed=planner.planned_speed,
             clearance=waiting.clearance,
             braking=self.config.mpc.force_limit / self.config.vehicle.mass,
-            safety_layer=waiting.safety is not None,
+            worst=None if waiting.safety is None else waiting.safety.worst,
         )
 
     @property

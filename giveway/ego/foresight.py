@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from controller import Heats, Manoeuvre, Prospect, Trials, Verdict
+from controller import Heats, Manoeuvre, Prospect, Trials, Verdict, WorstMotion
 from giveway.ego.corridor import fill_poses
 from giveway.ego.prospects import View, assess
 from giveway.ego.race import Lanes, run_race
@@ -65,7 +65,7 @@ class CrowdForesight:
         planned_speed: the crowd is predicted under the manoeuvre, else under the present speed.
         clearance: [m] that the safety layer keeps to pedestrians' bodies.
         braking: [m/s^2] of the ego at most.
-        safety_layer: whether there is one: only then it matters what it would do.
+        worst: what the safety layer takes people to do; None: there is none.
         conflict_time: time to collision of a conflict [s] (FHWA-HRT-08-051).
     """
 
@@ -82,7 +82,7 @@ class CrowdForesight:
         planned_speed: bool,
         clearance: float,
         braking: float,
-        safety_layer: bool,
+        worst: WorstMotion | None,
         conflict_time: float = CRITICAL_TTC,
     ) -> None:
         N, M = horizon, predictor.horizon
@@ -95,14 +95,15 @@ class CrowdForesight:
             View(shape.length, shape.width, half_width, growth, conflict_time, time_step, every)
         )
         walking = predictor.parameters
+        able = worst or WorstMotion(walking.max_acceleration, walking.max_speed)
         self._alarm = tuple(
             Alarm(
                 walking.body_radius,
                 clearance,
-                walking.max_acceleration,
-                walking.max_speed,
+                able.acceleration,
+                able.speed,
                 braking,
-                safety_layer,
+                worst is not None,
             )
         )
         self._length = shape.length

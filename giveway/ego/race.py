@@ -135,7 +135,9 @@ def run_race(
             if k < 0:
                 break
             enter(k, distance, speed, steps, alike)
-            sums[0, k] = own_cost(speed[k], acceleration[k], time_step, weights)
+            sums[0, k] = own_cost(
+                distance[k, -1], speed[k], acceleration[k], allowed, time_step, weights
+            )
             sums[1, k], sums[2, k] = 0.0, 0.0
             running[count] = k
             count += 1

@@ -11,6 +11,7 @@ _SLOW = 0.2  # [m/s] the ego is no danger (Yang & Özgüner 2019: a standing veh
 _HALVINGS = 5  # of the interval in which the calm speed is looked for
 _WHOLE = 1e-6  # of a step: so much longer a stop takes no step more
 _ROUNDING = 1e-6  # [m] farther off than could matter: nothing that is left out is a near miss
+_FADING = 0.5  # [s] beyond the conflict time in which somebody counts less and less
 _SPARE = 0.05  # [m] kept beyond what the safety layer needs: predictions are a little off
 
 
@@ -44,6 +45,7 @@ def conflicts_and_calm(
 ) -> tuple[float, float]:
     """Persons who would touch the ego within the conflict time if both kept their velocity.
 
+    Who would do so up to half a second later counts in proportion.
     They are ``here`` (n, 2) [m], on their ways from ``before`` to ``after`` in ``interval`` [s].
     ``heading`` is the body's, ``braking_heading`` that of the way on which the front would stop.
     Also the speed [m/s] from which on no pedestrian could force an emergency stop, see
@@ -54,7 +56,8 @@ def conflicts_and_calm(
     c, s = np.cos(heading), np.sin(heading)
     turn = braking_heading - heading
     c_b, s_b = np.cos(turn), np.sin(turn)
-    far = 2.0 * half_length + half_width + conflict_time * (speed + alarm.walking_speed)
+    soon = conflict_time + _FADING
+    far = 2.0 * half_length + half_width + soon * (speed + alarm.walking_speed)
     conflicts, calm, braking = 0.0, speed, outline(speed, time_step, alarm)
     for j in range(here.shape[0]):
         d_x, d_y = here[j, 0] - front_x, here[j, 1] - front_y
@@ -66,15 +69,15 @@ def conflicts_and_calm(
         w_x, w_y = to_frame(w_x, w_y, c, s)
         # Who cannot come beside, before or behind the body in that time needs no more thought.
         apart = max(
-            abs(y) - half_width - abs(w_y) * conflict_time,
-            abs(x + half_length) - half_length - abs(w_x - speed) * conflict_time,
+            abs(y) - half_width - abs(w_y) * soon,
+            abs(x + half_length) - half_length - abs(w_x - speed) * soon,
         )
         if apart <= alarm.radius + _ROUNDING:
             begin, end = contact_interval(
                 x + half_length, y, w_x - speed, w_y, half_length, half_width, alarm.radius
             )
-            if end >= 0.0 and begin < conflict_time:
-                conflicts += 1.0
+            if end >= 0.0 and begin < soon:
+                conflicts += min(1.0, (soon - begin) / _FADING)
         if not alarm.heeded:
             continue
         if turn != 0.0:

@@ -16,10 +16,11 @@ EAST = np.array([[0.0, 0.0, 1.0, 0.0]])  # the front's middle at the origin, hea
 NOBODY = np.zeros((0, 2))
 RESOLUTION = 4.0  # N
 TO_HOLD_4_M_S = 400.0  # N
+SIMULATED = {"walking_acceleration": 5.0, "walking_speed": 2.5}  # all that simulated people can
 
 
 def let_through(force, speed, position, velocity=None, way=EAST, **parameters):
-    layer = SafetyLayer(MODEL, SafetyParameters(**parameters))
+    layer = SafetyLayer(MODEL, SafetyParameters(**(SIMULATED | parameters)))
     position = np.asarray(position, dtype=float).reshape(-1, 2)
     velocity = np.zeros_like(position) if velocity is None else np.asarray(velocity, dtype=float)
     return layer.filter(force, speed, way, 0.25, position, velocity.reshape(-1, 2))

@@ -19,6 +19,7 @@ from controller import LongitudinalModel, SafetyLayer, SafetyParameters
 from controller.worst_motion import RECORDED
 
 A_MAX, V_MAX, R, HALF = 5.0, 2.5, 0.27, 1.0
+SIMULATED = {"walking_acceleration": A_MAX, "walking_speed": V_MAX}
 LOOKS = 5  # in between, at each step
 SPACING = 0.1  # m
 
@@ -141,9 +142,8 @@ def drive(
     ``hardest`` is how hard everybody, or each, accelerates at most.
     """
     rng = np.random.default_rng(seed)
-    layer = SafetyLayer(
-        LongitudinalModel(time_step=dt), SafetyParameters(position_error=noise, **parameters)
-    )
+    limits = SafetyParameters(position_error=noise, **(SIMULATED | parameters))
+    layer = SafetyLayer(LongitudinalModel(time_step=dt), limits)
     plant = plant or Plant(0.0, dt=dt, exact=bool(rng.integers(2)))
     x, v = wanting_to_be_hit(rng, people, road)
     mood = rng.integers(3, size=people)
@@ -251,7 +251,7 @@ def test_a_milder_assumption_lets_more_through(name):
         layer = SafetyLayer(LongitudinalModel(), SafetyParameters(**limits))
         return layer.filter(8000.0, 4.0, way, SPACING, beside, still).force
 
-    assert allowed(**limits_of(name)) > allowed() + 100.0
+    assert allowed(**limits_of(name)) > allowed(**SIMULATED) + 100.0
 
 
 def test_these_people_are_driven_into_without_it():

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Run = Callable[..., RunResult]
 
-FREE, GIVES_WAY = 3, 13  # crowds that leave the ego alone, and that it waits for
+FREE, GIVES_WAY = 6, 13  # crowds that leave the ego alone, and that it waits for
 SHORT = 9.0  # [s] the first pedestrians and the ego meet after some 6 s
 GUARDED = {"safety layer", "unavoidable", ""}
 SWITCHES = {
@@ -81,7 +81,7 @@ def test_every_ingredient_can_be_changed_and_matters(run_once: Run, name: str) -
 
 
 @pytest.mark.parametrize(
-    ("name", "seed", "until"), [("calm_time", 1, 12.0), ("threat_weight", 1, 16.0)]
+    ("name", "seed", "until"), [("calm_time", 1, 12.0), ("threat_weight", 9, 16.0)]
 )
 def test_calm_speeds_matter_in_some_crowds(
     run_once: Run, name: str, seed: int, until: float

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from controller import LongitudinalModel, PlannerParameters
 from controller.planning.smoothing import SmoothingProblem, nodes_of
 
-N = 60
+N = PlannerParameters().horizon
 FREE = np.full(N, np.inf)
 MODEL = LongitudinalModel()
 FOLLOWING = PlannerParameters(gap_choice=False)  # its QP depends on nothing but its input

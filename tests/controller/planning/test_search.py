@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from copy import deepcopy
 
 import numpy as np
@@ -133,7 +134,7 @@ def test_the_cost_of_others_by_hand():
     m, n = steady(2.0, 20), 20 * DT
     own = costs(m, weights())[0]
     w = weights(nearness_weight=0.3, closeness_weight=20.0, conflict_weight=0.6, threat_weight=1.0)
-    assert costs(m, w, conflicts=2.0)[1] == pytest.approx(n * 0.6 * 2)
+    assert costs(m, w, conflicts=2.0)[1] == pytest.approx(n * 0.6 * 2 * math.sqrt(0.5))  # half v_r
     assert costs(m, w, calm=1.0)[1] == pytest.approx(n * 1.0 / 4.0)
     assert costs(m, w, gap=4.0)[1] == pytest.approx(n * 0.3 * 0.5 * 0.5)  # half d_safe, half v_r
     assert costs(m, w, gap=8.0)[1] == 0.0

@@ -22,9 +22,10 @@ N, DT = 20, 0.05
 EVERY = 2  # steps of a manoeuvre in one of the prediction
 LOOKS = range(0, N - 1, EVERY)  # where conflicts are looked for
 LENGTH, WIDTH, RADIUS = 5.0, 2.0, SIM.body_radius
-HALF_WIDTH, CONFLICT_TIME = 1.25, 1.5
+HALF_WIDTH, CONFLICT_TIME, FADING = 1.25, 1.5, 0.5
 FRONT = 20.0  # [m]
-ALARM = Alarm(RADIUS, 0.05, SIM.max_acceleration, SIM.max_speed, 8.0, heeded=True)
+WORST = SafetyParameters().worst
+ALARM = Alarm(RADIUS, 0.05, WORST.acceleration, WORST.speed, 8.0, heeded=True)
 EDGE = 1e-6
 
 angles = np.linspace(-np.pi / 2, np.pi / 2, 200)
@@ -67,8 +68,11 @@ def assessed(path, people, m, *, growth=0.0, alarm=ALARM, every=EVERY):
     return out
 
 
-def touching_courses(path, people, m, i):
-    """Persons at step i + 1 on a course that touches the ego's body, and those on the edge."""
+def conflicts_at(path, people, m, i):
+    """Persons at step i + 1 on a course that touches the ego's body, and those on the edge.
+
+    Whoever touches it within the conflict time counts once, half a second later not at all.
+    """
     x, y, heading = path.pose(FRONT + m.distance[i + 1], LENGTH)
     towards = np.array([np.cos(heading), np.sin(heading)])
     left = np.array([-towards[1], towards[0]])
@@ -79,12 +83,15 @@ def touching_courses(path, people, m, i):
     ]
     body = shapely.Polygon(corners)
     relative = (people[i + 1] - people[i]) / DT - m.speed[i + 1] * towards
-    courses = [
-        shapely.LineString([p, p + w * CONFLICT_TIME])
-        for p, w in zip(people[i], relative, strict=True)
-    ]
-    distance = shapely.distance(body, courses)
-    return (distance < RADIUS - EDGE).sum(), (np.abs(distance - RADIUS) <= EDGE).sum()
+    surely, perhaps = 0.0, 0
+    for p, w in zip(people[i], relative, strict=True):
+        course = shapely.LineString([p, p + w * (CONFLICT_TIME + FADING)])
+        met = shapely.intersection(course, body.buffer(RADIUS, quad_segs=4000))
+        if not met.is_empty:
+            begin = min(np.hypot(*(np.array(met.coords) - p).T)) / np.hypot(*w)
+            surely += np.clip((CONFLICT_TIME + FADING - begin) / FADING, 0.0, 1.0)
+        perhaps += abs(body.distance(course) - RADIUS) <= EDGE
+    return surely, perhaps
 
 
 @pytest.mark.parametrize("seed", range(15))
@@ -112,7 +119,7 @@ def test_who_is_predicted_at_each_step_is_looked_at_at_each_step():
     often, seldom = (assessed(STRAIGHT, people, m, every=every) for every in (1, 2))
     assert np.allclose(often[0], seldom[0])
     assert not np.array_equal(often[1][:-1:2], often[1][1::2])
-    assert np.array_equal(often[1][::2], seldom[1][::2])
+    assert np.allclose(often[1][::2], seldom[1][::2])
 
 
 def test_steps_that_are_left_over_belong_to_the_last_prediction():
@@ -130,8 +137,8 @@ def test_conflicts_are_people_on_a_course_into_the_ego(name, seed):
     _, conflicts, _ = assessed(path, people, m)
     for i in LOOKS:
         if m.speed[i + 1] > 0.2:
-            surely, perhaps = touching_courses(path, people, m, i)
-            assert surely <= conflicts[i] <= surely + perhaps
+            surely, perhaps = conflicts_at(path, people, m, i)
+            assert surely - EDGE <= conflicts[i] <= surely + perhaps + EDGE
     assert np.array_equal(conflicts[1::2], conflicts[::2])  # held between two looks
 
 
@@ -192,7 +199,7 @@ def test_threats_outline_when_the_safety_layer_would_act():
         seen[int(acted), int(is_threat(x, y, *w, outline(v, DT, ALARM), WIDTH / 2, DT, ALARM))] += 1
     assert seen[1].sum() > 300
     assert seen[1, 1] / seen[1].sum() > 0.995  # of the acts
-    assert seen[0, 1] / seen[0].sum() < 0.03  # false alarms
+    assert seen[0, 1] / seen[0].sum() < 0.06  # false alarms
 
 
 @pytest.mark.parametrize("name", PATHS)
@@ -203,7 +210,7 @@ def test_whoever_stands_where_the_safety_layer_would_act_is_a_threat(name):
     front = FRONT + m.distance[1]
     ways = FrontPoses(path, LENGTH)
     acted = 0
-    for ahead, aside in itertools.product(np.arange(0.7, 2.4, 0.1), (-2.0, -1.8, 1.8, 2.0)):
+    for ahead, aside in itertools.product(np.arange(0.7, 2.4, 0.1), (-1.6, -1.4, 1.4, 1.6)):
         x, y, heading = path.pose(front + ahead)
         there = np.array([[x - aside * np.sin(heading), y + aside * np.cos(heading)]])
         layer.reset()
@@ -228,7 +235,7 @@ def foresight(**changes):
         "planned_speed": True,
         "clearance": 0.05,
         "braking": 8.0,
-        "safety_layer": True,
+        "worst": WORST,
     }
     shape = VehicleShape(LENGTH, WIDTH)
     return CrowdForesight(plan_predictor(SIM, DT, N), STRAIGHT, shape, **(settings | changes))

@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from controller import LongitudinalModel, ManoeuvreParameters, Planner, PlannerParameters
+from controller import (
+    LongitudinalModel,
+    ManoeuvreParameters,
+    Planner,
+    PlannerParameters,
+    SafetyParameters,
+)
 from giveway.ego.foresight import CrowdForesight, plan_predictor
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
@@ -40,7 +46,7 @@ def foresight(**changes):
         "planned_speed": True,
         "clearance": 0.05,
         "braking": 8.0,
-        "safety_layer": True,
+        "worst": SafetyParameters().worst,
     }
     return CrowdForesight(
         plan_predictor(SIM, DT, N), BEND, VehicleShape(LENGTH, WIDTH), **(settings | changes)
