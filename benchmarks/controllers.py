@@ -1,0 +1,137 @@
+"""The tables of docs/controllers.md from a study of controllers.
+
+Run: giveway study controllers --runs 50 --first-seed 501 --out FOLDER
+     python benchmarks/controllers.py FOLDER                # as Markdown, on the terminal
+     python benchmarks/controllers.py FOLDER --write        # into docs/controllers.md
+
+Seeds from 501 on were never looked at while the default was tuned.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import NamedTuple
+
+import pandas as pd
+
+BASELINE = "pid-tuned"
+SIGNS = {"better": " **+**", "worse": " **−**"}
+PAGE = Path(__file__).parents[1] / "docs" / "controllers.md"
+
+
+class Column(NamedTuple):
+    """A column of the table."""
+
+    name: str
+    title: str
+    digits: int
+    interval: bool = False
+    scale: float = 1.0
+
+
+COLUMNS = (
+    Column("completion_time", "completion [s]", 1, interval=True),
+    Column("longest_wait", "longest wait [s]", 1, interval=True),
+    Column("stops", "stops", 1),
+    Column("rms_jerk", "RMS jerk [m/s³]", 1, interval=True),
+    Column("peak_deceleration", "hardest braking [m/s²]", 1),
+    Column("conflicts", "conflicts", 1, interval=True),
+    Column("share_below_ttc", "TTC < 1.5 s", 2),
+    Column("minimum_pet", "least PET [s]", 2),
+    Column("minimum_clearance", "least clearance [m]", 2),
+    Column("mean_people_delay", "people's mean delay [s]", 2, interval=True),
+    Column("safety_share", "layer acts [%]", 2, scale=100.0),
+)
+SUMS = (("frontal_contacts", "frontal"), ("side_contacts", "side"))
+
+
+def table(folder: Path) -> list[str]:
+    """Lines of Markdown: means and half their 95 % intervals by scene and controller."""
+    runs = pd.read_csv(folder / "runs.csv", low_memory=False)
+    cells = pd.read_csv(folder / "cells.csv")
+    levels = pd.read_csv(folder / "levels.csv")
+    comparison = pd.read_csv(folder / "comparison.csv")
+    general = comparison[comparison.situation == "general"]
+    verdicts = general.set_index(["scene", "treatment", "metric"]).verdict
+    spread = levels.set_index(["scene", "controller", "metric"])
+    titles = [column.title for column in COLUMNS] + [title for _, title in SUMS]
+    lines = ["| scene | controller | " + " | ".join(titles) + " |"]
+    lines.append("|" + "---|" * (len(titles) + 2))
+    for scene, group in cells.groupby("scene", sort=False):
+        for row in group.itertuples():
+            of = runs[runs.cell == row.cell]
+            told = [scene if row.controller == group.controller.iloc[0] else "", row.controller]
+            told += [
+                entry(column, (scene, row.controller, column.name), spread, verdicts)
+                for column in COLUMNS
+            ]
+            told += [str(int(of[name].sum())) for name, _ in SUMS]
+            lines.append("| " + " | ".join(str(cell) for cell in told) + " |")
+    return lines
+
+
+def entry(
+    column: Column, key: tuple[object, object, str], spread: pd.DataFrame, verdicts: pd.Series
+) -> str:
+    """A cell of the table; a sign where the difference to the baseline is beyond chance."""
+    if key not in spread.index:
+        return "-"
+    found = spread.loc[key]
+    if pd.isna(found["mean"]):
+        return "-"
+    said = f"{column.scale * found['mean']:.{column.digits}f}"
+    if column.interval and pd.notna(found.ci_low):
+        said += f" ±{column.scale * (found.ci_high - found.ci_low) / 2:.{column.digits}f}"
+    return said + SIGNS.get(str(verdicts.get(key, "")), "")
+
+
+def differences(folder: Path) -> list[str]:
+    """Lines of Markdown: paired differences of the default to the baseline, scene by scene."""
+    comparison = pd.read_csv(folder / "comparison.csv")
+    shown = ("completion_time", "longest_wait", "rms_jerk", "conflicts", "mean_people_delay")
+    kept = comparison[(comparison.situation == "general") & (comparison.treatment == "mpc")]
+    by = kept.set_index(["scene", "metric"])
+    lines = ["| scene | time [s] | longest wait [s] | RMS jerk [m/s³] | conflicts | "
+             "people's mean delay [s] |", "|---|---|---|---|---|---|"]  # fmt: skip
+    for scene in kept.scene.drop_duplicates():
+        told = [str(scene)]
+        for metric in shown:
+            row = by.loc[(scene, metric)] if (scene, metric) in by.index else None
+            if row is None or pd.isna(row.ci_low):
+                told.append("-")
+            else:
+                told.append(
+                    f"{row.mean_difference:+.2f} [{row.ci_low:+.2f}, {row.ci_high:+.2f}]"
+                    + SIGNS.get(str(row.verdict), "")
+                )
+        lines.append("| " + " | ".join(told) + " |")
+    return lines
+
+
+def write(name: str, lines: list[str]) -> None:
+    """Put lines between the marks of that name in the page."""
+    text = PAGE.read_text(encoding="utf-8")
+    begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
+    before, rest = text.split(begin)
+    after = rest.split(end)[1]
+    PAGE.write_text(before + begin + "\n".join(lines) + "\n" + end + after, encoding="utf-8")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--write", action="store_true", help="into docs/controllers.md")
+    options = parser.parse_args()
+    for name, lines in (
+        ("differences", differences(options.folder)),
+        ("all scenes", table(options.folder)),
+    ):
+        if options.write:
+            write(name, lines)
+        else:
+            print("\n".join(lines), end="\n\n")
+
+
+if __name__ == "__main__":
+    main()
