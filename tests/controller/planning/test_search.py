@@ -130,6 +130,17 @@ def test_the_cost_of_a_free_way_is_the_missing_speed_and_the_acceleration():
     assert costs(m, w)[0] == pytest.approx(DT * 0.05 * 4.0)
 
 
+def test_speed_at_the_end_counts_as_far_as_the_way_goes_on():
+    """4 m/s with 0.75 m left, of b = 6 m/s^2: 3 m/s can be braked from; behind who drives, more."""
+    w = weights(time_weight=0.0, acceleration_weight=0.0, final_weight=1.0, deceleration=6.0)
+    m = steady(4.0, 20)
+    before_a_line = np.full(20, m.distance[-1] + 0.75)
+    assert costs(m, w, allowed=before_a_line)[0] == pytest.approx(0.25)
+    behind_a_car = before_a_line[-1] + 4.0 * DT * np.arange(-19, 1)
+    assert costs(m, w, allowed=behind_a_car)[0] == pytest.approx(0.0)
+    assert costs(m, w)[0] == pytest.approx(0.0)
+
+
 def test_the_cost_of_others_by_hand():
     m, n = steady(2.0, 20), 20 * DT
     own = costs(m, weights())[0]

@@ -9,7 +9,13 @@ import numpy as np
 import pytest
 import shapely
 
-from controller import LongitudinalModel, Manoeuvre, SafetyLayer, SafetyParameters
+from controller import (
+    LongitudinalModel,
+    Manoeuvre,
+    SafetyLayer,
+    SafetyParameters,
+    WorstMotion,
+)
 from giveway.ego.foresight import CrowdForesight, plan_predictor
 from giveway.ego.prospects import PASSED, View, assess
 from giveway.ego.safety import FrontPoses
@@ -241,12 +247,21 @@ def foresight(**changes):
     return CrowdForesight(plan_predictor(SIM, DT, N), STRAIGHT, shape, **(settings | changes))
 
 
-def look(ahead, *, speed=4.0):
+def look(ahead, *, speed=4.0, off=6.0):
     """Somebody beside the corridor who wants to cross before the ego."""
-    crowd = Crowd.create([(FRONT + 6.0, -2.0)], [(0.0, 1.3)], 1.3, [[(FRONT + 6.0, 10.0)]])
+    crowd = Crowd.create([(FRONT + off, -2.0)], [(0.0, 1.3)], 1.3, [[(FRONT + off, 10.0)]])
     poses = np.zeros((N, 1, 7))
     poses[:, :, 4:] = LENGTH / 2, LENGTH / 2, WIDTH
     ahead.look(crowd, OPEN_GROUND, poses, 0, FRONT, speed)
+
+
+def test_calm_speeds_are_those_of_what_the_layer_below_assumes():
+    calm = []
+    for worst in (WorstMotion(5.0, 2.5), WORST, WorstMotion(1.0, 2.5), None):
+        ahead = foresight(worst=worst)
+        look(ahead, off=3.5)
+        calm.append(ahead.prospect(manoeuvre(4.0)).calm.min())
+    assert calm[0] < calm[1] < calm[2] <= calm[3] == np.inf
 
 
 def test_a_plan_is_predicted_in_steps_of_a_tenth_of_a_second():
