@@ -35,7 +35,7 @@ class ManoeuvreParameters:
     acceleration_weight: float = 0.05  # of (m/s^2)^2
     nearness_weight: float = 3.0  # of the share of d_safe that is missing, times v / v_r
     closeness_weight: float = 100.0  # of a metre too little to stop in, times v / v_r
-    conflict_weight: float = 0.65  # of a person on a collision course, times sqrt(v / v_r)
+    conflict_weight: float = 0.45  # of a person on a collision course, times sqrt(v / v_r)
     threat_weight: float = 1.0  # of the speed beyond the calm one, over v_r
     final_weight: float = 1.0  # [s] of the missing speed at the horizon's end
     persistence: float = 0.02  # [s] that another manoeuvre must be better than the last plan

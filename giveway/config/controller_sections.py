@@ -200,7 +200,7 @@ class PlannerConfig(Section):
         because="beyond, a plan is made of that weight alone",
     )
     conflict_weight: float = option(
-        0.65,
+        0.45,
         None,
         "seconds of delay that one person-second at v_r with less than 1.5 s to a collision is "
         "worth",
