@@ -27,4 +27,6 @@ def mark_conflicts(axes: Axes, conflicts: Sequence[Conflict]) -> None:
             )  # fmt: skip
     if conflicts:
         marks = [mark for mark in axes.collections if str(mark.get_label()).split(" ")[0] in _MARKS]
-        axes.legend(handles=marks, title="Conflicts", loc="best", frameon=True, framealpha=0.9)
+        axes.legend(
+            handles=marks, title="Conflicts by TTC or PET", loc="best", frameon=True, framealpha=0.9
+        )
