@@ -81,7 +81,7 @@ def test_every_ingredient_can_be_changed_and_matters(run_once: Run, name: str) -
 
 
 @pytest.mark.parametrize(
-    ("name", "seed", "until"), [("calm_time", 1, 12.0), ("threat_weight", 9, 16.0)]
+    ("name", "seed", "until"), [("calm_time", 1, 12.0), ("threat_weight", 4, 16.0)]
 )
 def test_calm_speeds_matter_in_some_crowds(
     run_once: Run, name: str, seed: int, until: float
