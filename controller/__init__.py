@@ -22,7 +22,9 @@ from controller.planning import (
     PlannerParameters,
     PlanningController,
     add_cost_of_others,
+    later_cost,
     own_cost,
+    pace_of,
 )
 from controller.protocol import Controller, Decision, Observation, PathAhead, People
 from controller.safety import SafeForce, SafetyLayer, SafetyParameters
@@ -71,6 +73,8 @@ __all__ = [
     "Verdict",
     "WorstMotion",
     "add_cost_of_others",
+    "later_cost",
     "own_cost",
+    "pace_of",
     "worst_motion",
 ]

@@ -64,11 +64,15 @@ class Prospect(NamedTuple):
         conflicts: (N,) persons who would be less than the conflict time from a collision.
         calm: (N,) [m/s] the speed up to which nobody could force an emergency stop, whatever
             people did that they can; inf: the manoeuvre's is calm.
+        crossers: (n, 4) who will be on the ego's way beyond the horizon: how far ahead of its front
+            [m] at the horizon's end, how fast along the way [m/s], from when [s] after that end,
+            and until when; 0: never. A race fills none.
     """
 
     gap: Array
     conflicts: Array
     calm: Array
+    crossers: Array = np.empty((0, 4))  # nothing is ever written into it
 
 
 class Foresight(Protocol):
@@ -122,6 +126,7 @@ class RacingForesight(Foresight, Protocol):
         heats: Heats,
         lead: bool,
         allowed: Array,
+        wanted: float,
         weights: tuple[Any, ...],
     ) -> Verdict:
         """The cheapest of some manoeuvres: the same as by asking for the prospect of each.
@@ -131,5 +136,6 @@ class RacingForesight(Foresight, Protocol):
             heats: which of them are compared.
             lead: ask first whether anybody is in the way of the first one; if nobody is, it wins.
             allowed: (N,) [m] that may be driven until steps 1 ... N.
+            wanted: the speed [m/s] that time is lost against.
             weights: the numbers of the cost.
         """

@@ -12,7 +12,7 @@ from pedestrian_model.errors import (
 from pedestrian_model.influence import vehicle_influence
 from pedestrian_model.model import LONGEST_STEP, CrowdModel, arrived, require_steady
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
-from pedestrian_model.prediction import Predictor, leap, start
+from pedestrian_model.prediction import Predictor, leap, start, wish
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
 from pedestrian_model.targets import remaining_distance, targets
 from pedestrian_model.vehicles import Vehicles
@@ -43,4 +43,5 @@ __all__ = [
     "start",
     "targets",
     "vehicle_influence",
+    "wish",
 ]

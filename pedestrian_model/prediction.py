@@ -1,5 +1,6 @@
 """Where the crowd will be: the model itself, applied N times under given vehicle poses."""
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -7,6 +8,7 @@ from numpy.typing import NDArray
 
 from pedestrian_model._constants import pack
 from pedestrian_model._jit import borrowed, inlined, kernel
+from pedestrian_model._routes import Line, aim
 from pedestrian_model._rows import Arrays, Scratch, Workspace
 from pedestrian_model._step import FINE, Scene, State, march, parts
 from pedestrian_model.crowd import Crowd
@@ -128,6 +130,12 @@ class Predictor:
         scratch = self._workspace.arrays
         return (*crowd.state, *crowd.wishes, *surroundings.arrays, *scratch, *self._state)
 
+    def wishes(self, crowd: Crowd, surroundings: Surroundings = OPEN_GROUND) -> NDArray[np.float64]:
+        """(n, 3) what everybody wishes at the end of the latest prediction, see :func:`wish`."""
+        wishes = np.empty((len(crowd), 3))
+        _fill_wishes(self.arrays(crowd, surroundings), wishes)
+        return wishes
+
     @staticmethod
     def divergence(crowd: Crowd, bad: int) -> DivergenceError:
         """The error that says whose state a step has made infinite."""
@@ -206,6 +214,41 @@ def leap(
     for i in range(n):
         x[i, 0], x[i, 1] = x[i, 0] - lead * before[i, 0], x[i, 1] - lead * before[i, 1]
     return insane
+
+
+@inlined
+def wish(x: float, y: float, target: int, i: int, scene: Scene) -> tuple[float, float, float]:
+    """The velocity [m/s] that a pedestrian would have with nobody about, and for how long [s].
+
+    It leads to the way-point, or to the nearest point of its passage; beyond it they are taken to
+    go straight on, unless it is their last or one that is closed.
+
+    Args:
+        x: where they are [m].
+        y: [m].
+        target: the index of their way-point.
+        i: who.
+        scene: what the crowd walks among.
+    """
+    w, q, signal, begin = scene.routes
+    at = begin[i] + target
+    passage = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+    to_x, to_y = aim(x, y, passage, 0.0)
+    to_x, to_y = to_x - x, to_y - y
+    left, pace = math.sqrt(to_x * to_x + to_y * to_y), scene.desired_speed[i]
+    if left <= 0.0 or pace <= 0.0:
+        return 0.0, 0.0, math.inf
+    ends = at == begin[i + 1] - 1 or (signal[at] >= 0 and scene.closed[signal[at]])
+    return pace * to_x / left, pace * to_y / left, left / pace if ends else math.inf
+
+
+@kernel
+def _fill_wishes(arrays: Arrays, wishes: NDArray[np.float64]) -> None:
+    """Fill ``wishes`` (n, 3) with those at the end of the latest prediction."""
+    scene = parts(arrays[:-4])[1]
+    x, at = borrowed(arrays[-4]), borrowed(arrays[-2])
+    for i in range(x.shape[0]):
+        wishes[i, 0], wishes[i, 1], wishes[i, 2] = wish(x[i, 0], x[i, 1], at[i], i, scene)
 
 
 @kernel

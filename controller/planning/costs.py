@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from controller._jit import Array, kernel
+from controller.planning.cost_to_go import time_to_go
 from controller.planning.parameters import Weights
 
 
@@ -25,7 +26,9 @@ def cost(
     gap: Array,
     conflicts: Array,
     calm: Array,
+    crossers: Array,
     allowed: Array,
+    wanted: float,
     time_step: float,
     weights: tuple[Any, ...],
 ) -> tuple[float, float, float]:
@@ -38,7 +41,9 @@ def cost(
         gap: (N,) [m] to the closest person in front at steps 1 ... N.
         conflicts: (N,) persons.
         calm: (N,) [m/s].
+        crossers: (n, 4) who comes onto the way later.
         allowed: (N,) [m] that may be driven until then: vehicles, lights.
+        wanted: the speed [m/s] where nobody is in the way, see :func:`pace_of`.
         time_step: [s].
         weights: the numbers of :class:`Weights`.
 
@@ -46,7 +51,8 @@ def cost(
         The whole cost; the part of it that other people and vehicles cause; the longest missing
         stopping distance [m].
     """
-    own = own_cost(distance[-1], speeds, accelerations, allowed, time_step, weights)
+    own = own_cost(speeds, accelerations, wanted, time_step, weights)
+    own += later_cost(crossers, distance[-1], speeds[-1], wanted, allowed, time_step, weights)
     others, missing = 0.0, 0.0
     for i in range(len(gap)):
         beyond = distance[i + 1] - allowed[i]
@@ -57,31 +63,54 @@ def cost(
 
 
 @kernel
+def pace_of(fastest: float, weights: tuple[Any, ...]) -> float:
+    """The speed [m/s] that time is lost against: ``fastest``, or half of v_r where that is less.
+
+    Where a bend or a light allows little speed, a metre more is worth more time.
+    """
+    pace: float = max(fastest, 0.5 * Weights(*weights).reference_speed)
+    return pace
+
+
+@kernel
 def own_cost(
-    driven: float,
     speeds: Array,
     accelerations: Array,
+    wanted: float,
+    time_step: float,
+    weights: tuple[Any, ...],
+) -> float:
+    """The part of a manoeuvre's cost [s] that is its own, whoever is about: time and comfort."""
+    w, own = Weights(*weights), 0.0
+    for i in range(len(speeds) - 1):
+        own += w.time * max(0.0, 1.0 - speeds[i + 1] / wanted)
+        own += w.acceleration * accelerations[i] ** 2
+    return time_step * own
+
+
+@kernel
+def later_cost(
+    crossers: Array,
+    driven: float,
+    speed: float,
+    wanted: float,
     allowed: Array,
     time_step: float,
     weights: tuple[Any, ...],
 ) -> float:
-    """The part of a manoeuvre's cost [s] that is its own, whoever is about: time and comfort.
+    """What lies beyond the horizon [s], see :func:`time_to_go`.
 
-    ``driven`` [m] is its distance at the horizon's end. What it gains there counts as far as the
-    way goes on: of its last speed only so much as can be braked to what is ``allowed`` then.
+    ``driven`` [m] is the manoeuvre's distance at the horizon's end, ``speed`` [m/s] its last one.
+    Of that counts as much as can be braked to what is ``allowed`` (N,) [m]: no plan gains by being
+    fast before the end of its way, but by being near it. When it goes on is not known.
     """
-    w, N = Weights(*weights), len(speeds) - 1
-    own = 0.0
-    for i in range(N):
-        share = speeds[i + 1] / w.reference_speed
-        own += w.time * max(0.0, 1.0 - share) + w.acceleration * accelerations[i] ** 2
-    last = speeds[N]
+    N = len(allowed)
     if allowed[N - 1] < np.inf:
         pace = max(0.0, allowed[N - 1] - allowed[N - 2]) / time_step if N > 1 else 0.0
         left = max(0.0, allowed[N - 1] - driven)
-        last = min(last, np.sqrt(pace**2 + 2.0 * w.deceleration * left))
-    total: float = time_step * own + w.final * max(0.0, 1.0 - last / w.reference_speed)
-    return total
+        speed = min(speed, np.sqrt(pace**2 + 2.0 * Weights(*weights).deceleration * left))
+    later: float = time_to_go(crossers, speed, wanted, weights)
+    return later
 
 
 @kernel
@@ -112,7 +141,8 @@ def add_cost_of_others(
     """
     w = Weights(*weights)
     share = speed / w.reference_speed
-    others += w.conflict * conflicts * np.sqrt(share)
+    counted = min(conflicts, 1.0) + w.growth * max(conflicts - 1.0, 0.0)
+    others += w.conflict * counted * np.sqrt(share)
     others += w.threat * max(0.0, speed - calm) / w.reference_speed
     if gap < w.safe_distance:
         others += w.nearness * (1.0 - max(gap, 0.0) / w.safe_distance) * share

@@ -36,8 +36,10 @@ class ManoeuvreParameters:
     nearness_weight: float = 3.0  # of the share of d_safe that is missing, times v / v_r
     closeness_weight: float = 100.0  # of a metre too little to stop in, times v / v_r
     conflict_weight: float = 0.45  # of a person on a collision course, times sqrt(v / v_r)
+    conflict_growth: float = 0.3  # of that weight which each further such person counts
     threat_weight: float = 1.0  # of the speed beyond the calm one, over v_r
-    final_weight: float = 1.0  # [s] of the missing speed at the horizon's end
+    later_weight: float = 1.0  # of the time that is lost beyond the horizon
+    final_weight: float = 1.0  # [s] of the speed that is missing after that
     persistence: float = 0.02  # [s] that another manoeuvre must be better than the last plan
     calm_time: float = 0.5  # [s] of the plan in which the calm speed is kept to
 
@@ -67,7 +69,9 @@ _WEIGHTS = (
     "nearness_weight",
     "closeness_weight",
     "conflict_weight",
+    "conflict_growth",
     "threat_weight",
+    "later_weight",
     "final_weight",
     "persistence",
 )
@@ -128,7 +132,9 @@ class Weights(NamedTuple):
     nearness: float
     closeness: float
     conflict: float
+    growth: float
     threat: float
+    later: float
     final: float
     terminal: bool
 
@@ -146,7 +152,9 @@ class Weights(NamedTuple):
             m.nearness_weight,
             m.closeness_weight,
             m.conflict_weight,
+            m.conflict_growth,
             m.threat_weight,
+            m.later_weight,
             m.final_weight,
             p.terminal,
         )

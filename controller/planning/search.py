@@ -14,7 +14,7 @@ import numpy as np
 from controller._jit import Array, kernel
 from controller.foresight import Foresight, Heats, Manoeuvre, Prospect, Trials
 from controller.model import LongitudinalModel
-from controller.planning.costs import cost
+from controller.planning.costs import cost, pace_of
 from controller.planning.motions import aim, approach, shift
 from controller.planning.parameters import PlannerParameters, Weights
 
@@ -115,7 +115,7 @@ class Search:
             content = [] if self._turn % 2 else [others[self._turn // 2 % len(others)]]
         heats = Heats(first, content, others if drive_on else [_DRIVE_ON, *others])
         self._lay_out(speed, before, fastest, end if ends else inf)
-        if self._compare(heats, drive_on, allowed, foresight):
+        if self._compare(heats, drive_on, fastest, allowed, foresight):
             self._drives_on = True
             return "clear"
         name = self._names[self._best]
@@ -133,7 +133,7 @@ class Search:
         """Without a search: the crowd answers to the last plan, the plan keeps d_safe."""
         self._lay_out(speed, before, fastest, inf)
         heats = Heats([self._as_planned], [], [])
-        return "clear" if self._compare(heats, True, allowed, foresight) else "as planned"
+        return "clear" if self._compare(heats, True, fastest, allowed, foresight) else "as planned"
 
     def _lay_out(self, speed: float, before: float, fastest: float, end: float) -> None:
         """Fill all trials; the way ends after ``end`` [m]."""
@@ -148,31 +148,43 @@ class Search:
         )
 
     def _compare(
-        self, heats: Heats, lead: bool, allowed: Array, foresight: Foresight | None
+        self,
+        heats: Heats,
+        lead: bool,
+        fastest: float,
+        allowed: Array,
+        foresight: Foresight | None,
     ) -> bool:
         """Find the cheapest of the trials, and keep it with what it would lead to.
 
         Args:
             heats: which ones.
             lead: ask first whether anybody is in the way of the first one.
+            fastest: [m/s] wanted where nobody is in the way.
             allowed: (N,) [m] that may be driven.
             foresight: of the crowd, or None.
 
         Returns:
             Whether it was asked for and nobody is; then that one is the best.
         """
+        wanted = pace_of(fastest, self.weights)
         race = getattr(foresight, "race", None)
         if race is None:
-            return self._one_by_one(heats, lead, allowed, foresight)
-        verdict = race(self._trials, heats, lead, allowed, self.weights)
+            return self._one_by_one(heats, lead, wanted, allowed, foresight)
+        verdict = race(self._trials, heats, lead, allowed, wanted, self.weights)
         self.tried, self.missing = verdict.tried, verdict.missing
         if verdict.best >= 0:
             self._take(verdict.best)
-            self.gap, self.conflicts, self.calm = verdict.prospect
+            self.gap, self.conflicts, self.calm, _ = verdict.prospect
         return bool(verdict.clear)
 
     def _one_by_one(
-        self, heats: Heats, lead: bool, allowed: Array, foresight: Foresight | None
+        self,
+        heats: Heats,
+        lead: bool,
+        wanted: float,
+        allowed: Array,
+        foresight: Foresight | None,
     ) -> bool:
         """Judge each of the trials to its end, whatever model people are believed to walk by."""
         self.tried, self.missing, lowest = 0, inf, inf
@@ -188,13 +200,13 @@ class Search:
                 if foresight is not None:
                     prospect = foresight.prospect(Manoeuvre(*manoeuvre))
                 whole, disturbed, missing = cost(
-                    *manoeuvre, *prospect, allowed, self._time_step, self.weights
+                    *manoeuvre, *prospect, allowed, wanted, self._time_step, self.weights
                 )
                 whole += self._trials.handicap[trial]
                 if whole < lowest:
                     lowest, self.missing = whole, missing
                     self._take(trial)
-                    self.gap, self.conflicts, self.calm = (a.copy() for a in prospect)
+                    self.gap, self.conflicts, self.calm = (a.copy() for a in prospect[:3])
                     if foresight is not None:
                         foresight.prefer()
                 if lead and disturbed <= 0.0 and trial == heats.first[0]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from controller import Heats, Manoeuvre, Prospect, Trials, Verdict, WorstMotion
 from giveway.ego.corridor import fill_poses
+from giveway.ego.crossers import fill_crossers
 from giveway.ego.prospects import View, assess
 from giveway.ego.race import Lanes, run_race
 from giveway.ego.threats import Alarm
@@ -166,7 +167,7 @@ class CrowdForesight:
             np.multiply(self._constant, self._now, out=self._distance)
             self._speed[:] = self._now
             self._predict(self._distance, self._speed)
-        gap, conflicts, calm = self._prospect
+        gap, conflicts, calm, _ = self._prospect
         path = self._path
         assess(
             path.vertices,
@@ -183,7 +184,17 @@ class CrowdForesight:
             conflicts,
             calm,
         )
-        return self._prospect
+        wishes = self._predictor.wishes(self._pedestrians, self._surroundings)
+        crossers = np.empty((len(wishes), 4))
+        fill_crossers(
+            path.vertices,
+            path.stations,
+            self._front + manoeuvre.distance[-1],
+            self._view[2],
+            np.column_stack([self._predicted[-1], wishes]),
+            crossers,
+        )
+        return self._prospect._replace(crossers=crossers)
 
     def _race(
         self,
@@ -191,6 +202,7 @@ class CrowdForesight:
         heats: Heats,
         lead: bool,
         allowed: Array,
+        wanted: float,
         weights: tuple[Any, ...],
     ) -> Verdict:
         """The cheapest of some manoeuvres, see :class:`controller.foresight.RacingForesight`.
@@ -218,6 +230,7 @@ class CrowdForesight:
             lanes.line_up(heats),
             lead,
             allowed,
+            wanted,
             weights,
         )
         if lanes.bad >= 0:

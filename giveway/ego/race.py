@@ -1,8 +1,9 @@
 """A race between manoeuvres in one compiled call: the cheapest so far is rolled out by a step.
 
-A manoeuvre's cost never falls along its way, so that one whose cost so far exceeds another's whole
-cost need not be looked at any farther: branch and bound, best first. Manoeuvres that begin alike
-share the crowd's answer until they part. Neither changes a number of the winner.
+A manoeuvre's cost never falls along its way, nor by what comes beyond it, so that one whose cost so
+far exceeds another's whole cost need not be looked at any farther: branch and bound, best first.
+Manoeuvres that begin alike share the crowd's answer until they part. Neither changes a number
+of the winner.
 """
 
 from typing import Any
@@ -10,11 +11,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controller import Heats, Prospect, Verdict, add_cost_of_others, own_cost
+from controller import (
+    Heats,
+    Prospect,
+    Verdict,
+    add_cost_of_others,
+    later_cost,
+    own_cost,
+)
 from giveway.ego.corridor import set_pose
+from giveway.ego.crossers import fill_crossers
 from giveway.ego.prospects import View, assess_step, interval_of
 from giveway.geometry.kernel import Array, inlined, kernel
-from pedestrian_model import leap, start
+from pedestrian_model import leap, start, wish
 
 Arrays = tuple[NDArray[Any], ...]
 
@@ -52,6 +61,8 @@ class Lanes:
             self._steps,
             self._alike,
             np.empty((people, 2)),
+            np.empty((people, 5)),
+            np.empty((people, 4)),
             self._bad,
         )
 
@@ -96,6 +107,7 @@ def run_race(
     entrants: NDArray[np.int64],
     lead: bool,
     allowed: Array,
+    wanted: float,
     weights: tuple[Any, ...],
 ) -> tuple[int, bool, int]:
     """The row of the cheapest entrant, which has finished; -1: no cost is a number.
@@ -116,12 +128,14 @@ def run_race(
         entrants: see :meth:`Lanes.line_up`.
         lead: the first runs until somebody is in its way, and wins if nobody is.
         allowed: (N,) [m].
+        wanted: the speed [m/s] that time is lost against.
         weights: of the cost.
     """
     distance, speed, acceleration, handicap = trials
-    sums, steps, alike, _, bad = memory[3:]
+    sums, steps, alike, _, ends, crossers, bad = memory[3:]
     M, time_step = poses.shape[0], View(*view).time_step
     ahead, scene, scratch = start(people)
+    n = ahead.state.position.shape[0]
     bad[0] = _FINE
     steps[:] = -1
     running = np.empty(entrants.shape[1], dtype=np.int64)
@@ -135,9 +149,7 @@ def run_race(
             if k < 0:
                 break
             enter(k, distance, speed, steps, alike)
-            sums[0, k] = own_cost(
-                distance[k, -1], speed[k], acceleration[k], allowed, time_step, weights
-            )
+            sums[0, k] = own_cost(speed[k], acceleration[k], wanted, time_step, weights)
             sums[1, k], sums[2, k] = 0.0, 0.0
             running[count] = k
             count += 1
@@ -181,9 +193,34 @@ def run_race(
             )
             if bad[0] != _FINE:
                 return -1, False, tried
+            if steps[1, best] == M:
+                fill_ends(memory[0], memory[1], best * M + M - 1, scene, ends[:n])
+                end = front + distance[best, -1]
+                half_width = View(*view).half_width
+                fill_crossers(path[0], path[1], end, half_width, ends[:n], crossers[:n])
+                sums[0, best] += later_cost(
+                    crossers[:n],
+                    distance[best, -1],
+                    speed[best, -1],
+                    wanted,
+                    allowed,
+                    time_step,
+                    weights,
+                )
         if best < 0:
             break
     return best, False, tried
+
+
+@inlined
+def fill_ends(state: Array, index: NDArray[np.int64], row: int, scene: Any, ends: Array) -> None:
+    """Fill ``ends`` (n, 5): where people are in a ``row`` of the memory, and what they wish."""
+    n = ends.shape[0]
+    for p in range(n):
+        at = row * n + p
+        x, y = state[4 * at], state[4 * at + 1]
+        w_x, w_y, until = wish(x, y, index[at], p, scene)
+        ends[p, 0], ends[p, 1], ends[p, 2], ends[p, 3], ends[p, 4] = x, y, w_x, w_y, until
 
 
 @kernel
@@ -227,7 +264,7 @@ def advance(
 ) -> int:
     """Roll manoeuvre k out by one step; -1, or a pedestrian whose state is not finite."""
     vertices, stations, headings = path
-    state, index, prospects, sums, steps, alike, between, _ = memory
+    state, index, prospects, sums, steps, alike, between = memory[:7]
     x, v, at = ahead.state
     M, n, N, every = poses.shape[0], x.shape[0], distance.shape[1] - 1, int(View(*view).every)
     j = steps[0, k]

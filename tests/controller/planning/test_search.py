@@ -11,12 +11,14 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from controller import ControllerError, Manoeuvre, ManoeuvreParameters, PlannerParameters
+from controller.planning.cost_to_go import time_to_go
 from controller.planning.costs import corridor, cost, stopping_need
 from controller.planning.motions import aim, approach, shift
 from controller.planning.parameters import Weights
 
 DT = 0.05
 FREE = np.inf
+NOBODY_LATER = np.empty((0, 4))
 
 
 def weights(*, terminal=True, **changes):
@@ -29,10 +31,12 @@ def aimed(speed, before, wanted, slowest, fastest, *, jerk=8.0, horizon=60):
     return m
 
 
-def costs(m, w, *, gap=FREE, conflicts=0.0, calm=FREE, allowed=FREE):
+def costs(
+    m, w, *, gap=FREE, conflicts=0.0, calm=FREE, allowed=FREE, crossers=NOBODY_LATER, wanted=4.0
+):
     N = len(m.speed) - 1
-    full = [np.full(N, x, dtype=float) for x in (gap, conflicts, calm, allowed)]
-    return cost(m.distance, m.speed, m.acceleration, *full, DT, w)
+    *full, allowed = (np.full(N, x, dtype=float) for x in (gap, conflicts, calm, allowed))
+    return cost(m.distance, m.speed, m.acceleration, *full, crossers, allowed, wanted, DT, w)
 
 
 def steady(speed, horizon):
@@ -122,9 +126,10 @@ def test_what_a_stop_needs():
 
 
 def test_the_cost_of_a_free_way_is_the_missing_speed_and_the_acceleration():
-    w = weights(time_weight=1.0, acceleration_weight=0.05, final_weight=1.0)
+    w = weights(time_weight=1.0, acceleration_weight=0.05, later_weight=0.0, final_weight=0.0)
     assert costs(steady(4.0, 20), w) == (0.0, 0.0, 0.0)
-    assert costs(steady(3.0, 20), w)[0] == pytest.approx(20 * DT * 0.25 + 0.25)
+    assert costs(steady(3.0, 20), w)[0] == pytest.approx(20 * DT * 0.25)
+    assert costs(steady(3.0, 20), w, wanted=3.0)[0] == 0.0
     m = steady(4.0, 20)
     m.acceleration[0] = 2.0
     assert costs(m, w)[0] == pytest.approx(DT * 0.05 * 4.0)
@@ -132,20 +137,93 @@ def test_the_cost_of_a_free_way_is_the_missing_speed_and_the_acceleration():
 
 def test_speed_at_the_end_counts_as_far_as_the_way_goes_on():
     """4 m/s with 0.75 m left, of b = 6 m/s^2: 3 m/s can be braked from; behind who drives, more."""
-    w = weights(time_weight=0.0, acceleration_weight=0.0, final_weight=1.0, deceleration=6.0)
+    w = weights(time_weight=0.0, acceleration_weight=0.0, later_weight=1.0, deceleration=6.0)
     m = steady(4.0, 20)
     before_a_line = np.full(20, m.distance[-1] + 0.75)
-    assert costs(m, w, allowed=before_a_line)[0] == pytest.approx(0.25)
+    regained = time_to_go(NOBODY_LATER, 3.0, 4.0, w)
+    assert costs(m, w, allowed=before_a_line)[0] == pytest.approx(regained) != 0.0
     behind_a_car = before_a_line[-1] + 4.0 * DT * np.arange(-19, 1)
     assert costs(m, w, allowed=behind_a_car)[0] == pytest.approx(0.0)
     assert costs(m, w)[0] == pytest.approx(0.0)
 
 
+# --- what lies beyond the horizon ---------------------------------------------------------------
+
+
+def crosser(ahead, enters, leaves, along=0.0):
+    return np.array([[ahead, along, enters, leaves]])
+
+
+ONLY_LATER = {"later_weight": 1.0, "final_weight": 0.0}
+
+
+def test_who_has_been_passed_or_is_late_costs_no_time():
+    w = weights(**ONLY_LATER)
+    assert time_to_go(NOBODY_LATER, 4.0, 4.0, w) == 0.0
+    assert time_to_go(crosser(-1.0, 0.0, 3.0), 4.0, 4.0, w) == 0.0  # behind the front
+    assert time_to_go(crosser(4.0, 1.5, 3.0), 4.0, 4.0, w) == 0.0  # the ego is there after 1 s
+    assert time_to_go(crosser(4.0, 0.0, 0.0), 4.0, 4.0, w) == 0.0  # never comes
+
+
+def test_speed_is_regained_with_what_driving_off_allows():
+    """From 2 to 4 m/s with 2.5 m/s^2: 0.8 s at 3 m/s in the mean, of which a quarter is lost."""
+    assert time_to_go(NOBODY_LATER, 2.0, 4.0, weights(**ONLY_LATER)) == pytest.approx(0.2, abs=0.06)
+
+
+def test_the_base_policy_arrives_behind_who_crosses_when_they_have_left():
+    """8 m ahead, gone after 4 s: 2.0 m/s less 1 m of distance keep it from standing there."""
+    w = weights(**ONLY_LATER)
+    lost = time_to_go(crosser(8.0, 0.0, 4.0), 4.0, 4.0, w)
+    # It is a metre short of 8 m after 4 s instead of 1.75 s, then regains its speed.
+    assert lost == pytest.approx(4.0 - 7.0 / 4.0 + 0.3, abs=0.35)
+
+
+def test_who_stays_costs_the_whole_of_what_is_left():
+    w = weights(**ONLY_LATER)
+    standing = time_to_go(crosser(1.0, 0.0, np.inf), 0.0, 4.0, w)
+    assert standing == pytest.approx(6.0)
+    assert 0.0 < time_to_go(crosser(12.0, 0.0, np.inf), 4.0, 4.0, w) < standing
+
+
+def test_who_walks_ahead_along_the_way_is_followed():
+    w = weights(**ONLY_LATER)
+    followed = time_to_go(crosser(1.0, 0.0, np.inf, along=2.0), 2.0, 4.0, w)
+    assert followed == pytest.approx(3.0, abs=0.3)  # half of the speed, for six seconds
+
+
+@given(
+    crossers=st.lists(
+        st.tuples(
+            st.floats(-5.0, 40.0), st.floats(-2.0, 2.0), st.floats(0.0, 8.0), st.floats(0.0, 12.0)
+        ),
+        max_size=5,
+    ),
+    speed=st.floats(0.0, 14.0),
+    wanted=st.floats(1.0, 14.0),
+)
+@settings(max_examples=200, deadline=None)
+def test_what_is_lost_later_is_a_finite_time_and_none_is_won(crossers, speed, wanted):
+    w = weights(**ONLY_LATER)
+    people = np.array(crossers, dtype=float).reshape(-1, 4)
+    lost = time_to_go(people, speed, wanted, w)
+    alone = time_to_go(NOBODY_LATER, speed, wanted, w)
+    assert 0.0 <= alone <= lost + 1e-9
+    assert lost <= 6.0 + 1e-9
+
+
 def test_the_cost_of_others_by_hand():
     m, n = steady(2.0, 20), 20 * DT
     own = costs(m, weights())[0]
-    w = weights(nearness_weight=0.3, closeness_weight=20.0, conflict_weight=0.6, threat_weight=1.0)
-    assert costs(m, w, conflicts=2.0)[1] == pytest.approx(n * 0.6 * 2 * math.sqrt(0.5))  # half v_r
+    w = weights(
+        nearness_weight=0.3,
+        closeness_weight=20.0,
+        conflict_weight=0.6,
+        conflict_growth=0.25,
+        threat_weight=1.0,
+    )
+    half = math.sqrt(0.5)  # of v_r
+    assert costs(m, w, conflicts=0.5)[1] == pytest.approx(n * 0.6 * 0.5 * half)
+    assert costs(m, w, conflicts=3.0)[1] == pytest.approx(n * 0.6 * (1 + 2 * 0.25) * half)
     assert costs(m, w, calm=1.0)[1] == pytest.approx(n * 1.0 / 4.0)
     assert costs(m, w, gap=4.0)[1] == pytest.approx(n * 0.3 * 0.5 * 0.5)  # half d_safe, half v_r
     assert costs(m, w, gap=8.0)[1] == 0.0
@@ -212,7 +290,8 @@ def test_an_admissible_plan_is_admissible_one_step_later(
 def cost_missing(m, gap, w):
     nothing, free = np.zeros(len(gap)), np.full(len(gap), FREE)
     w = w._replace(safe_distance=100.0)  # all of the stopping distances lie within it
-    return cost(m.distance, m.speed, m.acceleration, gap, nothing, free, free, DT, w)[2]
+    given = gap, nothing, free, NOBODY_LATER, free, 4.0
+    return cost(m.distance, m.speed, m.acceleration, *given, DT, w)[2]
 
 
 # --- parameters ---------------------------------------------------------------------------------
