@@ -7,10 +7,12 @@ import pytest
 from crowd_forces import constant_speed
 
 from pedestrian_model import (
+    Crowd,
     CrowdModel,
     DivergenceError,
     ParameterError,
     Predictor,
+    Surroundings,
     VehicleError,
     Vehicles,
 )
@@ -119,3 +121,38 @@ def test_a_step_of_the_crowds_length_is_the_crowds_whatever_is_allowed(random_cr
     usual = Predictor(horizon=10).predict(crowd, poses)
     allowed = Predictor(horizon=10, longest_step=0.1).predict(crowd, poses)
     assert usual.tobytes() == allowed.tobytes()
+
+
+def test_what_people_wish_at_the_end_of_a_prediction():
+    """One whose way goes on, one on the last leg, one before a closed signal, one who turns."""
+    crowd = Crowd.create(
+        [(0.0, 0.0), (0.0, 20.0), (0.0, 40.0), (0.0, 60.0)],
+        [(1.2, 0.0)] * 4,
+        1.2,
+        [
+            [(30.0, 0.0), (30.0, 9.0)],
+            [(0.0, 20.0), (10.0, 20.0)],
+            [(10.0, 40.0), (30.0, 40.0)],
+            [(1.0, 60.0), (1.0, 99.0)],
+        ],
+        signals=[[-1, -1], [-1, -1], [0, -1], [-1, -1]],
+    )
+    surroundings = Surroundings(closed=np.array([True]))
+    predictor = Predictor(horizon=20)
+    end = predictor.predict(crowd, constant_speed(Vehicles.empty(), 0.05, 20), surroundings)[-1]
+    on, last, waits, turned = predictor.wishes(crowd, surroundings)
+    assert on == pytest.approx([1.2, 0.0, np.inf])
+    assert last == pytest.approx([1.2, 0.0, (10.0 - end[1, 0]) / 1.2])
+    assert waits == pytest.approx([1.2, 0.0, (10.0 - end[2, 0]) / 1.2])
+    assert np.hypot(*turned[:2]) == pytest.approx(1.2)
+    assert turned[1] > 1.19
+    assert turned[2] == pytest.approx(np.hypot(1.0 - end[3, 0], 99.0 - end[3, 1]) / 1.2)
+
+
+def test_who_is_where_they_want_to_be_or_has_no_speed_wishes_nothing():
+    crowd = Crowd.create(
+        [(0.0, 0.0), (500.0, 0.0)], np.zeros((2, 2)), [1.2, 0.0], [[(0, 0)], [(9, 9)]]
+    )
+    predictor = Predictor(horizon=1)
+    predictor.predict(crowd, constant_speed(Vehicles.empty(), 0.05, 1))
+    assert predictor.wishes(crowd).tolist() == [[0.0, 0.0, np.inf]] * 2
