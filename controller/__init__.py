@@ -24,7 +24,6 @@ from controller.planning import (
     add_cost_of_others,
     later_cost,
     own_cost,
-    pace_of,
 )
 from controller.protocol import Controller, Decision, Observation, PathAhead, People
 from controller.safety import SafeForce, SafetyLayer, SafetyParameters
@@ -75,6 +74,5 @@ __all__ = [
     "add_cost_of_others",
     "later_cost",
     "own_cost",
-    "pace_of",
     "worst_motion",
 ]

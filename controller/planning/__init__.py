@@ -1,6 +1,6 @@
 """The planning MPC: a search over manoeuvres, and a QP that smooths the one chosen."""
 
-from controller.planning.costs import add_cost_of_others, later_cost, own_cost, pace_of
+from controller.planning.costs import add_cost_of_others, later_cost, own_cost
 from controller.planning.parameters import ManoeuvreParameters, PlannerParameters
 from controller.planning.planner import Plan, Planner, PlanningController
 
@@ -13,5 +13,4 @@ __all__ = [
     "add_cost_of_others",
     "later_cost",
     "own_cost",
-    "pace_of",
 ]

@@ -6,12 +6,9 @@ crowd again: people go where they want to, the ego arrives where they cross when
 What it loses is added to the manoeuvre's cost (rollout, Bertsekas 2005).
 """
 
-from typing import Any
-
 import numpy as np
 
 from controller._jit import Array, kernel
-from controller.planning.parameters import Weights
 
 _SPAN = 6.0  # [s] beyond the horizon that it drives
 _STEP = 0.25  # [s] of it
@@ -22,16 +19,14 @@ _DISTANCE = 1.0  # [m] kept to people
 
 
 @kernel
-def time_to_go(crossers: Array, speed: float, wanted: float, weights: tuple[Any, ...]) -> float:
+def time_to_go(crossers: Array, speed: float, wanted: float) -> float:
     """What is lost beyond the horizon [s].
 
     Args:
         crossers: (n, 4) who crosses, as in :class:`controller.Prospect`.
         speed: at the horizon's end [m/s].
         wanted: [m/s] where nobody is in the way, > 0.
-        weights: the numbers of :class:`Weights`.
     """
-    w = Weights(*weights)
     lost, at, v = 0.0, 0.0, speed
     for k in range(int(_SPAN / _STEP)):
         t = k * _STEP
@@ -52,5 +47,4 @@ def time_to_go(crossers: Array, speed: float, wanted: float, weights: tuple[Any,
         v = max(0.0, v + min(max(goal - v, -_BRAKING * _STEP), _DRIVING_OFF * _STEP))
         at += v * _STEP
         lost += _STEP * max(0.0, 1.0 - v / wanted)
-    total: float = w.later * lost + w.final * max(0.0, 1.0 - v / wanted)
-    return total
+    return lost

@@ -43,7 +43,7 @@ def cost(
         calm: (N,) [m/s].
         crossers: (n, 4) who comes onto the way later.
         allowed: (N,) [m] that may be driven until then: vehicles, lights.
-        wanted: the speed [m/s] where nobody is in the way, see :func:`pace_of`.
+        wanted: the speed [m/s] that time is lost against.
         time_step: [s].
         weights: the numbers of :class:`Weights`.
 
@@ -60,16 +60,6 @@ def cost(
             others, missing, speeds[i + 1], gap[i], conflicts[i], calm[i], beyond, weights
         )
     return own + time_step * others, time_step * others, missing
-
-
-@kernel
-def pace_of(fastest: float, weights: tuple[Any, ...]) -> float:
-    """The speed [m/s] that time is lost against: ``fastest``, or half of v_r where that is less.
-
-    Where a bend or a light allows little speed, a metre more is worth more time.
-    """
-    pace: float = max(fastest, 0.5 * Weights(*weights).reference_speed)
-    return pace
 
 
 @kernel
@@ -104,13 +94,13 @@ def later_cost(
     Of that counts as much as can be braked to what is ``allowed`` (N,) [m]: no plan gains by being
     fast before the end of its way, but by being near it. When it goes on is not known.
     """
-    N = len(allowed)
+    w, N = Weights(*weights), len(allowed)
     if allowed[N - 1] < np.inf:
         pace = max(0.0, allowed[N - 1] - allowed[N - 2]) / time_step if N > 1 else 0.0
         left = max(0.0, allowed[N - 1] - driven)
-        speed = min(speed, np.sqrt(pace**2 + 2.0 * Weights(*weights).deceleration * left))
-    later: float = time_to_go(crossers, speed, wanted, weights)
-    return later
+        speed = min(speed, np.sqrt(pace**2 + 2.0 * w.deceleration * left))
+    later: float = w.final * max(0.0, 1.0 - speed / wanted)
+    return later + w.later * time_to_go(crossers, speed, wanted)
 
 
 @kernel

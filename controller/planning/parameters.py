@@ -29,17 +29,17 @@ class ManoeuvreParameters:
     slowest: tuple[float, ...] = (0.0, 0.0, 0.6, 0.35, 0.175, 0.0, 0.0)  # of v_r: braking ends
     jerk: float = 8.0  # [m/s^3] with which they are approached
     deceleration: float = 6.0  # b [m/s^2]: a stop is kept possible that is no harder
-    minimum_distance: float = 0.5  # [m] to a person in front at standstill
+    minimum_distance: float = 0.4  # [m] to a person in front at standstill
     headway: float = 0.1  # [s] more of it the faster
     time_weight: float = 1.0  # of the share of the reference speed that is not driven
     acceleration_weight: float = 0.05  # of (m/s^2)^2
-    nearness_weight: float = 3.0  # of the share of d_safe that is missing, times v / v_r
+    nearness_weight: float = 6.5  # of the share of d_safe that is missing, times v / v_r
     closeness_weight: float = 100.0  # of a metre too little to stop in, times v / v_r
-    conflict_weight: float = 0.45  # of a person on a collision course, times sqrt(v / v_r)
-    conflict_growth: float = 0.3  # of that weight which each further such person counts
-    threat_weight: float = 1.0  # of the speed beyond the calm one, over v_r
-    later_weight: float = 1.0  # of the time that is lost beyond the horizon
-    final_weight: float = 1.0  # [s] of the speed that is missing after that
+    conflict_weight: float = 0.75  # of a person on a collision course, times sqrt(v / v_r)
+    conflict_growth: float = 0.5  # of that weight which each further such person counts
+    threat_weight: float = 1.5  # of the speed beyond the calm one, over v_r
+    final_weight: float = 1.3  # [s] of the missing speed at the horizon's end
+    later_weight: float = 0.8  # of the time that is lost beyond it
     persistence: float = 0.02  # [s] that another manoeuvre must be better than the last plan
     calm_time: float = 0.5  # [s] of the plan in which the calm speed is kept to
 
@@ -71,8 +71,8 @@ _WEIGHTS = (
     "conflict_weight",
     "conflict_growth",
     "threat_weight",
-    "later_weight",
     "final_weight",
+    "later_weight",
     "persistence",
 )
 
@@ -85,7 +85,7 @@ class PlannerParameters:
         ParameterError: a value is not finite or out of range.
     """
 
-    horizon: int = 80  # N [steps]
+    horizon: int = 60  # N [steps]
     reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
     safe_distance: float = SAFE_DISTANCE  # d_safe [m]
     speed_max: float = SPEED_MAX  # v_max [m/s]
@@ -96,7 +96,7 @@ class PlannerParameters:
     block_growth: float = 0.25  # of the plan's intervals from one to the next; 0: all of one step
     gap_choice: bool = True  # search manoeuvres; else the plan just keeps d_safe
     soft: bool = True  # exact penalty; else a plan that cannot keep its distance is none
-    terminal: bool = True  # a stop stays possible also where the horizon ends
+    terminal: bool = False  # a stop stays possible also where the horizon ends
     solver: SolverName = SOLVER
     iteration_limit: int = ITERATION_LIMIT  # of the QP solver
     manoeuvres: ManoeuvreParameters = ManoeuvreParameters()
@@ -134,8 +134,8 @@ class Weights(NamedTuple):
     conflict: float
     growth: float
     threat: float
-    later: float
     final: float
+    later: float
     terminal: bool
 
     @classmethod
@@ -154,7 +154,7 @@ class Weights(NamedTuple):
             m.conflict_weight,
             m.conflict_growth,
             m.threat_weight,
-            m.later_weight,
             m.final_weight,
+            m.later_weight,
             p.terminal,
         )

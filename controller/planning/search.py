@@ -14,7 +14,7 @@ import numpy as np
 from controller._jit import Array, kernel
 from controller.foresight import Foresight, Heats, Manoeuvre, Prospect, Trials
 from controller.model import LongitudinalModel
-from controller.planning.costs import cost, pace_of
+from controller.planning.costs import cost
 from controller.planning.motions import aim, approach, shift
 from controller.planning.parameters import PlannerParameters, Weights
 
@@ -44,6 +44,8 @@ class Search:
         self._manoeuvres, self._time_step = m, model.time_step
         self._weights = Weights.of(parameters, m)
         self.weights = tuple(self._weights)
+        # Where a bend or a light allows little speed, time is lost against half of v_r.
+        self._slowest = 0.5 * v_r
         self._kinds = [
             (a, share * v_r) for a, share in zip(m.accelerations, m.slowest, strict=True)
         ]
@@ -167,7 +169,7 @@ class Search:
         Returns:
             Whether it was asked for and nobody is; then that one is the best.
         """
-        wanted = pace_of(fastest, self.weights)
+        wanted = max(fastest, self._slowest)
         race = getattr(foresight, "race", None)
         if race is None:
             return self._one_by_one(heats, lead, wanted, allowed, foresight)

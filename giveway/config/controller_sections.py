@@ -164,9 +164,9 @@ class PlannerConfig(Section):
     """The planning MPC (controller = "mpc"); every ingredient is a switch, docs/controllers.md."""
 
     horizon: float = option(
-        4.0,
+        3.0,
         "s",
-        "how far it plans",
+        "how far it plans; beyond, people walk on and it adapts its speed",
         ge=0.3,
         le=10,
         because="a stop takes longer than 0.3 s, and of people nothing is known after 10 s",
@@ -178,7 +178,7 @@ class PlannerConfig(Section):
         True, None, "distances give way as far as braking cannot keep them; else the PID takes over"
     )
     terminal: bool = option(
-        True, None, "a stop stays possible at every step of the plan, its end included"
+        False, None, "a stop stays possible at every step of the plan, its end included"
     )
     planned_speed: bool = option(
         True, None, "people are predicted under the planned speeds; else under the present one"
@@ -200,7 +200,7 @@ class PlannerConfig(Section):
         because="beyond, a plan is made of that weight alone",
     )
     conflict_weight: float = option(
-        0.45,
+        0.75,
         None,
         "seconds of delay that one person-second at v_r with less than 1.5 s to a collision is "
         "worth",
@@ -209,7 +209,7 @@ class PlannerConfig(Section):
         because="beyond, a plan is made of that weight alone",
     )
     nearness_weight: float = option(
-        3.0,
+        6.5,
         None,
         "seconds of delay that a second at v_r right before somebody is worth, none at d_safe",
         ge=0,
@@ -217,7 +217,7 @@ class PlannerConfig(Section):
         because="beyond, a plan is made of that weight alone",
     )
     threat_weight: float = option(
-        1.0,
+        1.5,
         None,
         "seconds of delay that a second is worth in which somebody could force an emergency stop",
         ge=0,
@@ -225,7 +225,7 @@ class PlannerConfig(Section):
         because="beyond, a plan is made of that weight alone",
     )
     minimum_distance: float = option(
-        0.5,
+        0.4,
         "m",
         "least distance to a person in front, at standstill",
         ge=0,

@@ -137,11 +137,12 @@ def test_the_cost_of_a_free_way_is_the_missing_speed_and_the_acceleration():
 
 def test_speed_at_the_end_counts_as_far_as_the_way_goes_on():
     """4 m/s with 0.75 m left, of b = 6 m/s^2: 3 m/s can be braked from; behind who drives, more."""
-    w = weights(time_weight=0.0, acceleration_weight=0.0, later_weight=1.0, deceleration=6.0)
+    only = {"time_weight": 0.0, "acceleration_weight": 0.0, "final_weight": 1.0}
+    w = weights(**only, later_weight=2.0, deceleration=6.0)
     m = steady(4.0, 20)
     before_a_line = np.full(20, m.distance[-1] + 0.75)
-    regained = time_to_go(NOBODY_LATER, 3.0, 4.0, w)
-    assert costs(m, w, allowed=before_a_line)[0] == pytest.approx(regained) != 0.0
+    regained = 2.0 * time_to_go(NOBODY_LATER, 3.0, 4.0)
+    assert costs(m, w, allowed=before_a_line)[0] == pytest.approx(0.25 + regained)
     behind_a_car = before_a_line[-1] + 4.0 * DT * np.arange(-19, 1)
     assert costs(m, w, allowed=behind_a_car)[0] == pytest.approx(0.0)
     assert costs(m, w)[0] == pytest.approx(0.0)
@@ -154,40 +155,33 @@ def crosser(ahead, enters, leaves, along=0.0):
     return np.array([[ahead, along, enters, leaves]])
 
 
-ONLY_LATER = {"later_weight": 1.0, "final_weight": 0.0}
-
-
 def test_who_has_been_passed_or_is_late_costs_no_time():
-    w = weights(**ONLY_LATER)
-    assert time_to_go(NOBODY_LATER, 4.0, 4.0, w) == 0.0
-    assert time_to_go(crosser(-1.0, 0.0, 3.0), 4.0, 4.0, w) == 0.0  # behind the front
-    assert time_to_go(crosser(4.0, 1.5, 3.0), 4.0, 4.0, w) == 0.0  # the ego is there after 1 s
-    assert time_to_go(crosser(4.0, 0.0, 0.0), 4.0, 4.0, w) == 0.0  # never comes
+    assert time_to_go(NOBODY_LATER, 4.0, 4.0) == 0.0
+    assert time_to_go(crosser(-1.0, 0.0, 3.0), 4.0, 4.0) == 0.0  # behind the front
+    assert time_to_go(crosser(4.0, 1.5, 3.0), 4.0, 4.0) == 0.0  # the ego is there after 1 s
+    assert time_to_go(crosser(4.0, 0.0, 0.0), 4.0, 4.0) == 0.0  # never comes
 
 
 def test_speed_is_regained_with_what_driving_off_allows():
     """From 2 to 4 m/s with 2.5 m/s^2: 0.8 s at 3 m/s in the mean, of which a quarter is lost."""
-    assert time_to_go(NOBODY_LATER, 2.0, 4.0, weights(**ONLY_LATER)) == pytest.approx(0.2, abs=0.06)
+    assert time_to_go(NOBODY_LATER, 2.0, 4.0) == pytest.approx(0.2, abs=0.06)
 
 
 def test_the_base_policy_arrives_behind_who_crosses_when_they_have_left():
     """8 m ahead, gone after 4 s: 2.0 m/s less 1 m of distance keep it from standing there."""
-    w = weights(**ONLY_LATER)
-    lost = time_to_go(crosser(8.0, 0.0, 4.0), 4.0, 4.0, w)
+    lost = time_to_go(crosser(8.0, 0.0, 4.0), 4.0, 4.0)
     # It is a metre short of 8 m after 4 s instead of 1.75 s, then regains its speed.
     assert lost == pytest.approx(4.0 - 7.0 / 4.0 + 0.3, abs=0.35)
 
 
 def test_who_stays_costs_the_whole_of_what_is_left():
-    w = weights(**ONLY_LATER)
-    standing = time_to_go(crosser(1.0, 0.0, np.inf), 0.0, 4.0, w)
+    standing = time_to_go(crosser(1.0, 0.0, np.inf), 0.0, 4.0)
     assert standing == pytest.approx(6.0)
-    assert 0.0 < time_to_go(crosser(12.0, 0.0, np.inf), 4.0, 4.0, w) < standing
+    assert 0.0 < time_to_go(crosser(12.0, 0.0, np.inf), 4.0, 4.0) < standing
 
 
 def test_who_walks_ahead_along_the_way_is_followed():
-    w = weights(**ONLY_LATER)
-    followed = time_to_go(crosser(1.0, 0.0, np.inf, along=2.0), 2.0, 4.0, w)
+    followed = time_to_go(crosser(1.0, 0.0, np.inf, along=2.0), 2.0, 4.0)
     assert followed == pytest.approx(3.0, abs=0.3)  # half of the speed, for six seconds
 
 
@@ -203,10 +197,9 @@ def test_who_walks_ahead_along_the_way_is_followed():
 )
 @settings(max_examples=200, deadline=None)
 def test_what_is_lost_later_is_a_finite_time_and_none_is_won(crossers, speed, wanted):
-    w = weights(**ONLY_LATER)
     people = np.array(crossers, dtype=float).reshape(-1, 4)
-    lost = time_to_go(people, speed, wanted, w)
-    alone = time_to_go(NOBODY_LATER, speed, wanted, w)
+    lost = time_to_go(people, speed, wanted)
+    alone = time_to_go(NOBODY_LATER, speed, wanted)
     assert 0.0 <= alone <= lost + 1e-9
     assert lost <= 6.0 + 1e-9
 
