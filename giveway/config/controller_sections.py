@@ -224,6 +224,14 @@ class PlannerConfig(Section):
         le=1e3,
         because="beyond, a plan is made of that weight alone",
     )
+    later_weight: float = option(
+        0.8,
+        None,
+        "of each second that is lost beyond the horizon until people have crossed",
+        ge=0,
+        le=1e3,
+        because="beyond, a plan is made of that weight alone",
+    )
     minimum_distance: float = option(
         0.4,
         "m",
@@ -236,7 +244,7 @@ class PlannerConfig(Section):
     deceleration: float = option(
         6.0,
         "m/s^2",
-        "a stop that is no harder stays possible",
+        "of a stop before where the way ends; with terminal, one that is no harder stays possible",
         gt=0,
         le=10,
         least=0.1,
@@ -249,14 +257,6 @@ class PlannerConfig(Section):
         ge=0,
         le=10,
         because="no plan is longer",
-    )
-    margin_growth: float = option(
-        0.0,
-        "m/s",
-        "what the corridor grows by per second of look-ahead, on each side",
-        ge=0,
-        le=5,
-        because="nobody walks so fast",
     )
     block_growth: float = option(
         0.25,

@@ -118,7 +118,6 @@ class Ego:
             horizon=waiting.horizon,
             time_step=self._time_step,
             half_width=self.corridor.half_width,
-            growth=planner.margin_growth,
             planned_speed=planner.planned_speed,
             clearance=waiting.clearance,
             braking=self.config.mpc.force_limit / self.config.vehicle.mass,

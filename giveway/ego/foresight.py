@@ -62,7 +62,6 @@ class CrowdForesight:
         horizon: N [steps] of a manoeuvre.
         time_step: of a manoeuvre [s]; the predictor's is some of them.
         half_width: of the corridor [m].
-        growth: of it with the look-ahead, on each side [m/s].
         planned_speed: the crowd is predicted under the manoeuvre, else under the present speed.
         clearance: [m] that the safety layer keeps to pedestrians' bodies.
         braking: [m/s^2] of the ego at most.
@@ -79,7 +78,6 @@ class CrowdForesight:
         horizon: int,
         time_step: float,
         half_width: float,
-        growth: float,
         planned_speed: bool,
         clearance: float,
         braking: float,
@@ -93,7 +91,7 @@ class CrowdForesight:
         self._planned_speed = planned_speed
         # Plain tuples: each call would look the class of a named one up anew (2 us).
         self._view = tuple(
-            View(shape.length, shape.width, half_width, growth, conflict_time, time_step, every)
+            View(shape.length, shape.width, half_width, conflict_time, time_step, every)
         )
         walking = predictor.parameters
         able = worst or WorstMotion(walking.max_acceleration, walking.max_speed)

@@ -19,7 +19,6 @@ class View(NamedTuple):
     length: float  # of the body [m]
     width: float  # [m]
     half_width: float  # of the corridor [m]
-    growth: float  # of it with the look-ahead, on each side [m/s]
     conflict_time: float  # time to collision of a conflict [s]
     time_step: float  # of a manoeuvre [s]
     every: float  # steps of a manoeuvre, a whole number, in which the crowd is predicted at once
@@ -116,9 +115,8 @@ def assess_step(
             between[p, 0] = before[p, 0] + share * (after[p, 0] - before[p, 0])
             between[p, 1] = before[p, 1] + share * (after[p, 1] - before[p, 1])
         at = front + distance[i + 1]
-        wide = v.half_width + v.growth * (i + 1) * time_step
         closest, _ = closest_in_front(
-            vertices, stations, first, last, between, at - PASSED, wide, 0.0
+            vertices, stations, first, last, between, at - PASSED, v.half_width, 0.0
         )
         gap[i] = closest - at
         if i > begin:

@@ -48,7 +48,7 @@ class Lanes:
         self._state = np.empty(count * predicted * people * 4)
         self._index = np.empty(count * predicted * people, dtype=np.int64)
         self._prospects = np.zeros((3, count, horizon))  # gap, conflicts, calm
-        self._sums = np.zeros((3, count))  # own cost, of others, missing distance
+        self._sums = np.zeros((4, count))  # own and later cost, of others, missing distance, own
         self._steps = np.zeros((2, count), dtype=np.int64)  # predicted, assessed
         self._alike = np.zeros((count, count), dtype=np.int64)  # steps before they part
         self._entrants = np.zeros((3, count + 1), dtype=np.int64)
@@ -149,7 +149,9 @@ def run_race(
             if k < 0:
                 break
             enter(k, distance, speed, steps, alike)
-            sums[0, k] = own_cost(speed[k], acceleration[k], wanted, time_step, weights)
+            sums[3, k] = own_cost(speed[k], acceleration[k], wanted, time_step, weights)
+            ending = distance[k, -1], speed[k, -1], wanted, allowed, time_step, weights
+            sums[0, k] = sums[3, k] + later_cost(crossers[:0], *ending)  # nobody comes later
             sums[1, k], sums[2, k] = 0.0, 0.0
             running[count] = k
             count += 1
@@ -198,15 +200,8 @@ def run_race(
                 end = front + distance[best, -1]
                 half_width = View(*view).half_width
                 fill_crossers(path[0], path[1], end, half_width, ends[:n], crossers[:n])
-                sums[0, best] += later_cost(
-                    crossers[:n],
-                    distance[best, -1],
-                    speed[best, -1],
-                    wanted,
-                    allowed,
-                    time_step,
-                    weights,
-                )
+                ending = distance[best, -1], speed[best, -1], wanted, allowed, time_step, weights
+                sums[0, best] = sums[3, best] + later_cost(crossers[:n], *ending)
         if best < 0:
             break
     return best, False, tried

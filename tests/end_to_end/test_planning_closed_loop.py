@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 
     Run = Callable[..., RunResult]
 
-FREE, GIVES_WAY = 6, 13  # crowds that leave the ego alone, and that it waits for
+FREE, GIVES_WAY = 6, 22  # crowds that leave the ego alone, and that it waits for
 SHORT = 9.0  # [s] the first pedestrians and the ego meet after some 6 s
 GUARDED = {"safety layer", "unavoidable", ""}
 SWITCHES = {
     "gap_choice": False,
-    "terminal": False,
+    "terminal": True,
     "planned_speed": False,
     "effort_weight": 0.0,
     "jerk_weight": 0.0,
     "conflict_weight": 0.0,
-    "margin_growth": 0.5,
+    "later_weight": 0.0,
     "block_growth": 0.0,
     "horizon": 1.0,
 }

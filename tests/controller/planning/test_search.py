@@ -240,13 +240,13 @@ def test_who_stands_lacks_no_stopping_distance():
 
 def test_the_corridor_ends_where_a_stop_behind_everybody_is_possible():
     w, m, room = weights(), steady(2.0, 4), np.empty(4)
-    gap = np.array([5.0, 1.0, np.inf, 5.0])
+    gap = np.array([5.0, 0.9, np.inf, 5.0])
     allowed = np.array([np.inf, np.inf, 3.0, 0.1])
     corridor(m.distance, m.speed, gap, allowed, True, w, room)
     own = m.distance[2]  # never less than the manoeuvre itself
     assert room == pytest.approx([0.1 + 5.0 - stopping_need(2.0, w), own, 3.0, 0.1])
     corridor(m.distance, m.speed, gap, allowed, False, w, room)
-    assert room == pytest.approx([0.1 + 5.0 - 8.0, 0.2 + 1.0 - 8.0, 3.0, 0.4 + 5.0 - 8.0])
+    assert room == pytest.approx([0.1 + 5.0 - 8.0, 0.2 + 0.9 - 8.0, 3.0, 0.4 + 5.0 - 8.0])
 
 
 # --- recursive feasibility ----------------------------------------------------------------------

@@ -146,7 +146,7 @@ def test_no_length_or_duration_or_force_may_be_a_billionth() -> None:
         "depart_time", "depart_position", "friction", "calm_time", "reaction_time", "near",
         "effort_weight", "jerk_weight", "proportional_gain", "integral_gain", "derivative_gain",
         "position_noise", "initial_speed", "speed_min", "desired_speed_sd",
-        "acceleration_noise", "margin_growth",
+        "acceleration_noise",
     }  # fmt: skip
     for option in options():
         bound = any(hasattr(limit, "gt") or hasattr(limit, "ge") for limit in option.field.metadata)

@@ -56,7 +56,7 @@ def manoeuvre(speed, acceleration=0.0):
     return m
 
 
-def assessed(path, people, m, *, growth=0.0, alarm=ALARM, every=EVERY):
+def assessed(path, people, m, *, alarm=ALARM, every=EVERY):
     out = np.empty(N), np.empty(N), np.empty(N)
     assess(
         path.vertices,
@@ -67,7 +67,7 @@ def assessed(path, people, m, *, growth=0.0, alarm=ALARM, every=EVERY):
         FRONT,
         m.distance,
         m.speed,
-        View(LENGTH, WIDTH, HALF_WIDTH, growth, CONFLICT_TIME, DT, every),
+        View(LENGTH, WIDTH, HALF_WIDTH, CONFLICT_TIME, DT, every),
         alarm,
         *out,
     )
@@ -102,20 +102,20 @@ def conflicts_at(path, people, m, i):
 
 @pytest.mark.parametrize("seed", range(15))
 @pytest.mark.parametrize("name", PATHS)
-@pytest.mark.parametrize("growth", [0.0, 0.4])
-def test_the_gap_is_to_the_closest_person_in_the_corridor(name, seed, growth):
+def test_the_gap_is_to_the_closest_person_in_the_corridor(name, seed):
     path, g = PATHS[name], np.random.default_rng(seed)
     people, m = walkers(g, path), manoeuvre(g.uniform(0.0, 6.0), g.uniform(-3.0, 1.0))
     line = shapely.LineString(path.vertices)
-    gaps, _, _ = assessed(path, people, m, growth=growth)
+    gaps, _, _ = assessed(path, people, m)
     for i in range(N):
         at = FRONT + m.distance[i + 1]
         points = shapely.points(people[i])
         station, aside = line.project(points), line.distance(points)
-        wide = HALF_WIDTH + growth * (i + 1) * DT
-        if (np.abs(aside - wide) < 2e-3).any() or (np.abs(station - at + PASSED) < 2e-2).any():
+        if (np.abs(aside - HALF_WIDTH) < 2e-3).any() or (
+            np.abs(station - at + PASSED) < 2e-2
+        ).any():
             continue  # the edge
-        inside = (aside < wide) & (station > at - PASSED)
+        inside = (aside < HALF_WIDTH) & (station > at - PASSED)
         expected = np.min(station[inside] - at, initial=np.inf)
         assert gaps[i] == pytest.approx(expected, abs=1e-9 if name == "straight" else 5e-2)
 
@@ -236,7 +236,6 @@ def foresight(**changes):
         "horizon": N,
         "time_step": DT,
         "half_width": HALF_WIDTH,
-        "growth": 0.0,
         "conflict_time": CONFLICT_TIME,
         "planned_speed": True,
         "clearance": 0.05,

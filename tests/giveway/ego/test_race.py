@@ -42,7 +42,6 @@ def foresight(**changes):
         "horizon": N,
         "time_step": DT,
         "half_width": 1.25,
-        "growth": 0.1,
         "planned_speed": True,
         "clearance": 0.05,
         "braking": 8.0,
@@ -107,7 +106,7 @@ def test_who_has_lost_is_not_rolled_out_any_farther():
     planner.plan(4.0, 0.0, 4.0, np.full(N, 30.0), ahead)
     predicted = ahead._lanes.arrays[4][0]
     assert predicted.max() == N // 2
-    assert (predicted[predicted >= 0] < N // 4).any()
+    assert (predicted[predicted >= 0] < N // 2).any()
 
 
 def test_a_crowd_without_a_finite_future_is_named():
