@@ -20,6 +20,7 @@ from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.cosimulation.twin import Twin, twin_of
 from giveway.ego.vehicle import model_margin
 from giveway.errors import CrowdError, GivewayError, ResultsError, SumoError
+from giveway.measures import unreached
 from giveway.metrics import delays
 from giveway.processes.child import STDERR_FILE
 from giveway.processes.heartbeat import Phase
@@ -328,6 +329,8 @@ def _result(
     judged = ((ego.id, ego.ledger) for ego in egos if ego.ledger is not None)
     against = (law.remark(name, found.violations) for name, found in judged)
     remarks = (*remarks, *(text for text in against if text))
+    crowd_track = rows.crowd_track()
+    remarks = (*remarks, *unreached(parts.config.measure, crowd_track))
     if recorder.journal.failure:
         remarks = (*remarks, recorder.journal.failure)
     return RunResult(
@@ -337,7 +340,7 @@ def _result(
         error=error,
         time=rows.time,
         egos=egos,
-        crowd_track=rows.crowd_track(),
+        crowd_track=crowd_track,
         background_track=rows.background_track(),
         signal_track=rows.signal_track(),
         people_track=rows.people_track(),

@@ -4,6 +4,7 @@ from giveway.measures.columns import MEASURE_COLUMNS
 from giveway.measures.density_map import DensityMap, density_map
 from giveway.measures.measuring import measure_table, require_pedpy
 from giveway.measures.service import FRUIN, HCM, level_of_service
+from giveway.measures.unreached import unreached
 
 __all__ = [
     "FRUIN",
@@ -14,4 +15,5 @@ __all__ = [
     "level_of_service",
     "measure_table",
     "require_pedpy",
+    "unreached",
 ]

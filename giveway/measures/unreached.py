@@ -1,0 +1,32 @@
+"""Lines and areas to which nobody comes: most of them have a coordinate wrong."""
+
+from collections.abc import Sequence
+
+import shapely
+
+from giveway.config.measures import MeasureConfig
+from giveway.records.tracks import CrowdTrack
+
+NEAR = 1.0  # [m] who comes no nearer has nothing to do with a line or an area
+
+
+def unreached(measures: Sequence[MeasureConfig], crowd: CrowdTrack) -> tuple[str, ...]:
+    """A remark on each measure to which nobody came within a metre, with where people walked."""
+    if not measures:
+        return ()
+    if not len(crowd.x):
+        return tuple(f"[[measure]] {m.name}: nobody walked in this run" for m in measures)
+    points = shapely.points(crowd.x, crowd.y)
+    walked = (
+        f"people walked in x {crowd.x.min():.1f} to {crowd.x.max():.1f} m, "
+        f"y {crowd.y.min():.1f} to {crowd.y.max():.1f} m (network coordinates)"
+    )
+    remarks = []
+    for measure in measures:
+        shape = shapely.LineString if measure.line else shapely.Polygon
+        distance = float(shapely.distance(shape(measure.places), points).min())
+        if distance > NEAR:
+            remarks.append(
+                f"[[measure]] {measure.name}: nobody came nearer than {distance:.1f} m; {walked}"
+            )
+    return tuple(remarks)
