@@ -7,6 +7,7 @@ Longitudinal Speed Regulation in Pedestrian-Dense Scenarios" (arXiv 1907.05178).
 from controller.errors import (
     ControllerError,
     ParameterError,
+    PlugInError,
     SolverMissingError,
     SolverSetupError,
 )
@@ -25,6 +26,8 @@ from controller.planning import (
     later_cost,
     own_cost,
 )
+from controller.plug_in import Acceleration, Answer, Force, PlugIn, Setup, Speed
+from controller.plugged_in import PluggedIn
 from controller.protocol import Controller, Decision, Observation, PathAhead, People
 from controller.safety import SafeForce, SafetyLayer, SafetyParameters
 from controller.solution import MpcSolution
@@ -35,9 +38,12 @@ from controller.worst_motion import PeopleName, WorstMotion, worst_motion
 
 __all__ = [
     "PRINTED_PID",
+    "Acceleration",
+    "Answer",
     "Controller",
     "ControllerError",
     "Decision",
+    "Force",
     "Foresight",
     "Heats",
     "LongitudinalModel",
@@ -57,13 +63,18 @@ __all__ = [
     "Planner",
     "PlannerParameters",
     "PlanningController",
+    "PlugIn",
+    "PlugInError",
+    "PluggedIn",
     "Prospect",
     "ReferenceParameters",
     "SafeForce",
     "SafetyLayer",
     "SafetyParameters",
+    "Setup",
     "SolverMissingError",
     "SolverSetupError",
+    "Speed",
     "SpeedController",
     "SpeedReference",
     "Trials",

@@ -15,3 +15,7 @@ class SolverMissingError(ControllerError):
 
 class SolverSetupError(ControllerError):
     """The QP solver refuses the problem at set-up."""
+
+
+class PlugInError(ControllerError):
+    """A controller of somebody else's fails: it is named, with what it raised or returned."""

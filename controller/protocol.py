@@ -3,6 +3,9 @@
 from math import inf
 from typing import Literal, NamedTuple, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from controller._jit import Array
 from controller.defaults import SAFE_DISTANCE
 from controller.foresight import Foresight
@@ -56,14 +59,18 @@ class Observation(NamedTuple):
     vehicles: Array | None = None  # (N, m, 7) all, now and predicted: x, y, heading, speed, front,
     row: int = 0  # rear, width; the ego's own stand in this row (None: there is no other vehicle)
     lane_speeds: Array | None = None  # (N,) [m/s] not exceeded at k+1 ... k+N; None: any may be
+    person_gap: float = inf  # [m] from ``position`` to the closest person in front; inf: nobody
+    leader_gap: float = inf  # [m] from ``position`` to the vehicle in front; inf: none
+    leader_speed: float = 0.0  # [m/s] of that vehicle
+    person_ids: NDArray[np.int64] | None = None  # (n,) of ``people``; a person keeps its number
 
 
 class Decision(NamedTuple):
     """The force for [t_k, t_k+1], and how it came about."""
 
     force: float  # u(k) [N]
-    acting: Literal["mpc", "pid", "safety"]
-    reason: str  # "optimal", "infeasible", "solver: ...", "selected", or the safety layer's
+    acting: Literal["mpc", "pid", "plug-in", "safety"]
+    reason: str  # "optimal", "infeasible", "solver: ...", "selected", or the plug-in's own
     status: str  # of the QP; empty where none was posed
     iterations: int  # of the QP solver
     reference_speed: float  # [m/s] of the controller that acted

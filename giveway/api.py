@@ -18,6 +18,7 @@ from giveway.cosimulation.followed import Followed
 from giveway.cosimulation.loop import Loop
 from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.cosimulation.twin import Twin, twin_of
+from giveway.ego.plug_in import provenance
 from giveway.ego.vehicle import model_margin
 from giveway.errors import CrowdError, GivewayError, ResultsError, SumoError
 from giveway.measures import unreached
@@ -358,6 +359,7 @@ def _result(
             remarks=remarks,
             ending=str(ending),
             error=None if error is None else str(error),
+            controllers=provenance([ego.config for ego in parts.egos]),
         ),
         sumo_messages=parts.sumo.messages,
         road=parts.sumo.lanes.areas(),

@@ -10,10 +10,12 @@ from typing import Annotated, Any, Literal
 import typer
 
 from giveway.cli.help import show_all_options
-from giveway.config.layers import Location, Option, options
+from giveway.config.layers import OPTIONS, Location, Option, options
+from giveway.config.toml import toml_value
+from giveway.errors import ConfigError
 
 if typing.TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 _PANELS = {
     "ego": "Ego",
@@ -38,6 +40,15 @@ _HelpAll = Annotated[
         help="Show all options and exit.",
         is_eager=True,
         callback=show_all_options,
+    ),
+]
+_Set = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="An option of a controller that is not giveway's own; as often as needed.",
+        rich_help_panel="Run",
     ),
 ]
 _EVERYDAY = frozenset(
@@ -68,6 +79,9 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     def call(**arguments: Any) -> None:
         settings: dict[str, Any] = {}
         del arguments["help_all"]
+        own_options = set_options(arguments.pop("set_") or ())
+        if own_options:
+            settings[OPTIONS] = own_options
         for name, option in locations.items():
             value = arguments.pop(name)
             if value is not None:
@@ -80,6 +94,7 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
         inspect.Parameter(name, keyword, default=None, annotation=_annotation(option))
         for name, option in locations.items()
     ]
+    flags.append(inspect.Parameter("set_", keyword, default=None, annotation=_Set))
     flags.append(inspect.Parameter("help_all", keyword, default=False, annotation=_HelpAll))
     call.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [parameter.replace(kind=keyword) for parameter in own] + flags
@@ -87,6 +102,24 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     call.__doc__ = command.__doc__
     call.__annotations__ = {p.name: p.annotation for p in (*own, *flags)}
     return call
+
+
+def set_options(words: Sequence[str]) -> dict[str, Any]:
+    """The options of somebody else's controller, from words like ``headway=1.5``.
+
+    Raises:
+        ConfigError: a word is no key and value, or a key stands twice.
+    """
+    values: dict[str, Any] = {}
+    for word in words:
+        key, equals, text = word.partition("=")
+        key = key.strip()
+        if not equals or not key:
+            raise ConfigError(f"--set {word}: expected an option and its value, like headway=1.5")
+        if key in values:
+            raise ConfigError(f"--set {word}: '{key}' stands twice; keep one")
+        values[key] = toml_value(text.strip())
+    return values
 
 
 def _put(settings: dict[str, Any], location: Location, value: Any) -> None:

@@ -56,7 +56,7 @@ def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None
             )
             bar.update(
                 task,
-                description=f"{config.controller.upper()} drives",
+                description=f"{config.driver} drives",
                 total=state.goal,
                 completed=min(state.position, state.goal),
                 state=text,

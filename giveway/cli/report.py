@@ -1,6 +1,7 @@
 """``giveway report``: figures, replays and the HTML report of a study."""
 
 import sys
+from collections.abc import Collection
 from pathlib import Path
 
 from rich.console import Console
@@ -9,22 +10,27 @@ from giveway.cli.printing import print_place
 from giveway.studies.folder import StudyFolder
 
 
-def report_command(study: Path, *, replays: bool, quiet: bool) -> int:
+def report_command(
+    study: Path, *, replays: bool, quiet: bool, trusted: Collection[str] = ()
+) -> int:
     """Write figures, replays and report anew; only the runs that are shown are computed again.
 
     Args:
         study: the study's folder.
         replays: whether to make the shown runs again.
         quiet: print nothing.
+        trusted: controllers, as module:Class, that the study may have imported.
 
     Raises:
         GivewayError: there is no study, or nothing to show, or the disk is full.
     """
-    write_all(StudyFolder.open(study), Console(quiet=quiet), replays=replays)
+    write_all(StudyFolder.open(study), Console(quiet=quiet), replays=replays, trusted=trusted)
     return 0
 
 
-def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> None:
+def write_all(
+    study: StudyFolder, console: Console, *, replays: bool = True, trusted: Collection[str] = ()
+) -> None:
     """Write figures, replays and report, and the tables unless those of all runs exist."""
     from giveway.precompile import compile_kernels_once
     from giveway.reports.with_replays import write_report_of
@@ -41,5 +47,5 @@ def write_all(study: StudyFolder, console: Console, *, replays: bool = True) -> 
     if not study.complete or {f"{name}.csv" for name in TABLES} - intact_tables(study.path):
         write_tables(study, whole=True)
     with console.status("Drawing ...") as status:
-        page = write_report_of(study, replays=replays, tell=status.update)
+        page = write_report_of(study, replays=replays, tell=status.update, trusted=trusted)
     print_place(console, "Report", page)

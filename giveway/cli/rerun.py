@@ -1,5 +1,6 @@
 """``giveway rerun``: one run of a study once more, as ``giveway run`` would make it."""
 
+from collections.abc import Collection
 from pathlib import Path
 
 from rich.console import Console
@@ -15,7 +16,13 @@ from giveway.studies.rerun import checked_run, rerun
 
 
 def rerun_command(
-    study: Path, run: str, outputs: Outputs, *, predictions: bool, journal: Path | None
+    study: Path,
+    run: str,
+    outputs: Outputs,
+    *,
+    predictions: bool,
+    journal: Path | None,
+    trusted: Collection[str] = (),
 ) -> int:
     """Make the run again, and say whether its numbers are the study's.
 
@@ -24,6 +31,7 @@ def rerun_command(
         run: the run's id.
         outputs: what is kept and printed.
         predictions: keep the predicted positions.
+        trusted: controllers, as module:Class, that the study may have imported.
         journal: a folder for the rows in case this process dies.
 
     Raises:
@@ -31,7 +39,7 @@ def rerun_command(
     """
     console = Console(quiet=outputs.quiet)
     folder = StudyFolder.open(study)
-    checked = checked_run(folder, run, predictions=predictions)
+    checked = checked_run(folder, run, predictions=predictions, trusted=trusted)
     out = outputs.folder or study / "reruns" / run
     check_folder(out, force=outputs.force)
     compile_kernels_once(console)

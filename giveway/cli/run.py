@@ -122,14 +122,19 @@ def default_folder(config: RunConfig, scenario: str) -> Path:
     over the whole configuration follow, so that different runs have different folders.
     """
     egos = config.each_ego()
-    controllers = "_".join(dict.fromkeys(ego.controller for ego in egos)) or "no_ego"
+    controllers = _safe("_".join(dict.fromkeys(ego.controller for ego in egos))) or "no_ego"
     taken = "".join(f"_{name}" for ego in egos for name in ego.ego.take_over)
-    safe = "".join(letter if letter.isalnum() or letter in "._-" else "-" for letter in taken)
+    safe = _safe(taken)
     pedestrians = f"{config.crowd.pedestrians}ped"
     name = f"{scenario}_{controllers}{safe[:60]}_{pedestrians}_seed{config.seed}"
     if not _is_told_by_name(config):
         name += f"_{sha256(dump_toml(config).encode()).hexdigest()[:6]}"
     return Path("results") / name
+
+
+def _safe(name: str) -> str:
+    """A part of a folder's name, on every system."""
+    return "".join(letter if letter.isalnum() or letter in "._-" else "-" for letter in name)
 
 
 def _is_told_by_name(config: RunConfig) -> bool:

@@ -8,6 +8,12 @@ import typer
 from giveway.cli.completion import complete_study
 from giveway.cli.help import Commands, JsonFlag
 
+_Trust = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="MODULE:CLASS", help="A controller that the study names and that you know."
+    ),
+]
 _Folder = Annotated[Path, typer.Argument(help="The study's folder.")]
 
 
@@ -140,6 +146,7 @@ def _rerun(
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Neither progress bar nor summary.")
     ] = False,
+    trust: _Trust = None,
 ) -> None:
     """Make one run of a study again, with all trajectories; its numbers must be the study's."""
     from giveway.cli.isolated import run_isolated, supervised
@@ -154,7 +161,9 @@ def _rerun(
     outputs = Outputs(out, force=force, parquet=False, pictures=pictures, quiet=quiet)
     supervised(
         journal,
-        lambda: rerun_command(study, run, outputs, predictions=predictions, journal=journal),
+        lambda: rerun_command(
+            study, run, outputs, predictions=predictions, journal=journal, trusted=trust or ()
+        ),
     )
 
 
@@ -164,11 +173,12 @@ def _report(
         bool, typer.Option(help="Make the runs that it points at again, to play and show them.")
     ] = True,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")] = False,
+    trust: _Trust = None,
 ) -> None:
     """Write figures, replays of the most telling runs, and report.html into a study's folder."""
     from giveway.cli.report import report_command
 
-    raise typer.Exit(report_command(study, replays=replays, quiet=quiet))
+    raise typer.Exit(report_command(study, replays=replays, quiet=quiet, trusted=trust or ()))
 
 
 def _replay(

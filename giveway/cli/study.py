@@ -75,7 +75,8 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
     if request.report:
         from giveway.cli.report import write_all
 
-        write_all(study, console)
+        controllers = {cell.config.controller for cell in planned.cells}
+        write_all(study, console, trusted=controllers)  # the user has just had them imported
     if request.as_json:
         print_json(
             {

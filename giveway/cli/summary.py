@@ -120,7 +120,7 @@ def _title(result: RunResult) -> str:
 
 def _run_title(result: RunResult, ego: EgoResult) -> str:
     pedestrians = len(result.crowd_track.ids)
-    controller = ego.config.controller.upper()
+    controller = ego.config.driver
     seed = result.config.seed
     return f"{result.scenario.name}: {controller}, {pedestrians} pedestrians, seed {seed}"
 

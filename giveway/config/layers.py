@@ -21,6 +21,11 @@ from giveway.errors import ConfigError
 Location = tuple[str, ...]
 
 
+OPTIONS = "controller_options"
+NO_FLAGS = frozenset({"egos", "measure", OPTIONS})
+"""Lists of tables, and a table whose keys are somebody else's (--set)."""
+
+
 @dataclass(frozen=True)
 class Layer:
     """Settings from one origin; a later layer overrides an earlier one key by key."""
@@ -28,6 +33,7 @@ class Layer:
     origin: str
     values: Mapping[str, Any]
     from_flags: bool = False
+    results: Path | None = None  # the folder of results that it was read from; None: from none
 
     def holds(self, location: Location) -> bool:
         """Whether this layer sets the key at ``location``."""
@@ -41,6 +47,8 @@ class Layer:
     def name(self, location: Location) -> str:
         """How the user calls the key at ``location`` in this layer."""
         if self.from_flags:
+            if len(location) > 1 and location[0] == OPTIONS:
+                return f"--set {location[1]}"
             return flag_of(location)
         *table, key = location
         heading = f"[{'.'.join(table)}] " if table else ""
@@ -73,8 +81,8 @@ class Option:
 def options(model: type[Section] = RunConfig, prefix: Location = ()) -> Iterator[Option]:
     """Every leaf option of the configuration, in declaration order."""
     for name, field in model.model_fields.items():
-        if name in {"egos", "measure"}:
-            continue  # lists of tables, which have no flag
+        if name in NO_FLAGS:
+            continue
         annotation = field.annotation
         if isinstance(annotation, type) and issubclass(annotation, Section):
             yield from options(annotation, (*prefix, name))
@@ -95,7 +103,14 @@ def read_toml(path: Path) -> Layer:
         ConfigError: the file is missing, unreadable or not TOML.
     """
     values = read_toml_file(path, "a giveway configuration")
-    return Layer(str(path), anchored(values, path.parent.absolute()))
+    results = results_of(path)
+    return Layer(str(path), anchored(values, path.parent.absolute()), results=results)
+
+
+def results_of(path: Path) -> Path | None:
+    """The results folder that a file of settings was written into; None: it is a user's."""
+    written = path.name in {"config.toml", "study.toml"}
+    return path.parent if written and path.with_name("manifest.json").is_file() else None
 
 
 def read_toml_text(text: str, origin: str) -> Layer:
@@ -124,6 +139,9 @@ def merge(layers: Sequence[Layer]) -> dict[str, Any]:
     """One nested dictionary in which the last layer to set a key wins."""
     merged: dict[str, Any] = {}
     for layer in layers:
+        before = merged.get("controller")
+        if before is not None and layer.values.get("controller", before) != before:
+            merged.pop(OPTIONS, None)  # they are those of another controller
         _merge_into(merged, layer.values)
     return merged
 
@@ -212,6 +230,8 @@ def dump_toml(config: RunConfig) -> str:
         item = tomlkit.item(list(value) if isinstance(value, tuple) else value)
         unit = f"[{entry.unit}] " if entry.unit else ""
         node.add(key, item.comment(f"{unit}{entry.field.description}"))
+    if config.controller_options:
+        document.add("controller_options", tomlkit.item(config.controller_options))
     if config.egos:
         tables = tomlkit.aot()
         for ego in config.egos:

@@ -1,7 +1,7 @@
 """Which settings win: the scenario's, then the user's file, then flags or arguments."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +9,7 @@ from fmus import FmuError, read_profile
 from giveway.config.layers import Layer, build_config, merge, read_toml, undotted
 from giveway.config.presets import parameters_of
 from giveway.config.run_config import RunConfig
+from giveway.config.trust import require_trusted
 from giveway.errors import ConfigError, ScenarioError, VehicleError
 from sumo_scenarios import Scenario, available, find
 from sumo_scenarios import ScenarioError as UnknownScenario
@@ -18,8 +19,12 @@ _WITH_FILES = ("vehicle", "crowd", "perception")  # tables that have such keys
 _KINDS_OF_EGO = ("take_over", "route", "none")
 
 
-def load(layers: Sequence[Layer]) -> tuple[RunConfig, Scenario]:
+def load(layers: Sequence[Layer], trusted: Collection[str] = ()) -> tuple[RunConfig, Scenario]:
     """The configuration that ``layers`` amount to on top of their scenario's own settings.
+
+    Args:
+        layers: of settings.
+        trusted: controllers that may be imported though only a results folder names them.
 
     Raises:
         ConfigError: a key or value cannot be used.
@@ -42,6 +47,7 @@ def load(layers: Sequence[Layer]) -> tuple[RunConfig, Scenario]:
     layers = [*own, *layers]
     identified = _identified(layers)
     config = build_config([*identified, *layers])
+    require_trusted(config, layers, trusted)
     own_model = _model_of(build_config(layers) if identified else config)
     config = _with_one_ego(_each_identified(config, own_model), layers)
     return _placed(config, scenario), scenario

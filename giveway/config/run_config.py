@@ -5,10 +5,11 @@ The TOML file, the command line's flags and the Python API are all derived from 
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BeforeValidator, Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, JsonValue, ValidationError, model_validator
 from pydantic.fields import FieldInfo
+from pydantic_core import PydanticCustomError
 
 from giveway.config.controller_sections import (
     MpcConfig,
@@ -29,22 +30,33 @@ from giveway.config.sections import (
     TrafficConfig,
     VehicleConfig,
 )
+from giveway.plug_ins.finding import declared_names, is_reference
+
+Bundled = Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"]
+BUNDLED: frozenset[str] = frozenset(get_args(Bundled))
 
 
 def _full_name(value: Any) -> Any:
-    """``pid`` was the paper's before there was another one."""
-    return "pid-paper" if value == "pid" else value
+    """A controller that there is; ``pid`` was the paper's before there was another one."""
+    name = "pid-paper" if value == "pid" else value
+    if isinstance(name, str) and (name in BUNDLED or is_reference(name)):
+        return name
+    declared = declared_names()
+    if name in declared:
+        return name
+    known = ", ".join([*get_args(Bundled), *declared])
+    msg = f"expected {known}, or module:Class of an installed package"
+    raise PydanticCustomError("controller", "{expected}", {"expected": msg})
 
 
-ControllerName = Annotated[
-    Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"], BeforeValidator(_full_name)
-]
+ControllerName = Annotated[Bundled | str, BeforeValidator(_full_name)]
 
 PAPER_STEP = 0.05
 """[s] The control step where none is set (Yang & Özgüner 2019, table 1)."""
 
 EGO_TABLES = (
     "controller",
+    "controller_options",
     "ego",
     "vehicle",
     "regulation",
@@ -85,7 +97,8 @@ class RunConfig(Section):
     controller: ControllerName = option(
         "mpc",
         None,
-        "who drives: mpc (plans ahead), pid-tuned, or the paper's: mpc-paper, pid-paper",
+        "who drives: mpc (plans ahead), pid-tuned, the paper's: mpc-paper, pid-paper; or somebody "
+        "else's, by the name that a package declares or as module:Class",
     )
     time_step: float | None = option(
         None,
@@ -119,6 +132,9 @@ class RunConfig(Section):
     pid: PidConfig = PidConfig()
     tuned_pid: TunedPidConfig = TunedPidConfig()
     planner: PlannerConfig = PlannerConfig()
+    controller_options: dict[str, JsonValue] = Field(
+        default_factory=dict, description="the options of a controller that is not giveway's own"
+    )
     safety: SafetyConfig = SafetyConfig()
     perception: PerceptionConfig = PerceptionConfig()
     traffic: TrafficConfig = TrafficConfig()
@@ -135,8 +151,7 @@ class RunConfig(Section):
     @model_validator(mode="after")
     def _check_egos(self) -> RunConfig:
         for ego in self.each_ego():
-            ego.require_speeds_in_reach()
-            ego.require_rolling()
+            ego.require_sound()
         return self
 
     def each_ego(self) -> tuple[EgoRunConfig, ...]:
@@ -159,6 +174,8 @@ class RunConfig(Section):
                 f"egos[{number}]: unknown key '{unknown[0]}'; expected one of {expected}"
             )
         values = self.model_dump(exclude={"egos"})
+        if entry.get("controller", self.controller) != self.controller:
+            values["controller_options"] = {}  # those of another one
         for key, value in entry.items():
             values[key] = {**values[key], **value} if isinstance(value, dict) else value
         try:
@@ -175,6 +192,11 @@ class RunConfig(Section):
         """Whether the law of the road holds: an ego gives way by it, people rely on it."""
         priority = self.regulation.priority
         return not self.controller.endswith("-paper") if priority is None else priority == "road"
+
+    @property
+    def driver(self) -> str:
+        """The controller as titles name it: "MPC", and somebody else's as it is written."""
+        return self.controller.upper() if self.controller in BUNDLED else self.controller
 
     def _one_per_vehicle(self) -> list[EgoRunConfig]:
         """One for each vehicle that is taken over, or the one of an inserted ego."""
@@ -193,14 +215,34 @@ class EgoRunConfig(RunConfig):
 
     @model_validator(mode="after")
     def _check_egos(self) -> EgoRunConfig:
+        self.require_sound()
+        return self
+
+    def require_sound(self) -> None:
+        """Make sure that the settings fit each other.
+
+        Raises:
+            ValueError: they do not.
+        """
         self.require_speeds_in_reach()
         self.require_rolling()
-        return self
+        if self.controller_options and not self.plugged_in:
+            key = next(iter(self.controller_options))
+            raise ValueError(
+                f"[controller_options] {key}: '{self.controller}' has no options there; its own "
+                "tables are in docs/options.md, and a study gives those of another controller in a "
+                "named level beside its name"
+            )
 
     @property
     def ego_id(self) -> str:
         """SUMO's id of the ego."""
         return self.ego.take_over[0] if self.ego.take_over else self.ego.id
+
+    @property
+    def plugged_in(self) -> bool:
+        """Whether the controller is somebody else's."""
+        return self.controller not in BUNDLED
 
     @property
     def optimises(self) -> bool:

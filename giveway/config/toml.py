@@ -73,3 +73,11 @@ def _is_deep(values: dict[str, Any]) -> bool:
 def _children(node: Any) -> list[Any]:
     children = list(node.values()) if isinstance(node, dict) else node
     return [child for child in children if isinstance(child, dict | list)]
+
+
+def toml_value(text: str) -> Any:
+    """A value as TOML has it; what is no TOML is a word."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text

@@ -272,7 +272,7 @@ class Loop:
             look_at = perf_counter()
             seen = ego.look(row, mirror.poses, crowd, surroundings)
             decide_at = perf_counter()
-            decision = ego.decide(self._k, time, seen)
+            decision = ego.decide(self._k, time, seen, self._roster.present)
             controlled_at = perf_counter()
             recorder.ego(ego.id, ego.row(time, seen, decision))
             predicted = ego.expected(seen) if self._looks else None

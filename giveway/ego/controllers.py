@@ -25,6 +25,7 @@ from controller import (
 )
 from giveway.config import EgoRunConfig
 from giveway.config.option import LANE, Section
+from giveway.ego.plug_in import plugged_in
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ControlError
 
@@ -52,6 +53,8 @@ def make_controller(
         regulation = config.regulation.model_copy(update=own)
         config = config.model_copy(update={"regulation": regulation})
     try:
+        if config.plugged_in:
+            return plugged_in(config, time_step)
         return _CONTROLLERS[config.controller](config, time_step)
     except ControllerError as error:
         raise ControlError(str(error)) from error

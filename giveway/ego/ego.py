@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from controller import Decision, Observation
 from giveway.config.regulation import CORRIDOR_MARGIN
@@ -218,19 +219,22 @@ class Ego:
             row,
         )
 
-    def decide(self, step: int, time: float, seen: Seen) -> Decision:
+    def decide(
+        self, step: int, time: float, seen: Seen, person_ids: NDArray[np.int64] | None = None
+    ) -> Decision:
         """The force for the step from t_k on; kept for :meth:`advance`.
 
         Args:
             step: k, for messages.
             time: t_k on SUMO's clock [s].
             seen: what the ego reacts to.
+            person_ids: (n,) a number for each pedestrian that it keeps; None: nobody asks.
 
         Raises:
             ControlError: the controller gave no finite force.
         """
         controller = self._controller
-        decision = controller.control(self._observation(time, seen))
+        decision = controller.control(self._observation(time, seen, person_ids))
         if not math.isfinite(decision.force):
             raise ControlError(
                 f"controller '{decision.acting}' of '{self.id}' at step {step}: force = "
@@ -246,7 +250,9 @@ class Ego:
         self._force = decision.force
         return decision
 
-    def _observation(self, time: float, seen: Seen) -> Observation:
+    def _observation(
+        self, time: float, seen: Seen, person_ids: NDArray[np.int64] | None
+    ) -> Observation:
         """What the controller is shown."""
         front, vehicle, leader = self.front, self.vehicle, seen.leader
         safe_distance = self.config.regulation.safe_distance
@@ -275,6 +281,10 @@ class Ego:
             seen.poses,
             seen.row,
             lanes,
+            seen.pedestrian - origin,
+            leader.station - origin,
+            leader.speed,
+            person_ids,
         )
 
     def expected(self, seen: Seen) -> Array | None:

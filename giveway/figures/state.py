@@ -47,8 +47,18 @@ WAITS = {
 FASTEST_WALK = 3.0  # [m/s] along the way; a gap that changes faster is somebody else's
 FASTEST_VEHICLE = 60.0  # [m/s]; likewise
 # Colour and opacity of a phase.
-SHADES = {"mpc": (SKY_BLUE, 0.14), "pid": (ORANGE, 0.28), "safety": (PURPLE, 0.40)}
-NAMES = {"mpc": "MPC acts", "pid": "PID acts", "safety": "safety layer acts"}
+SHADES = {
+    "mpc": (SKY_BLUE, 0.14),
+    "pid": (ORANGE, 0.28),
+    "plug-in": (SKY_BLUE, 0.14),
+    "safety": (PURPLE, 0.40),
+}
+NAMES = {
+    "mpc": "MPC acts",
+    "pid": "PID acts",
+    "plug-in": "controller acts",
+    "safety": "safety layer acts",
+}
 DASHES = (0, (4, 2))
 DOTS = (0, (1, 2))
 FARTHEST_SHOWN = 40.0  # [m] of the distances to vehicles and stops

@@ -19,6 +19,7 @@ from giveway.records.tracks import EgoTrack
 if TYPE_CHECKING:
     import pandas as pd
 
+_OPTIMISERS = frozenset({"mpc", "mpc-paper"})
 SAFETY = "safety"  # the name under which the safety layer acts
 HARD = 4.0
 """[m/s^2] A harder deceleration is a hard brake: above what passengers who stand can bear."""
@@ -141,7 +142,7 @@ def summarise(
         safe_distance: d_safe [m].
         reference_speed: v_r [m/s]; None: the lanes say how fast.
         stop_speed: the ego stands below it [m/s].
-        controller: its name; one that begins with "mpc" optimises.
+        controller: its name; "mpc" and "mpc-paper" optimise.
         people: what the safety layer takes them to do at worst; None: there is no such layer.
         vehicles: the background vehicles that it came into contact with.
 
@@ -172,7 +173,7 @@ def summarise(
         rms_jerk=float(np.sqrt(np.mean(jerk**2))) if jerk.size else np.nan,
         peak_jerk=float(np.abs(jerk).max()) if jerk.size else np.nan,
         mpc_feasibility_rate=(
-            float(np.mean(ego.acting == "mpc")) if controller.startswith("mpc") else np.nan
+            float(np.mean(ego.acting == "mpc")) if controller in _OPTIMISERS else np.nan
         ),
         safety_share=float(np.mean(ego.acting == SAFETY)),
         minimum_gap=_extreme(ego.gap, np.min),

@@ -55,7 +55,12 @@ EGO_COLUMNS = (
     Column("speed", "number", "m/s", "speed, by the FMU"),
     Column("acceleration", "number", "m/s^2", "acceleration over the step before t_k, by the FMU"),
     Column("force", "number", "N", "force command applied from t_k on; negative brakes"),
-    Column("controller", "string", None, "who acted: mpc, pid or safety (the safety layer)"),
+    Column(
+        "controller",
+        "string",
+        None,
+        "who acted: mpc, pid, plug-in (somebody else's), safety (the layer below)",
+    ),
     Column("reason", "string", None, "why it acted; of the planning MPC: which manoeuvre"),
     Column("solver_status", "string", None, "the QP solver's status; empty where none ran"),
     Column("solver_iterations", "integer", None, "the QP solver's iterations"),

@@ -29,7 +29,7 @@ class EgoTrack:
     reference_speed: NDArray[np.float64]  # (T,) [m/s] of the controller that acted
     vehicle_gap: NDArray[np.float64]  # (T,) [m] to the closest vehicle in front; inf: none
     stop_gap: NDArray[np.float64]  # (T,) [m] to where a red light stops it; inf: none
-    acting: NDArray[np.str_]  # (T,) who acted: "mpc", "pid" or "safety"
+    acting: NDArray[np.str_]  # (T,) who acted: "mpc", "pid", "plug-in", "safety"
     reason: NDArray[np.str_]  # (T,) why it acted, e.g. "optimal", "infeasible", "selected"
     solver_status: NDArray[np.str_]  # (T,) of the QP; empty where none ran
     waits_for: NDArray[np.str_]  # (T,) what it stands for, e.g. "person"; empty while it drives

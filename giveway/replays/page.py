@@ -133,7 +133,7 @@ def _content(run: RunFolder, predictions: pd.DataFrame | None, remark: str) -> d
 
 def _title(run: RunFolder) -> str:
     scenario = run.summary.get("scenario", run.config.scenario)
-    controllers = {one.controller.upper() for one in run.egos.values()}
+    controllers = {one.driver for one in run.egos.values()}
     pedestrians = run.trajectories.loc[run.trajectories["type"] == "pedestrian", "id"].nunique()
     parts = [str(scenario), " + ".join(sorted(controllers)), f"{pedestrians} pedestrians"]
     return " · ".join([part for part in parts if part] + [f"seed {run.config.seed}"])

@@ -2,7 +2,7 @@
 
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 from giveway.errors import GivewayError
@@ -17,7 +17,11 @@ from giveway.studies.rerun import checked_run, rerun
 
 
 def write_report_of(
-    study: StudyFolder, *, replays: bool = True, tell: Callable[[str], None] = lambda _: None
+    study: StudyFolder,
+    *,
+    replays: bool = True,
+    tell: Callable[[str], None] = lambda _: None,
+    trusted: Collection[str] = (),
 ) -> Path:
     """Write figures, replays and ``report.html`` into the study's folder.
 
@@ -26,6 +30,7 @@ def write_report_of(
         replays: make the runs that the report shows once more, for pages that play them and
             for the examples of speed and gap; those that a former report has made are kept.
         tell: takes one line at each step.
+        trusted: controllers, as module:Class, that the study may have imported.
 
     Raises:
         GivewayError: the disk is full.
@@ -35,7 +40,7 @@ def write_report_of(
         return write_report(study)
     runs, kept = shown_runs(study), KeptRuns(study)
     kept.only(runs)
-    lost = _make([run for run in runs if not kept.has(run)], study, kept, tell)
+    lost = _make([run for run in runs if not kept.has(run)], study, kept, tell, trusted)
 
     def drives(run: str) -> Sequence[Drive]:
         if run in lost:
@@ -51,7 +56,11 @@ def _page(kept: KeptRuns, run: str, lost: dict[str, GivewayError]) -> Path | Non
 
 
 def _make(
-    runs: Sequence[str], study: StudyFolder, kept: KeptRuns, tell: Callable[[str], None]
+    runs: Sequence[str],
+    study: StudyFolder,
+    kept: KeptRuns,
+    tell: Callable[[str], None],
+    trusted: Collection[str],
 ) -> dict[str, GivewayError]:
     """Make runs again, and keep their pages and drives.
 
@@ -67,7 +76,7 @@ def _make(
         with tempfile.TemporaryDirectory(prefix="giveway-replay-") as temporary:
             folder = Path(temporary) / run
             try:
-                checked = checked_run(study, run, predictions=True)
+                checked = checked_run(study, run, predictions=True, trusted=trusted)
                 result = _whole(rerun(study, run, folder, checked=checked, pictures=False))
             except GivewayError as error:
                 lost[run] = error  # its scenario has changed or is missing

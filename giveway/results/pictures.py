@@ -120,7 +120,7 @@ def crowd_picture(result: RunTables) -> Figure:
 def _title(result: RunTables, ego: EgoResult) -> str:
     who = "" if ego.id == "ego" else f"ego {ego.id}, "
     return (
-        f"{result.scenario.name}, {who}{ego.config.controller.upper()}, "
+        f"{result.scenario.name}, {who}{ego.config.driver}, "
         f"{len(result.crowd_track.ids)} pedestrians, seed {result.config.seed}"
     )
 

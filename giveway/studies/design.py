@@ -3,9 +3,10 @@
 import difflib
 import itertools
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from giveway.config.layers import Layer, merge, options
+from giveway.config.layers import OPTIONS, Layer, merge, options, results_of
 from giveway.errors import ConfigError
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
@@ -96,7 +97,8 @@ class Cell:
         """Its settings on top of those that all cells share."""
         layers = [Layer(origin, definition.placed(definition.run))]
         layers += [Layer(origin, level.settings) for level in self.levels.values()]
-        return Layer(f"{origin}: cell {self.number} ({self.label})", merge(layers))
+        name = f"{origin}: cell {self.number} ({self.label})"
+        return Layer(name, merge(layers), results=results_of(Path(origin)))
 
 
 @dataclass(frozen=True)
@@ -217,23 +219,25 @@ def _option_factor(name: str, values: list[Any], place: str, definition: StudyDe
     known = {".".join(option.location): option for option in options()}
     if name == "seed":
         raise ConfigError(f"{place}: seeds are not a factor; set replications and first_seed")
-    if name not in known:
+    plugged_in = name.startswith(f"{OPTIONS}.")
+    if name not in known and not plugged_in:
         close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
         hint = f"did you mean '{close[0]}'?" if close else "giveway config lists the options"
         raise ConfigError(
             f"{place}: no such option; {hint} (a factor of your own has named levels)"
         )
-    option = known[name]
+    location = tuple(name.split(".", 1)) if plugged_in else known[name].location
+    unit = None if plugged_in else known[name].unit
     levels = []
     for value in values:
         settings: dict[str, Any] = {}
         node = settings
-        for table in option.location[:-1]:
+        for table in location[:-1]:
             node = node.setdefault(table, {})
-        node[option.location[-1]] = value
+        node[location[-1]] = value
         shown = value if isinstance(value, bool | int | float) else label_of(value)
         levels.append(Level(label_of(value), shown, definition.placed(settings)))
-    return _factor(name, levels, place, option.unit)
+    return _factor(name, levels, place, unit)
 
 
 def _factor(name: str, levels: list[Level], place: str, unit: str | None = None) -> Factor:

@@ -1,6 +1,7 @@
 """One run of a study once more, with everything that a single run leaves behind."""
 
 import math
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -22,20 +23,23 @@ class OtherNumbersError(GivewayError):
     """A run that was made again does not give the study's row; its results are written."""
 
 
-def checked_run(study: StudyFolder, run_id: str, *, predictions: bool = False) -> CheckedRun:
+def checked_run(
+    study: StudyFolder, run_id: str, *, predictions: bool = False, trusted: Collection[str] = ()
+) -> CheckedRun:
     """A run of a study, ready to be made again.
 
     Args:
         study: whose.
         run_id: such as ``c2-s17``.
         predictions: the predicted positions are to be kept, for the replay.
+        trusted: controllers, as module:Class, that the study may have imported.
 
     Raises:
         GivewayError: there is no such run, or its scenario is no longer there.
     """
     cell, seed = study.cell_of(run_id)
     origin = str(study.path / "study.toml")
-    config, scenario = load([cell.layer(origin, study.definition)])
+    config, scenario = load([cell.layer(origin, study.definition)], trusted)
     changes: dict[str, Any] = {"seed": seed}
     if predictions:
         changes["record"] = config.record.model_copy(update={"predictions": PREDICTIONS})

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from giveway.config.layers import read_toml, undotted
+from giveway.config.toml import toml_value
 from giveway.errors import ConfigError
 from giveway.studies.definition import StudyDefinition, make_definition
 
@@ -43,21 +43,13 @@ def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefi
 
 def _parsed(variation: str) -> tuple[str, list[Any]]:
     name, equals, text = variation.partition("=")
-    values = [_value(part.strip()) for part in text.split(",") if part.strip()]
+    values = [toml_value(part.strip()) for part in text.split(",") if part.strip()]
     if not equals or not name.strip() or len(values) < 2:
         raise ConfigError(
             f"--vary {variation}: expected an option and at least two values, like "
             "planner.conflict_weight=0.3,0.6"
         )
     return name.strip(), values
-
-
-def _value(text: str) -> Any:
-    """As TOML has it; what is no TOML is a word."""
-    try:
-        return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        return text
 
 
 def study_of(study: Mapping[str, Any] | str | Path) -> tuple[StudyDefinition, str]:

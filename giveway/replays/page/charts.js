@@ -222,7 +222,7 @@ function shadePhases(g, ego, top, height) {
     let end = i + 1;
     const acting = ego.kinds[ego.kind[i]].acting;
     while (end + 1 < ego.count && ego.kinds[ego.kind[end]].acting === acting) end++;
-    g.globalAlpha = acting === "mpc" ? 0.1 : 0.22;
+    g.globalAlpha = acting === "mpc" || acting === "plug-in" ? 0.1 : 0.22;
     g.fillStyle = colours[acting] ?? colours.mpc;
     g.fillRect(timeX(ego.time(i)), top, timeX(ego.time(end)) - timeX(ego.time(i)), height);
     i = end - 1;

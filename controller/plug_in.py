@@ -1,0 +1,68 @@
+"""What somebody else's controller is: a class that is told and answers what stands here.
+
+A class of an installed package is a controller if it can be made from a :class:`Setup` (and its
+options, if it has any) and has the method ``control``. docs/plugins.md is the guide.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol, TypeAlias, runtime_checkable
+
+from controller.protocol import Observation
+
+
+class Setup(NamedTuple):
+    """What does not change during a drive: told once, when the controller is made."""
+
+    time_step: float  # h [s] between two answers
+    mass: float  # M [kg] of the model M s'' + alpha s' = u
+    friction: float  # alpha [N.s/m] of it
+    reference_speed: float  # v_r [m/s] where nothing is in the way
+    safe_distance: float  # d_safe [m] to be kept to obstacles
+    force_limit: float  # [N] the actuator gives no more, forwards or backwards
+    comfortable_deceleration: float  # [m/s^2]
+
+
+class Force(NamedTuple):
+    """The force that is to act in [t_k, t_k+1]."""
+
+    value: float  # u [N], forwards positive
+    reason: str = ""  # a word or two for the tables
+
+
+class Acceleration(NamedTuple):
+    """The acceleration that the vehicle is to have; u = M a + alpha v."""
+
+    value: float  # a [m/s^2]
+    reason: str = ""  # a word or two for the tables
+
+
+class Speed(NamedTuple):
+    """The speed that the vehicle is to approach: a = (v_set - v) / T, then as an acceleration."""
+
+    value: float  # v_set [m/s]
+    lead: float = 0.0  # T [s]; 0: one control step
+    reason: str = ""  # a word or two for the tables
+
+
+Answer: TypeAlias = Force | Acceleration | Speed | float
+"""What ``control`` returns; a mere number is a force [N]."""
+
+
+@runtime_checkable
+class PlugIn(Protocol):
+    """Somebody else's controller, made by ``Class(setup)`` or ``Class(setup, options)``.
+
+    It may have, and has to have none of:
+
+    * ``Options``, of the class: a dataclass or pydantic model of what users may set;
+    * ``horizon``, N: the steps of prediction that it wants in ``obstacle_positions``; 0: none;
+    * ``foresees``: it tries manoeuvres on ``Observation.foresight``, and wants no prediction else;
+    * ``reset()``: forget the past;
+    * ``applied(force)``: told when the safety layer lets another force [N] act than it wanted.
+
+    It is made before the run and perhaps more than once, and so starts nothing when it is made.
+    """
+
+    def control(self, observation: Observation, /) -> Answer:
+        """What is to act in [t_k, t_k+1]; the observation's arrays cannot be written."""

@@ -1,0 +1,201 @@
+"""Finding the class that a name means, in installed distributions and nowhere else.
+
+A name is that of an entry point, or ``module:attribute``. The file that would be imported has to
+belong to an installed distribution: by its RECORD, or, installed for development (``pip install
+-e``), below its project's folder. What merely lies in the working folder is never imported.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import hashlib
+import importlib
+import importlib.util
+import json
+import os
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote, urlsplit
+from urllib.request import url2pathname
+
+from giveway.errors import ControlError
+
+GROUP = "giveway.controllers"
+"""Of the entry points that declare controllers."""
+
+_REFERENCE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*(\.[A-Za-z_]\w*)*")
+
+
+@dataclass(frozen=True)
+class Found:
+    """A plug-in and what it belongs to, as manifests tell it.
+
+    Attributes:
+        name: as the user wrote it.
+        reference: ``module:attribute``.
+        distribution: the installed distribution that has it.
+        version: of the distribution.
+        sha256: of all files of its package.
+    """
+
+    name: str
+    reference: str
+    distribution: str
+    version: str
+    sha256: str
+
+    def described(self) -> dict[str, Any]:
+        """For the manifest."""
+        return asdict(self)
+
+
+def is_reference(name: str) -> bool:
+    """Whether a name is ``module:attribute`` and not that of an entry point."""
+    return _REFERENCE.fullmatch(name) is not None
+
+
+def declared_names() -> list[str]:
+    """The names of the controllers that installed distributions declare."""
+    return sorted({point.name for point in metadata.entry_points(group=GROUP)})
+
+
+def find(name: str) -> Found:
+    """What a name means; nobody's code is imported.
+
+    Raises:
+        ControlError: nothing installed has it.
+    """
+    reference = name if is_reference(name) else _declared(name)
+    module = reference.partition(":")[0]
+    owner, files = _owner(name, module.partition(".")[0])
+    return Found(name, reference, owner.metadata["Name"], owner.version, _digest(files))
+
+
+def load(found: Found) -> Any:
+    """Import what was found.
+
+    Raises:
+        ControlError: it cannot be imported.
+    """
+    module, _, attribute = found.reference.partition(":")
+    try:
+        with _without_working_folder():
+            value: Any = importlib.import_module(module)
+        for part in attribute.split("."):
+            value = getattr(value, part)
+    except (Exception, SystemExit) as error:
+        said = " ".join(str(error).split())
+        raise ControlError(
+            f"controller = '{found.name}': {found.reference} of {found.distribution} "
+            f"{found.version} cannot be imported ({type(error).__name__}: {said}); mend or "
+            "reinstall that package"
+        ) from error
+    return value
+
+
+def _declared(name: str) -> str:
+    """The ``module:attribute`` of an entry point."""
+    values = {point.value for point in metadata.entry_points(group=GROUP, name=name)}
+    if len(values) == 1:
+        return values.pop().partition("[")[0].strip()
+    if values:
+        both = " and ".join(sorted(values))
+        raise ControlError(
+            f"controller = '{name}': {both} both have this name; choose one as module:Class"
+        )
+    known = ", ".join(declared_names()) or "none"
+    raise ControlError(
+        f"controller = '{name}': no installed package declares it (entry points {GROUP}: {known})"
+    )
+
+
+def _owner(name: str, package: str) -> tuple[metadata.Distribution, list[Path]]:
+    """The distribution of a top-level package or module, and the package's files."""
+    with _without_working_folder():
+        try:
+            spec = importlib.util.find_spec(package)
+        except (ImportError, ValueError):
+            spec = None
+    origins = [] if spec is None else _places(spec.origin, spec.submodule_search_locations)
+    for origin in origins:
+        for distribution in metadata.distributions():
+            if _has(distribution, origin):
+                return distribution, _files(origins)
+    place = f"; {origins[0]} is not installed" if origins else ""
+    raise ControlError(
+        f"controller = '{name}': no installed package has the module '{package}'{place}; code "
+        "from other places is not imported, install it with: pip install FOLDER (or -e FOLDER)"
+    )
+
+
+def _places(origin: str | None, folders: Any) -> list[Path]:
+    """The file, or the folders of a package without one, that a module is imported from."""
+    if origin is not None and os.path.isfile(origin):  # noqa: PTH113 - "built-in" is a name, too
+        return [Path(origin).absolute()]
+    return [Path(folder).absolute() for folder in folders or ()]
+
+
+def _has(distribution: metadata.Distribution, place: Path) -> bool:
+    """Whether a distribution has installed a file or folder, or was installed from above it."""
+    root = Path(str(distribution.locate_file(""))).absolute()
+    record = distribution.read_text("RECORD")
+    if record is not None and place.is_relative_to(root):
+        inside = place.relative_to(root).as_posix()
+        starts = f"{inside}/" if place.is_dir() else f"{inside},"
+        if any(line.removeprefix('"').startswith(starts) for line in record.splitlines()):
+            return True
+    project = _project(distribution)
+    return project is not None and place.resolve().is_relative_to(project)
+
+
+def _project(distribution: metadata.Distribution) -> Path | None:
+    """The folder that a distribution was installed from for development; None: it was not."""
+    with contextlib.suppress(ValueError, TypeError, AttributeError):
+        direct = json.loads(distribution.read_text("direct_url.json") or "{}")
+        if direct.get("dir_info", {}).get("editable"):
+            return Path(url2pathname(unquote(urlsplit(direct["url"]).path))).resolve()
+    return None
+
+
+def _files(origins: list[Path]) -> list[Path]:
+    """All files of a package, or the one of a module."""
+    folders = [place.parent if place.name == "__init__.py" else place for place in origins]
+    found: list[Path] = []
+    for place in folders:
+        found += [place] if place.is_file() else sorted(place.rglob("*"))
+    return [file for file in found if file.is_file() and "__pycache__" not in file.parts]
+
+
+def _digest(files: list[Path]) -> str:
+    """SHA-256 of names and contents; they are read again only when one has changed."""
+    stamps = tuple((str(f), f.stat().st_mtime_ns, f.stat().st_size) for f in files)
+    return _digest_of(stamps)
+
+
+@functools.lru_cache(maxsize=64)
+def _digest_of(stamps: tuple[tuple[str, int, int], ...]) -> str:
+    digest = hashlib.sha256()
+    top = os.path.commonpath([file for file, *_ in stamps]) if len(stamps) > 1 else ""
+    for file, *_ in stamps:
+        name = os.path.relpath(file, top) if top else os.path.basename(file)  # noqa: PTH119
+        content = Path(file).read_bytes()
+        digest.update(f"{Path(name).as_posix()} {len(content)} ".encode() + content)
+    return digest.hexdigest()
+
+
+@contextlib.contextmanager
+def _without_working_folder() -> Iterator[None]:
+    """Import as if Python had been started with ``-P``: not from where the user happens to be."""
+    kept = sys.path[:]
+    if not sys.flags.safe_path and sys.path and sys.path[0] in {"", str(Path.cwd())}:
+        del sys.path[0]
+    try:
+        yield
+    finally:
+        sys.path[:] = kept

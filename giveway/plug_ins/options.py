@@ -1,0 +1,73 @@
+"""The options of a plug-in: what its ``Options`` says, filled in from texts and TOML values."""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel, TypeAdapter, ValidationError
+from pydantic.errors import PydanticUserError
+
+from giveway.errors import ConfigError, ControlError
+
+
+def read_options(name: str, kind: type | None, values: Mapping[str, Any]) -> Any:
+    """The options of a plug-in.
+
+    Args:
+        name: of the plug-in, for messages.
+        kind: its ``Options``, a dataclass or pydantic model; None: it has no options.
+        values: as the user has set them; a command line's are texts.
+
+    Returns:
+        An instance of ``kind``; None without one.
+
+    Raises:
+        ConfigError: a key is unknown, or a value cannot be used.
+        ControlError: ``kind`` is neither a dataclass nor a pydantic model.
+    """
+    known = [] if kind is None else _names(name, kind)
+    for key in values:
+        if key not in known:
+            close = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
+            expected = f"one of {', '.join(known)}" if known else "none: it has no options"
+            hint = f"did you mean '{close[0]}'?" if close else f"expected {expected}"
+            raise ConfigError(f"[controller_options] {key}: '{name}' has no such option; {hint}")
+    if kind is None:
+        return None
+    try:
+        return TypeAdapter(kind).validate_python(dict(values))
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key = ".".join(map(str, first["loc"])) or "options"
+        said = str(first["msg"]).removeprefix("Input ")
+        given = "is missing" if first["type"] == "missing" else f"= {first['input']!r}"
+        raise ConfigError(f"[controller_options] {key} {given}: {said} ('{name}')") from None
+    except PydanticUserError as error:
+        said = str(error).partition("\n")[0]
+        raise ControlError(f"controller = '{name}': its Options cannot be read ({said})") from error
+    except (Exception, SystemExit) as error:  # its own validators
+        said = f"{type(error).__name__}: {str(error).partition(chr(10))[0]}"
+        raise ConfigError(f"[controller_options]: '{name}' refuses them ({said})") from error
+
+
+def plain(options: Any) -> dict[str, Any]:
+    """The options, defaults included, as a manifest tells them."""
+    if isinstance(options, BaseModel):
+        return options.model_dump(mode="json")
+    if options is None:
+        return {}
+    values: dict[str, Any] = TypeAdapter(type(options)).dump_python(options, mode="json")
+    return values
+
+
+def _names(name: str, kind: Any) -> list[str]:
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        return list(kind.model_fields)
+    if isinstance(kind, type) and dataclasses.is_dataclass(kind):
+        return [field.name for field in dataclasses.fields(kind) if field.init]
+    raise ControlError(
+        f"controller = '{name}': Options = {kind!r}: expected a dataclass or a pydantic model"
+    )
