@@ -12,6 +12,7 @@ from giveway.api import in_journal, keep
 from giveway.config import RunConfig
 from giveway.config.layers import read_toml_text
 from giveway.config.loading import load
+from giveway.ego.plug_in import named_in
 from giveway.errors import CrashError, GivewayError, ResultsError
 from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.locks import FolderInUseError, locked
@@ -46,7 +47,7 @@ def recover(journal: Path, verdict: Verdict) -> CrashError:
         return CrashError(f"{how}: {verdict.message}{doctor}")
     config, scenario = load([read_toml_text(contents.meta["config"], "the run's configuration")])
     doctor = f"; 'giveway doctor {config.scenario}' looks for the cause"
-    report = f"{scenario.config_file}: {how}: {verdict.message}"
+    report = f"{scenario.config_file}: {how}: {named_in(verdict.message, config)}"
     report += "" if verdict.interrupted else doctor
     error = CrashError(report)
     folder = None if contents.meta["results"] is None else Path(contents.meta["results"])

@@ -43,6 +43,7 @@ pytest_plugins = [
     "support.browser",
     "support.clips",
     "support.commands",
+    "support.plug_ins",
     "support.running",
     "support.runs",
     "support.scenarios",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from controller import PluggedIn, Setup
-from giveway.config import EgoRunConfig
+from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.sections import DEFAULT_SPEED
 from giveway.errors import ConfigError, ControlError
 from giveway.plug_ins.finding import find, load
@@ -75,6 +75,22 @@ def provenance(egos: Sequence[EgoRunConfig]) -> dict[str, dict[str, Any]]:
             _, options = _with_options(config)
             told[config.ego_id] = find(config.controller).described() | {"options": plain(options)}
     return told
+
+
+def named_in(failure: str, config: RunConfig) -> str:
+    """What is said of a process that died in a controller, with that controller's name.
+
+    Args:
+        failure: as the supervisor tells it.
+        config: of the run.
+    """
+    names = dict.fromkeys(ego.controller for ego in config.each_ego() if ego.plugged_in)
+    shown = " or ".join(f"'{name}'" for name in names)
+    return (
+        failure.replace("in the controller at", f"in the controller {shown} at")
+        if names
+        else failure
+    )
 
 
 def _with_options(config: EgoRunConfig) -> tuple[Any, Any]:

@@ -166,7 +166,7 @@ class Pool:
                     task.run,
                     task.key,
                     CRASHED if died else FAILED,
-                    failure=str(error),
+                    failure=_named(task, str(error)),
                     computing=Computing(
                         seconds=round(time.monotonic() - began, 6),
                         worker=f"{socket.gethostname()}:{os.getpid()}",
@@ -222,3 +222,11 @@ class Pool:
             with self._lock:
                 self._alive.discard(worker)
             worker.remove()
+
+
+def _named(task: Task, failure: str) -> str:
+    """The failure, with the name of the controller that it happened in, if it is nobody of ours."""
+    from giveway.config import RunConfig
+    from giveway.ego.plug_in import named_in
+
+    return named_in(failure, RunConfig.model_validate_json(task.config))

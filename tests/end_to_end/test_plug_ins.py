@@ -1,0 +1,288 @@
+"""Somebody else's controller drives: as docs/plugins.md prints it, in runs and studies."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import tomllib
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+import giveway
+from giveway.config import EgoRunConfig, RunConfig
+from giveway.config.layers import dump_toml, read_toml
+from giveway.config.loading import load
+from giveway.cosimulation.preflight import preflight
+from giveway.ego.controllers import make_controller
+from giveway.errors import ConfigError, ControlError
+from giveway.studies.folder import StudyFolder
+from giveway.studies.rerun import checked_run, rerun
+
+PAGE = (Path(__file__).parents[2] / "docs" / "plugins.md").read_text(encoding="utf-8")
+SHORT = {"time_limit": 2.0, "crowd": {"pedestrians": 3}}
+
+FAULTY = """
+import os, time
+import numpy as np
+from dataclasses import dataclass
+from controller import Acceleration
+
+@dataclass
+class Fault:
+    kind: str = "none"
+
+class Driver:
+    Options = Fault
+    def __init__(self, setup, options):
+        self.kind, self.asked = options.kind, 0
+    def control(self, seen):
+        self.asked += 1
+        if self.asked <= 20:
+            return Acceleration(0.1)
+        if self.kind == "nan":
+            return Acceleration(np.nan)
+        if self.kind == "shape":
+            return np.zeros(3)
+        if self.kind == "raise":
+            raise ValueError("no idea")
+        if self.kind == "leave":
+            raise SystemExit(0)
+        if self.kind == "exit":
+            os._exit(0)
+        if self.kind == "hang":
+            time.sleep(600)
+        return Acceleration(0.1)
+"""
+
+
+def printed(mark: str) -> str:
+    """The block of the page below a mark."""
+    found = re.search(rf"<!-- {re.escape(mark)} -->\n```\w*\n(.*?)```", PAGE, re.DOTALL)
+    assert found, mark
+    return found.group(1)
+
+
+@pytest.fixture
+def careful(installed):
+    """The package of the page."""
+    points = tomllib.loads(printed("file: pyproject.toml"))["project"]["entry-points"]
+    ((name, value),) = points["giveway.controllers"].items()
+    return installed(
+        "careful_driver", printed("file: careful_driver.py"), declares=f"{name} = {value}"
+    )
+
+
+@pytest.fixture
+def faulty(installed):
+    return installed("faulty_driver", FAULTY, declares="broken = faulty_driver:Driver")
+
+
+def test_the_package_is_short():
+    assert len(printed("file: careful_driver.py").splitlines()) <= 60
+
+
+def test_the_printed_controller_drives_as_the_printed_settings_say(careful, tmp_path):
+    file = tmp_path / "careful.toml"
+    file.write_text(printed("run"), encoding="utf-8")
+    config, scenario = load([read_toml(file)])
+    assert config.controller_options == {"headway": 1.5}
+    out = tmp_path / "run"
+    result = giveway.run({**tomllib.loads(printed("run")), **SHORT}, results=out, pictures=True)
+    ego = pd.read_csv(out / "ego.csv")
+    assert set(ego["controller"]) <= {"plug-in", "safety"}
+    assert "free" in set(ego["reason"])
+    assert ego["force"].abs().max() <= 5000.0
+    told = json.loads((out / "manifest.json").read_text(encoding="utf-8"))["controllers"]["ego"]
+    assert told["distribution"] == "careful-driver"
+    assert told["options"] == {"headway": 1.5, "aside": 3.0, "walking_pace": 1.5}
+    assert len(told["sha256"]) == 64
+    again = giveway.run(out / "config.toml", pictures=False)
+    assert (again.ego.track.force == result.ego.track.force).all()
+
+
+def test_options_change_the_drive(careful):
+    near, far = (
+        giveway.run({"controller": "careful", "controller_options.aside": aside, **SHORT})
+        for aside in (0.0, 50.0)
+    )
+    assert "people beside" not in set(near.ego.track.reason)
+    assert "people beside" in set(far.ego.track.reason)
+    assert far.ego.track.speed[-1] < near.ego.track.speed[-1]
+
+
+def test_the_configuration_as_it_is_written_is_the_configuration(careful):
+    config = RunConfig(controller="careful", controller_options={"headway": 3.0})
+    assert RunConfig.model_validate(tomllib.loads(dump_toml(config))) == config
+    assert RunConfig.model_validate_json(config.model_dump_json()) == config
+
+
+def test_set_fills_the_options_in(careful, type_here, tmp_path):
+    typed = type_here("config", "--controller", "careful", "--set", "headway=1.25")
+    assert tomllib.loads(typed.stdout)["controller_options"] == {"headway": 1.25}
+    out = tmp_path / "run"
+    words = ["run", "--controller", "careful", "--set", "headwy=1", "--out", out, "-q"]
+    refused = type_here(*words)
+    assert refused.returncode == 2
+    assert "headwy: 'careful' has no such option; did you mean 'headway'?" in refused.stderr
+    assert len(refused.stderr.strip().splitlines()) == 1
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("word", ["headway", "=3", "headway=1 headway=2"])
+def test_what_set_does_not_take(careful, type_here, word):
+    words = [piece for part in word.split(" ") for piece in ("--set", part)]
+    typed = type_here("config", "--controller", "careful", *words)
+    assert typed.returncode == 2
+    assert "--set" in typed.stderr
+
+
+def test_another_controllers_options_stay_behind(careful, tmp_path, type_here):
+    file = tmp_path / "careful.toml"
+    file.write_text(printed("run"), encoding="utf-8")
+    typed = type_here("config", "--config", file, "--controller", "mpc")
+    assert typed.returncode == 0
+    assert "controller_options" not in tomllib.loads(typed.stdout)
+    two = RunConfig(
+        controller="careful",
+        controller_options={"headway": 3.0},
+        egos=({"ego": {"id": "a"}}, {"controller": "mpc", "ego": {"id": "b"}}),
+    )
+    assert [ego.controller_options for ego in two.each_ego()] == [{"headway": 3.0}, {}]
+
+
+def test_our_own_controllers_have_none():
+    with pytest.raises(ConfigError, match="headway: 'mpc' has no options there"):
+        giveway.run({"controller": "mpc", "controller_options.headway": 1.0})
+
+
+def test_a_name_that_nobody_has(type_here):
+    for name in ("mcp", "nobody.has:This"):
+        typed = type_here("run", "--controller", name, "-q")
+        assert typed.returncode != 0
+        assert name in typed.stderr
+        assert len(typed.stderr.strip().splitlines()) == 1
+
+
+FAULTS = {
+    "nan": "returned Acceleration(value=nan, reason=''): expected a finite number [m/s^2]",
+    "shape": "returned array([0., 0., 0.]): expected Force, Acceleration or Speed",
+    "raise": "raised ValueError: no idea (faulty_driver.py:",
+    "leave": "raised SystemExit: 0 (faulty_driver.py:",
+}
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+def test_a_fault_ends_the_run_with_one_line_and_keeps_its_rows(faulty, kind, tmp_path):
+    settings = {"controller": "broken", "controller_options": {"kind": kind}, **SHORT}
+    with pytest.raises(ControlError) as caught:
+        giveway.run(settings, results=tmp_path / "run", pictures=False)
+    line = str(caught.value)
+    assert line.startswith(f"controller at step 20: 'broken' of 'ego' {FAULTS[kind]}")
+    assert line.isprintable()
+    assert len(pd.read_csv(tmp_path / "run" / "ego.csv")) == 20
+    if kind == "nan":
+        assert line == printed("failure").strip()
+
+
+def test_faults_in_a_study_are_a_row_each_beside_sound_runs(faulty, study_of, tmp_path):
+    text = """
+name = "faults"
+replications = 1
+[run]
+controller = "broken"
+time_limit = 2.0
+crowd = { pedestrians = 3 }
+[factors]
+"controller_options.kind" = ["none", "nan", "exit", "hang"]
+"""
+    study = study_of(text, tmp_path / "study", jobs=2, hang_limit=3.0)
+    failures = study.failures.set_index("run")["failure"]
+    assert sorted(failures.index) == ["c2-s1", "c3-s1", "c4-s1"]
+    assert "controller at step 20: 'broken' of 'ego' returned" in failures["c2-s1"]
+    assert re.search(r"exit\(0\) .* in the controller 'broken' at .*step 20", failures["c3-s1"])
+    assert re.search(r"no progress .* in the controller 'broken' at .*step 20", failures["c4-s1"])
+
+
+def test_the_supervisor_names_the_controller_that_ended_the_run(faulty, type_outside, tmp_path):
+    words = ["run", "--controller", "faulty_driver:Driver", "--set", "kind=exit", "-q"]
+    words += ["--time-limit", 2, "--pedestrians", 3, "--out", tmp_path / "run", "--no-pictures"]
+    typed = type_outside(*words)
+    assert typed.returncode == 1
+    assert "in the controller 'faulty_driver:Driver' at" in typed.stderr
+    assert len(pd.read_csv(tmp_path / "run" / "ego.csv")) >= 20
+
+
+def test_a_results_folder_is_not_believed(careful, installed, tmp_path, type_here):
+    """What it names is imported with the user's word, or if it is declared and has not changed."""
+    for name in ("careful", "careful_driver:Careful"):
+        out = tmp_path / name.replace(":", "-")
+        giveway.run({"controller": name, "time_limit": 0.2, "crowd.pedestrians": 0}, results=out)
+    declared, named = tmp_path / "careful", tmp_path / "careful_driver-Careful"
+    config = declared / "config.toml"
+    assert load([read_toml(config)])[0].controller == "careful"
+    with pytest.raises(ConfigError, match="a results folder names code"):
+        load([read_toml(named / "config.toml")])
+    assert load([read_toml(named / "config.toml")], trusted={"careful_driver:Careful"})
+    words = ["--controller", "careful_driver:Careful"]
+    assert type_here("config", "--config", named / "config.toml", *words).returncode == 0
+    elsewhere = shutil.copy(named / "config.toml", tmp_path / "my.toml")
+    assert load([read_toml(Path(elsewhere))])  # the user's own file
+    careful.write_text(careful.read_text(encoding="utf-8") + "# other\n", encoding="utf-8")
+    with pytest.raises(ConfigError, match="made with another content of careful-driver"):
+        load([read_toml(config)])
+    assert type_here("config", "--config", config, "--controller", "careful").returncode == 0
+
+
+def test_a_study_of_the_page_is_resumed_with_what_it_was_made_with(careful, study_of, tmp_path):
+    text = printed("study").replace("100", "1") + "\n[run]\ntime_limit = 1.0\n"
+    text += "crowd = { pedestrians = 3 }\n"
+    study = study_of(text, tmp_path / "study")
+    assert not len(study.failures)
+    assert set(study.runs["driver"]) == {"careful", "mpc"}
+    keys = {record.run: record.key for record in study.records}
+    assert rerun(StudyFolder.open(study.path), "c1-s1", None, pictures=False)
+    careful.write_text(careful.read_text(encoding="utf-8") + "# other\n", encoding="utf-8")
+    again = {
+        record.run: record.key for record in study_of(text, tmp_path / "study", resume=True).records
+    }
+    assert again["c2-s1"] == keys["c2-s1"]
+    assert again["c1-s1"] != keys["c1-s1"]
+
+
+def test_a_study_that_names_a_class_is_rerun_with_the_users_word(careful, study_of, tmp_path):
+    text = """
+name = "named"
+replications = 1
+[run]
+time_limit = 0.5
+[factors]
+controller = ["careful_driver:Careful", "pid-tuned"]
+"""
+    study = study_of(text, tmp_path / "study")
+    folder = StudyFolder.open(study.path)
+    with pytest.raises(ConfigError, match="--trust careful_driver:Careful"):
+        checked_run(folder, "c1-s1")
+    assert checked_run(folder, "c1-s1", trusted=["careful_driver:Careful"])
+    assert checked_run(folder, "c2-s1")
+
+
+def test_predictions_for_whoever_wants_them(installed):
+    installed(
+        "far_driver",
+        "class Driver:\n"
+        "    horizon = 12\n"
+        "    def __init__(self, setup):\n        pass\n"
+        "    def control(self, seen):\n"
+        "        assert seen.obstacle_positions.shape == (12,)\n"
+        "        assert len(seen.person_ids) == len(seen.people.position)\n"
+        "        assert seen.path.curvature(seen.obstacle_positions[:0]).shape == (0,)\n"
+        "        return 0.0\n",
+    )
+    result = giveway.run({"controller": "far_driver:Driver", **SHORT})
+    assert len(result.time) == 41
+    own = EgoRunConfig(controller="far_driver:Driver")
+    assert make_controller(own, 0.05).horizon == 12
+    assert preflight(*load([])).time_step == 0.05
