@@ -17,6 +17,9 @@ from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError
 from giveway.plug_ins.finding import find, is_reference
 
+CONTROLLER_OF = "controller of "
+"""How the input of a study's cell begins that is a controller; ego and name follow."""
+
 
 def require_trusted(
     config: RunConfig, layers: Sequence[Layer], trusted: Collection[str] = ()
@@ -65,8 +68,14 @@ def hashes_in(folder: Path, name: str) -> set[str]:
     """The SHA-256 of a controller that the manifest of a results folder tells; perhaps none."""
     try:
         manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
-        told = manifest.get("controllers", {})
-        return {str(one["sha256"]) for one in told.values() if one["name"] == name}
+        told = manifest.get("controllers", {})  # of a run
+        inputs = [cell["inputs"] for cell in manifest.get("cells", ())]  # of a study
+        return {str(one["sha256"]) for one in told.values() if one["name"] == name} | {
+            str(hash_)
+            for files in inputs
+            for key, hash_ in files.items()
+            if key.startswith(CONTROLLER_OF) and key.endswith(f": {name}")
+        }
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return set()
 

@@ -12,6 +12,8 @@ from giveway.errors import ConfigError, ControlError
 from giveway.plug_ins.finding import find, load
 from giveway.plug_ins.options import plain, read_options
 
+_PLACE = "in the controller at"  # as a heartbeat tells it
+
 
 def plugged_in(config: EgoRunConfig, time_step: float) -> PluggedIn:
     """The controller of one ego that somebody else has written.
@@ -86,11 +88,7 @@ def named_in(failure: str, config: RunConfig) -> str:
     """
     names = dict.fromkeys(ego.controller for ego in config.each_ego() if ego.plugged_in)
     shown = " or ".join(f"'{name}'" for name in names)
-    return (
-        failure.replace("in the controller at", f"in the controller {shown} at")
-        if names
-        else failure
-    )
+    return failure.replace(_PLACE, f"in the controller {shown} at") if names else failure
 
 
 def _with_options(config: EgoRunConfig) -> tuple[Any, Any]:

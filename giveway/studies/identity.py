@@ -13,6 +13,7 @@ from pathlib import Path
 from giveway._environment import ROOMS
 from giveway.config import RunConfig
 from giveway.config.presets import is_preset_file
+from giveway.config.trust import CONTROLLER_OF
 from giveway.ego.vehicle import fmu_path
 from giveway.errors import ConfigError, GivewayError
 from giveway.plug_ins.finding import find as find_plug_in
@@ -131,7 +132,7 @@ def _own_files(config: RunConfig) -> list[tuple[str, Path]]:
 def _plug_ins(config: RunConfig) -> dict[str, str]:
     """SHA-256 of the package of each controller that is not ours."""
     return {
-        f"controller of {ego.ego_id}: {ego.controller}": find_plug_in(ego.controller).sha256
+        f"{CONTROLLER_OF}{ego.ego_id}: {ego.controller}": find_plug_in(ego.controller).sha256
         for ego in config.each_ego()
         if ego.plugged_in
     }

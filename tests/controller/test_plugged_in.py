@@ -57,11 +57,7 @@ def test_the_inverse_is_that_of_fmus_with_a_speed_setpoint_or_an_acceleration():
     from fmus.profile.wiring import Wire
 
     raw = np.zeros(1)
-    wire = Wire("x", 1.0, 0.0) if len(Wire.__dataclass_fields__) == 3 else None
-    if wire is None:
-        wire = object.__new__(Wire)
-        object.__setattr__(wire, "scale", 1.0)
-        object.__setattr__(wire, "shift", 0.0)
+    wire = Wire("own", None, 1.0, 0.0, "")
     AccelerationCommand(wire, 1000.0, 100.0, False).apply(
         asked(Acceleration(0.7)).force, 3.0, memoryview(raw)
     )
@@ -92,7 +88,7 @@ def test_its_reason_is_in_the_decision():
     ],
 )
 def test_an_answer_that_is_no_number_is_told_on_one_line(answer, said):
-    with pytest.raises(PlugInError, match="^'a:B' of 'ego' returned ") as caught:
+    with pytest.raises(PlugInError, match=r"^'a:B' of 'ego' returned ") as caught:
         asked(answer)
     assert said in str(caught.value)
     assert str(caught.value).isprintable()
@@ -168,7 +164,7 @@ def test_a_horizon_is_a_number_of_steps(horizon):
 def test_what_has_no_control_is_no_controller():
     with pytest.raises(PlugInError, match="expected an object with a method control"):
         PluggedIn("'a:B'", dict, SETUP)
-    with pytest.raises(PlugInError, match="raised ValueError: bad .* when it was made"):
+    with pytest.raises(PlugInError, match=r"raised ValueError: bad .* when it was made"):
         PluggedIn("'a:B'", lambda: (_ for _ in ()).throw(ValueError("bad")), SETUP)
 
 

@@ -87,7 +87,7 @@ def test_the_package_is_short():
 def test_the_printed_controller_drives_as_the_printed_settings_say(careful, tmp_path):
     file = tmp_path / "careful.toml"
     file.write_text(printed("run"), encoding="utf-8")
-    config, scenario = load([read_toml(file)])
+    config, _ = load([read_toml(file)])
     assert config.controller_options == {"headway": 1.5}
     out = tmp_path / "run"
     result = giveway.run({**tomllib.loads(printed("run")), **SHORT}, results=out, pictures=True)
@@ -100,7 +100,7 @@ def test_the_printed_controller_drives_as_the_printed_settings_say(careful, tmp_
     assert told["options"] == {"headway": 1.5, "aside": 3.0, "walking_pace": 1.5}
     assert len(told["sha256"]) == 64
     again = giveway.run(out / "config.toml", pictures=False)
-    assert (again.ego.track.force == result.ego.track.force).all()
+    assert (again.egos[0].track.force == result.egos[0].track.force).all()
 
 
 def test_options_change_the_drive(careful):
@@ -108,9 +108,9 @@ def test_options_change_the_drive(careful):
         giveway.run({"controller": "careful", "controller_options.aside": aside, **SHORT})
         for aside in (0.0, 50.0)
     )
-    assert "people beside" not in set(near.ego.track.reason)
-    assert "people beside" in set(far.ego.track.reason)
-    assert far.ego.track.speed[-1] < near.ego.track.speed[-1]
+    assert "people beside" not in set(near.egos[0].track.reason)
+    assert "people beside" in set(far.egos[0].track.reason)
+    assert far.egos[0].track.speed[-1] < near.egos[0].track.speed[-1]
 
 
 def test_the_configuration_as_it_is_written_is_the_configuration(careful):
@@ -199,7 +199,7 @@ crowd = { pedestrians = 3 }
 "controller_options.kind" = ["none", "nan", "exit", "hang"]
 """
     study = study_of(text, tmp_path / "study", jobs=2, hang_limit=3.0)
-    failures = study.failures.set_index("run")["failure"]
+    failures = study.failures.set_index("run")["cause"]
     assert sorted(failures.index) == ["c2-s1", "c3-s1", "c4-s1"]
     assert "controller at step 20: 'broken' of 'ego' returned" in failures["c2-s1"]
     assert re.search(r"exit\(0\) .* in the controller 'broken' at .*step 20", failures["c3-s1"])
@@ -242,12 +242,13 @@ def test_a_study_of_the_page_is_resumed_with_what_it_was_made_with(careful, stud
     study = study_of(text, tmp_path / "study")
     assert not len(study.failures)
     assert set(study.runs["driver"]) == {"careful", "mpc"}
-    keys = {record.run: record.key for record in study.records}
+    keys = {record.run: record.key for _, _, record in study.records}
     assert rerun(StudyFolder.open(study.path), "c1-s1", None, pictures=False)
     careful.write_text(careful.read_text(encoding="utf-8") + "# other\n", encoding="utf-8")
-    again = {
-        record.run: record.key for record in study_of(text, tmp_path / "study", resume=True).records
-    }
+    with pytest.raises(ConfigError, match="made with another content of careful-driver"):
+        checked_run(StudyFolder.open(study.path), "c1-s1")
+    resumed = study_of(text, tmp_path / "study", resume=True)
+    again = {record.run: record.key for _, _, record in resumed.records}
     assert again["c2-s1"] == keys["c2-s1"]
     assert again["c1-s1"] != keys["c1-s1"]
 

@@ -46,7 +46,7 @@ def test_what_is_wrong_is_one_line_with_key_and_value(kind, values, said):
 
 
 def test_bounds_are_the_authors():
-    with pytest.raises(ConfigError, match="headway = -1.0: should be greater than 0"):
+    with pytest.raises(ConfigError, match=r"headway = -1.0: should be greater than 0"):
         read_options("own", Model, {"headway": -1.0})
 
 
@@ -69,5 +69,5 @@ def test_what_its_own_check_raises_is_the_users_to_mend():
         def __post_init__(self):
             raise RuntimeError("never\nenough")
 
-    with pytest.raises(ConfigError, match="'own' refuses them .RuntimeError: never"):
+    with pytest.raises(ConfigError, match=r"'own' refuses them .RuntimeError: never"):
         read_options("own", Picky, {})
