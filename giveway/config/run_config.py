@@ -7,7 +7,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import BeforeValidator, Field, JsonValue, ValidationError, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    JsonValue,
+    ValidationError,
+    WithJsonSchema,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
@@ -44,12 +51,13 @@ def _full_name(value: Any) -> Any:
     declared = declared_names()
     if name in declared:
         return name
-    known = ", ".join([*get_args(Bundled), *declared])
+    known = ", ".join(f"'{one}'" for one in [*get_args(Bundled), *declared])
     msg = f"expected {known}, or module:Class of an installed package"
     raise PydanticCustomError("controller", "{expected}", {"expected": msg})
 
 
-ControllerName = Annotated[Bundled | str, BeforeValidator(_full_name)]
+_Other = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"^[\w.]+:[\w.]+$"})]
+ControllerName = Annotated[Bundled | _Other, BeforeValidator(_full_name)]
 
 PAPER_STEP = 0.05
 """[s] The control step where none is set (Yang & Özgüner 2019, table 1)."""

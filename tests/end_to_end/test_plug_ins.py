@@ -158,6 +158,18 @@ def test_our_own_controllers_have_none():
         giveway.run({"controller": "mpc", "controller_options.headway": 1.0})
 
 
+def test_the_schema_knows_what_is_declared_and_what_is_a_reference(careful):
+    import jsonschema
+
+    from giveway.cli.schema import schemas
+
+    schema = schemas()["giveway-run.schema.json"]
+    for name in ("mpc", "careful", "some.package:Class"):
+        jsonschema.validate({"controller": name, "controller_options": {"a": 1}}, schema)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({"controller": "carefull"}, schema)
+
+
 def test_a_name_that_nobody_has(type_here):
     for name in ("mcp", "nobody.has:This"):
         typed = type_here("run", "--controller", name, "-q")
