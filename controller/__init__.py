@@ -4,6 +4,7 @@ Yang & Özgüner 2019, "Combining Social Force Model with Model Predictive Contr
 Longitudinal Speed Regulation in Pedestrian-Dense Scenarios" (arXiv 1907.05178).
 """
 
+from controller.conformance import Finding, check_controller
 from controller.errors import (
     ControllerError,
     ParameterError,
@@ -43,6 +44,7 @@ __all__ = [
     "Controller",
     "ControllerError",
     "Decision",
+    "Finding",
     "Force",
     "Foresight",
     "Heats",
@@ -83,6 +85,7 @@ __all__ = [
     "Verdict",
     "WorstMotion",
     "add_cost_of_others",
+    "check_controller",
     "later_cost",
     "own_cost",
     "worst_motion",

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from giveway import errors
+from giveway.cli.check import build_check
 from giveway.cli.completion import complete_scenario
 from giveway.cli.fmu import build_export, build_fmu
 from giveway.cli.help import Commands, JsonFlag
@@ -42,6 +43,7 @@ def build_app(arguments: Sequence[str]) -> Commands:
     app.add("schema", _schema)
     app.add_typer(build_fmu(), name="fmu")
     app.add_typer(build_export(lambda f: _with_flags(f, command, "export")), name="export")
+    app.add_typer(build_check(), name="check")
     app.add_typer(_build_plot(), name="plot")
     return app
 

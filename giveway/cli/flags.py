@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 import types
 import typing
 from typing import Annotated, Any, Literal
@@ -118,7 +119,9 @@ def set_options(words: Sequence[str]) -> dict[str, Any]:
             raise ConfigError(f"--set {word}: expected an option and its value, like headway=1.5")
         if key in values:
             raise ConfigError(f"--set {word}: '{key}' stands twice; keep one")
-        values[key] = toml_value(text.strip())
+        value = toml_value(text.strip())
+        is_word = isinstance(value, float) and not math.isfinite(value)  # nan and inf are words
+        values[key] = text.strip() if is_word else value
     return values
 
 

@@ -182,6 +182,8 @@ def build_config(layers: Sequence[Layer]) -> RunConfig:
 
 def _explain(error: Any, layers: Sequence[Layer]) -> str:
     location = _known_part(tuple(str(part) for part in error["loc"]))
+    if location[:1] == (OPTIONS,) and len(location) > 1:
+        location = location[:2]
     holders = [layer for layer in layers if location and layer.holds(location)]
     name = holders[-1].name(location) if holders else ".".join(location) or "configuration"
     if error["type"] == "extra_forbidden":
@@ -190,6 +192,8 @@ def _explain(error: Any, layers: Sequence[Layer]) -> str:
         origin = f"{holders[-1].origin}: " if holders and not holders[-1].from_flags else ""
         table = f"[{'.'.join(location)}] " if location else ""
         return f"{origin}{table}{error['ctx']['error']}"  # of several keys
+    if location[:1] == (OPTIONS,) and len(location) > 1:
+        return f"{name} = {error['input']!r}: expected a finite number, a word, a list or a table"
     option = next((o for o in options() if o.location == location), None)
     if option is None:
         return f"{name} = {error['input']!r}: expected a table of options"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from controller import PluggedIn, Setup
@@ -28,13 +28,22 @@ def plugged_in(config: EgoRunConfig, time_step: float) -> PluggedIn:
         ControllerError: it cannot be made.
     """
     name = config.controller
+    make, setup = maker(config), setup_of(config, time_step)
+    return PluggedIn(f"'{name}' of '{config.ego_id}'", lambda: make(setup), setup)
+
+
+def maker(config: EgoRunConfig) -> Callable[[Setup], object]:
+    """What makes the controller of one ego, with its options.
+
+    Args:
+        config: of the ego.
+
+    Raises:
+        ConfigError: its options cannot be used.
+        ControlError: it is not installed, or cannot be imported.
+    """
     kind, options = _with_options(config)
-
-    def make() -> object:
-        return kind(setup) if options is None else kind(setup, options)
-
-    setup = setup_of(config, time_step)
-    return PluggedIn(f"'{name}' of '{config.ego_id}'", make, setup)
+    return lambda setup: kind(setup) if options is None else kind(setup, options)
 
 
 def setup_of(config: EgoRunConfig, time_step: float) -> Setup:

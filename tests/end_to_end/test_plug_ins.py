@@ -139,6 +139,11 @@ def test_what_set_does_not_take(careful, type_here, word):
     assert "--set" in typed.stderr
 
 
+def test_an_option_is_finite(careful):
+    with pytest.raises(ConfigError, match=r"headway = nan: expected a finite number"):
+        giveway.run({"controller": "careful", "controller_options.headway": float("nan")})
+
+
 def test_another_controllers_options_stay_behind(careful, tmp_path, type_here):
     file = tmp_path / "careful.toml"
     file.write_text(printed("run"), encoding="utf-8")
@@ -280,6 +285,21 @@ controller = ["careful_driver:Careful", "pid-tuned"]
         checked_run(folder, "c1-s1")
     assert checked_run(folder, "c1-s1", trusted=["careful_driver:Careful"])
     assert checked_run(folder, "c2-s1")
+
+
+def test_check_tells_in_words_whether_a_controller_keeps_to_the_rules(
+    careful, installed, type_here
+):
+    typed = type_here("check", "controller", "careful", "--set", "headway=1.5")
+    assert typed.returncode == 0, typed.stdout
+    assert "careful: sound" in typed.stdout
+    installed("faulty_driver", FAULTY, declares="broken = faulty_driver:Driver")
+    typed = type_here("check", "controller", "broken", "--set", "kind=nan")
+    assert typed.returncode == 1
+    assert "broken  answers numbers" in typed.stdout
+    assert "finite number" in typed.stdout
+    assert type_here("check", "controller", "mpc").returncode == 2
+    assert "no such option" in type_here("check", "controller", "careful", "--set", "a=1").stderr
 
 
 def test_predictions_for_whoever_wants_them(installed):
