@@ -33,9 +33,9 @@ class ManoeuvreParameters:
     headway: float = 0.1  # [s] more of it the faster
     time_weight: float = 1.0  # of the share of the reference speed that is not driven
     acceleration_weight: float = 0.05  # of (m/s^2)^2
-    nearness_weight: float = 6.5  # of the share of d_safe that is missing, times v / v_r
+    nearness_weight: float = 7.0  # of the share of d_safe that is missing, times v / v_r
     closeness_weight: float = 100.0  # of a metre too little to stop in, times v / v_r
-    conflict_weight: float = 0.75  # of a person on a collision course, times sqrt(v / v_r)
+    conflict_weight: float = 0.8  # of a person on a collision course, times sqrt(v / v_r)
     conflict_growth: float = 0.5  # of that weight which each further such person counts
     threat_weight: float = 1.5  # of the speed beyond the calm one, over v_r
     final_weight: float = 1.3  # [s] of the missing speed at the horizon's end
@@ -85,7 +85,7 @@ class PlannerParameters:
         ParameterError: a value is not finite or out of range.
     """
 
-    horizon: int = 60  # N [steps]
+    horizon: int = 50  # N [steps]
     reference_speed: float = REFERENCE_SPEED  # v_r [m/s]
     safe_distance: float = SAFE_DISTANCE  # d_safe [m]
     speed_max: float = SPEED_MAX  # v_max [m/s]

@@ -164,7 +164,7 @@ class PlannerConfig(Section):
     """The planning MPC (controller = "mpc"); every ingredient is a switch, docs/controllers.md."""
 
     horizon: float = option(
-        3.0,
+        2.5,
         "s",
         "how far it plans; beyond, people walk on and it adapts its speed",
         ge=0.3,
@@ -200,7 +200,7 @@ class PlannerConfig(Section):
         because="beyond, a plan is made of that weight alone",
     )
     conflict_weight: float = option(
-        0.75,
+        0.8,
         None,
         "seconds of delay that one person-second at v_r with less than 1.5 s to a collision is "
         "worth",
@@ -209,7 +209,7 @@ class PlannerConfig(Section):
         because="beyond, a plan is made of that weight alone",
     )
     nearness_weight: float = option(
-        6.5,
+        7.0,
         None,
         "seconds of delay that a second at v_r right before somebody is worth, none at d_safe",
         ge=0,

@@ -40,7 +40,7 @@ CONFIG = EgoRunConfig()
         (ReferenceParameters, ["regulation", "tuned_pid"], {}),
         (TunedPidParameters, ["tuned_pid", "mpc"], {}),
         (ManoeuvreParameters, ["planner"], {}),
-        (PlannerParameters, ["regulation", "planner", "mpc"], {"horizon": 60}),
+        (PlannerParameters, ["regulation", "planner", "mpc"], {"horizon": 50}),
     ],
     ids=lambda value: getattr(value, "__name__", None),
 )

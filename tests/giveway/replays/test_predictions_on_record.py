@@ -78,7 +78,7 @@ def test_a_period_is_whole_control_steps(period: float | None, steps: int) -> No
     assert looks_ahead(period, 0.05) == steps
 
 
-@pytest.mark.parametrize(("controller", "horizon"), [("mpc-paper", 0.75), ("mpc", 3.0)])
+@pytest.mark.parametrize(("controller", "horizon"), [("mpc-paper", 0.75), ("mpc", 2.5)])
 def test_of_a_period_beyond_the_horizon_its_end_is_kept(controller: str, horizon: float) -> None:
     settings = {**SETTINGS, "time_limit": 6.0, "controller": controller}
     result = run({**settings, "record": {"predictions": 99.0}})
