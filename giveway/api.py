@@ -232,15 +232,23 @@ def simulate(
         result = _result(parts, checked.scenario, recorder, loop, ending, error, elapsed)
         if loop.followed is None or error is not None or ending is Ending.INTERRUPTED:
             return result
+        _tell(watcher, "People go on to where they want")
         gone_on, error = _guarded(lambda: loop.follow_up(ending, interrupt), checked.scenario)
         tracks = {ego.id: ego.track for ego in result.egos}
         driven = Driven(tracks, parts.horizon, float(result.time[0]))
     twin = None
     if gone_on and error is None and result.egos:
         heartbeat = recorder.journal.heartbeat
+        _tell(watcher, f"Twin: the same again, nobody feels the ego (the run took {elapsed:.0f} s)")
         make = partial(twin_of, checked, loop.followed, driven, heartbeat, interrupt, native_log)
         twin, error = _guarded(make, checked.scenario)
     return _with_twin(result, loop.followed, twin, error, began + elapsed)
+
+
+def _tell(watcher: Watcher | None, doing: str) -> None:
+    """What is done after the drive."""
+    if watcher is not None:
+        watcher(Progress(0.0, 0.0, math.nan, math.nan, math.nan, "", 0, doing))
 
 
 def _in_our_words(error: Exception, scenario: Scenario) -> Exception:

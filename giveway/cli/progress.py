@@ -43,6 +43,9 @@ def run_progress(console: Console, config: RunConfig) -> Iterator[Watcher | None
         def watch(state: State) -> None:
             nonlocal drawn
             now = perf_counter()
+            if state.doing:
+                bar.update(task, description=state.doing, total=None, state="", refresh=True)
+                return
             if now - drawn < _REFRESH:
                 return
             drawn = now

@@ -27,6 +27,7 @@ class Progress:
     speed: float  # [m/s] of this ego; nan without one
     acting: str  # which controller acts; empty without an ego
     pedestrians: int  # in the crowd
+    doing: str = ""  # what it does, told once, where it does not drive
 
 
 Watcher = Callable[[Progress], None]

@@ -63,6 +63,16 @@ def test_people_add_up_to_their_run(run_once):
     assert (people.loc[yielded == "yes", "delay"] > 0.0).all()
 
 
+def test_who_watches_is_told_what_comes_after_the_drive():
+    told = []
+    giveway.run({**OPEN, "twin": True, "time_limit": 2.0}, watcher=lambda p: told.append(p.doing))
+    after = [doing for doing in told if doing]
+    assert len(after) == 2
+    assert after[0].startswith("People go on")
+    assert after[1].startswith("Twin: the same again")
+    assert told[-2:] == after  # once each, when the drive is over
+
+
 @pytest.mark.parametrize("config", [OPEN, STREET], ids=["open", "street"])
 def test_with_a_twin_every_column_that_there_was_keeps_its_values(config, tmp_path):
     giveway.run(config, results=tmp_path / "alone", pictures=False)
