@@ -1,9 +1,10 @@
-"""Every figure of docs/performance.md: python benchmarks/performance.py [--write].
+"""Every figure of docs/performance.md: python benchmarks/performance.py [--write] [FILE ...].
 
-Without a choice, all benchmarks run in turn and print. ``--write`` puts what they print into
-docs/performance.md, each between the marks that name it, with the machine and the versions: on an
-otherwise idle machine. ``--quick`` takes a few ratios in short runs and shows them next to
-the kept ones (kept_ratios.json); ``--keep`` keeps them. The exit code never depends on a time.
+Those that are named run, or all. Without a choice, they run in turn and print. ``--write`` puts
+what they print into docs/performance.md, each between the marks that name it, with the machine and
+the versions: on an otherwise idle machine. ``--quick`` takes a few ratios in short runs and shows
+them next to the kept ones (kept_ratios.json); ``--keep`` keeps them. The exit code never depends on
+a time.
 """
 
 from __future__ import annotations
@@ -88,10 +89,10 @@ def filled(page: str, name: str, text: str) -> str:
     return f"{before}{begin}{text}\n{end}{after}"
 
 
-def write() -> None:
-    """Fill the page; a benchmark that fails leaves its part as it is."""
+def write(commands: tuple[str, ...]) -> None:
+    """Fill the page, part by part: what a benchmark that fails leaves undone is as it was."""
     page = filled(PAGE.read_text(encoding="utf-8"), "machine", machine())
-    for command in COMMANDS:
+    for command in commands:
         print(command, flush=True)
         script = command.split()[0]
         page = filled(page, script, f"```\n$ python benchmarks/{command}\n{printed(command)}\n```")
@@ -124,9 +125,11 @@ def main() -> None:
     choice.add_argument("--write", action="store_true", help="into docs/performance.md")
     choice.add_argument("--quick", action="store_true", help="a few ratios next to the kept ones")
     choice.add_argument("--keep", action="store_true", help="keep these ratios")
+    parser.add_argument("only", nargs="*", help="benchmarks, by their files; all, unless given")
     options = parser.parse_args()
+    commands = tuple(c for c in COMMANDS if not options.only or c.split()[0] in options.only)
     if options.write:
-        write()
+        write(commands)
     elif options.quick or options.keep:
         kept = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
         now = ratios()
@@ -134,7 +137,7 @@ def main() -> None:
         if options.keep:
             KEPT.write_text(json.dumps(now, indent=1, sort_keys=True) + "\n", encoding="utf-8")
     else:
-        for command in COMMANDS:
+        for command in commands:
             print(f"== {command}\n{printed(command)}", flush=True)
 
 
