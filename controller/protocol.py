@@ -63,6 +63,7 @@ class Observation(NamedTuple):
     leader_gap: float = inf  # [m] from ``position`` to the vehicle in front; inf: none
     leader_speed: float = 0.0  # [m/s] of that vehicle
     person_ids: NDArray[np.int64] | None = None  # (n,) of ``people``; a person keeps its number
+    to_clear: float = 0.0  # [m] to be driven on to leave the crossings and junctions it is on
 
 
 class Decision(NamedTuple):

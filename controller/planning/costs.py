@@ -8,6 +8,9 @@ from controller._jit import Array, kernel
 from controller.planning.cost_to_go import time_to_go
 from controller.planning.parameters import Weights
 
+_BLOCKED = 2.0  # [s] beyond the horizon that a manoeuvre goes on blocking what it stands on then
+_CLEAR = 0.3  # [m] before the end of what is to be kept free it is as good as left
+
 
 @kernel
 def stopping_need(speed: float, w: Weights) -> float:
@@ -101,6 +104,36 @@ def later_cost(
         speed = min(speed, np.sqrt(pace**2 + 2.0 * w.deceleration * left))
     later: float = w.final * max(0.0, 1.0 - speed / wanted)
     return later + w.later * time_to_go(crossers, speed, wanted)
+
+
+@kernel
+def cost_of_blocking(
+    distance: Array,
+    speeds: Array,
+    wanted: float,
+    to_clear: float,
+    time_step: float,
+    costs: Array,
+) -> None:
+    """Add to ``costs`` (k,) [s] what standing where the way is to be kept free costs manoeuvres.
+
+    Time that is lost there counts twice, and as much again as ``_BLOCKED`` seconds that are lost
+    beyond the horizon.
+
+    Args:
+        distance: (k, N + 1) [m] of the manoeuvres.
+        speeds: (k, N + 1) [m/s].
+        wanted: the speed [m/s] that time is lost against.
+        to_clear: [m] until nothing is blocked.
+        time_step: [s].
+        costs: (k,) [s].
+    """
+    N = distance.shape[1] - 1
+    for j in range(distance.shape[0]):
+        for i in range(1, N + 1):
+            if distance[j, i] < to_clear - _CLEAR:
+                lasts = time_step if i < N else time_step + _BLOCKED
+                costs[j] += lasts * max(0.0, 1.0 - speeds[j, i] / wanted)
 
 
 @kernel

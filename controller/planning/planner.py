@@ -94,6 +94,7 @@ class Planner:
         foresight: Foresight | None,
         lane_speeds: Array | None = None,
         gap: float = inf,
+        to_clear: float = 0.0,
     ) -> Plan:
         """The force at t_k.
 
@@ -107,6 +108,7 @@ class Planner:
                 braking can help it; None: any.
             gap: [m] to the closest person in front now. Who stands drives up to d_safe of a
                 person who stays, as up to where the way ends.
+            to_clear: [m] to be driven on until nothing is blocked that has to be kept free.
 
         Raises:
             ParameterError: a value is not a number.
@@ -121,7 +123,10 @@ class Planner:
         if speed <= STANDSTILL:
             end = min(end, gap - self.parameters.safe_distance)
         seen = (speed, before, fastest, allowed, foresight)
-        chosen = search.choose(*seen, end) if self.parameters.gap_choice else search.follow(*seen)
+        if self.parameters.gap_choice:
+            chosen = search.choose(*seen, end, to_clear)
+        else:
+            chosen = search.follow(*seen)
         return self._smooth(speed, previous_force, before, fastest, allowed, chosen, lane_speeds)
 
     def _acceleration(self, speed: float, force: float) -> float:
@@ -246,6 +251,7 @@ class PlanningController:
             observation.foresight,
             observation.lane_speeds,
             gap,
+            observation.to_clear,
         )
         if plan.found:
             force = plan.force

@@ -14,7 +14,7 @@ import numpy as np
 from controller._jit import Array, kernel
 from controller.foresight import Foresight, Heats, Manoeuvre, Prospect, Trials
 from controller.model import LongitudinalModel
-from controller.planning.costs import cost
+from controller.planning.costs import cost, cost_of_blocking
 from controller.planning.motions import aim, approach, shift
 from controller.planning.parameters import PlannerParameters, Weights
 
@@ -59,7 +59,8 @@ class Search:
         handicap = np.full(count, m.persistence)
         self._up_to_end, self._as_planned = count - 2, count - 1
         handicap[self._as_planned] = 0.0
-        self._trials = Trials.empty(count, N, handicap)
+        self._handicap, self._charged = handicap, False
+        self._trials = Trials.empty(count, N, handicap.copy())
         self._motions = (self._trials.distance, self._trials.speed, self._trials.acceleration)
         self.gap, self.conflicts, self.calm = np.full(N, inf), np.zeros(N), np.full(N, inf)
         self._free, self._nobody = np.full(N, inf), np.zeros(N)
@@ -92,11 +93,12 @@ class Search:
         allowed: Array,
         foresight: Foresight | None,
         end: float,
+        to_clear: float = 0.0,
     ) -> str:
         """Search: driving on, what was planned, and the others in turn or all at once.
 
         Where the way ends within the horizon, ``end`` [m] from here, driving up to there is among
-        the first.
+        the first. To stand within the first ``to_clear`` [m] costs extra.
 
         All are tried where the best so far comes too close to somebody. Else, what is best
         changes slowly: besides the plan, driving on and one of the others are tried by turns, so
@@ -117,6 +119,7 @@ class Search:
             content = [] if self._turn % 2 else [others[self._turn // 2 % len(others)]]
         heats = Heats(first, content, others if drive_on else [_DRIVE_ON, *others])
         self._lay_out(speed, before, fastest, end if ends else inf)
+        self._charge(fastest, min(to_clear, float(allowed[-1])))
         if self._compare(heats, drive_on, fastest, allowed, foresight):
             self._drives_on = True
             return "clear"
@@ -148,6 +151,18 @@ class Search:
             (last.distance, last.speed),
             self._motions,
         )
+
+    def _charge(self, fastest: float, to_clear: float) -> None:
+        """Let each trial pay for standing within ``to_clear`` [m], which are to be kept free."""
+        if to_clear <= 0.0 and not self._charged:
+            return
+        self._charged = to_clear > 0.0
+        handicap = self._trials.handicap
+        handicap[:] = self._handicap
+        if self._charged:
+            distance, speeds, _ = self._motions
+            wanted = max(fastest, self._slowest)
+            cost_of_blocking(distance, speeds, wanted, to_clear, self._time_step, handicap)
 
     def _compare(
         self,

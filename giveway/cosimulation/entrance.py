@@ -13,6 +13,7 @@ from giveway.cosimulation.ways import way_of
 from giveway.ego.controllers import make_controller
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
+from giveway.ego.giving_way import CLOSEST
 from giveway.ego.junctions import PathJunction, junctions_on
 from giveway.ego.lights import Lights
 from giveway.ego.merges import Merges, places_of
@@ -29,7 +30,7 @@ from giveway.sumo.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.sumo.vehicles import VehicleState
 
-_BEHIND = 0.5  # [m] more than d_safe is left behind a vehicle that stands
+_BEHIND = 0.5  # [m] more than it keeps is left behind a vehicle that stands
 _LEAST_GAP = 1.0  # [m] behind it
 _ON_THE_LINE = 0.01  # [m]
 _MERGE = 20.0  # [m] along which a vehicle beside its lane's centre line joins it
@@ -315,5 +316,5 @@ def initial_speed(ego: WaitingEgo, lane_path: LanePath) -> float:
 
 
 def _standing_gap(regulation: RegulationConfig) -> float:
-    """The gap [m] that an ego keeps behind a vehicle that stands: d_safe, and a little more."""
-    return max(_LEAST_GAP, regulation.safe_distance + _BEHIND)
+    """The gap [m] that it needs behind a vehicle that stands, so as not to block a place."""
+    return max(_LEAST_GAP, min(regulation.safe_distance, CLOSEST) + _BEHIND)

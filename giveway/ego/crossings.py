@@ -175,6 +175,11 @@ class Crossings:
         self._states: Mapping[str, str] = {}
         self.systems = frozenset(place.system for place in self._crossings if place.system)
 
+    @property
+    def kept_free(self) -> list[tuple[float, float]]:
+        """Stations [m] of the front bumper between which the body is on one of them."""
+        return [(place.entry, place.exit + self._length) for place in self._crossings]
+
     def update(self, states: Mapping[str, str]) -> None:
         """Take note of the lights' states: of each system, one letter per movement (SUMO's)."""
         self._states = states

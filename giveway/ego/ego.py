@@ -10,6 +10,7 @@ from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight
+from giveway.ego.giving_way import CLOSEST
 from giveway.ego.leader import FIRM, NO_LEADER, given_up
 from giveway.ego.path_view import PathView
 from giveway.ego.relevance import Nearby, Relevance
@@ -185,6 +186,7 @@ class Ego:
             else:
                 predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
+        to_clear = self.way.to_clear(front) if self.way.bounds else 0.0
         leader, waits = NO_LEADER, math.inf
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
@@ -196,7 +198,7 @@ class Ego:
             if self._plans:
                 kept = self.config.regulation.safe_distance
                 tolerated = given_up(leader, vehicles, front, speed, kept, self._origin)
-            ahead = np.minimum(ahead, vehicles + tolerated)
+            ahead = np.minimum(ahead, vehicles + max(tolerated, self._closes_up(to_clear)))
         stop, stops_for = math.inf, ""
         if self.way.bounds:
             stop, stops_for = self.way.stop_at(front, speed, crowd, leader)
@@ -217,6 +219,7 @@ class Ego:
             foresight,
             poses,
             row,
+            to_clear,
         )
 
     def decide(
@@ -264,10 +267,12 @@ class Ego:
             limit = min(limit, self._profile.limit(front, vehicle.speed))
             lanes = self._profile.ahead(front, vehicle.speed, self._times)
         self._view.station = front
+        brought_to_rest = leader.station + leader.speed**2 / self._firmly
+        brought_to_rest += self._closes_up(seen.to_clear)
         return Observation(  # by position: a third of the time that keywords take
             origin,
             vehicle.speed,
-            min(seen.pedestrian, leader.station + leader.speed**2 / self._firmly, stop) - origin,
+            min(seen.pedestrian, brought_to_rest, stop) - origin,
             seen.ahead,
             limit,
             safe_distance,
@@ -285,6 +290,7 @@ class Ego:
             leader.station - origin,
             leader.speed,
             person_ids,
+            seen.to_clear,
         )
 
     def expected(self, seen: Seen) -> Array | None:
@@ -302,12 +308,22 @@ class Ego:
             v = seen.leader.speed
             room = seen.leader.station - self.front - self._origin - regulation.safe_distance
             room -= _KEPT
+            room += self._closes_up(seen.to_clear)
             if room <= 0.0:
                 behind = v + room / _RECOVERY
             else:
                 behind = math.sqrt(v * v + 2.0 * b * room + self._lag**2) - self._lag
             limit = min(limit, max(0.0, behind))
         return limit
+
+    def _closes_up(self, to_clear: float) -> float:
+        """How much [m] of the safe distance to a vehicle it gives up, rather than block a place.
+
+        Args:
+            to_clear: [m] to be driven on to leave it.
+        """
+        kept = self.config.regulation.safe_distance + self._origin
+        return min(to_clear, max(0.0, kept - CLOSEST))
 
     def advance(self) -> None:
         """Step the FMU with the force decided on."""

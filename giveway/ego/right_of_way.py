@@ -105,6 +105,11 @@ class RightOfWay:
         self._green: dict[tuple[str, int], float] = {}  # since when others' lights have been green
         self.systems = frozenset(place.movement.system for place in junctions) - {""}
 
+    @property
+    def kept_free(self) -> list[tuple[float, float]]:
+        """Stations [m] of the front bumper between which the body is in one of them."""
+        return [(place.entry, place.exit + self._length) for place in self.junctions]
+
     def look(self, front: float) -> frozenset[str]:
         """The junctions whose traffic matters to an ego at ``front`` [m]."""
         while self._next < len(self.junctions) and self.junctions[self._next].exit < front:

@@ -28,3 +28,4 @@ class Seen(NamedTuple):
     )  # for a controller that foresees, if a pedestrian may come in front
     poses: Array  # (N, m, 7) of all vehicles at steps 0 ... N-1
     row: int  # the ego's among them
+    to_clear: float = 0.0  # [m] to be driven on to leave the crossings and junctions that it is on

@@ -45,6 +45,9 @@ class WayAhead:
         self._crossings = crossings
         self._right_of_way = right_of_way
         self.visited = () if right_of_way is None else right_of_way.junctions
+        kept_free = [] if crossings is None else crossings.kept_free
+        kept_free += [] if right_of_way is None else right_of_way.kept_free
+        self._kept_free = sorted(kept_free)
         parts = lights, stops, crossings, right_of_way, merges
         self.bounds = any(part is not None for part in parts)
         watched = [part for part in (lights, crossings, right_of_way) if part is not None]
@@ -53,6 +56,19 @@ class WayAhead:
     def junctions(self, front: float) -> frozenset[str]:
         """SUMO's ids of the junctions whose traffic matters to an ego at ``front`` [m]."""
         return frozenset() if self._right_of_way is None else self._right_of_way.look(front)
+
+    def to_clear(self, front: float) -> float:
+        """How far [m] it has to drive on to leave the crossings and junctions that it is on.
+
+        Args:
+            front: station of the front bumper [m].
+        """
+        left = 0.0
+        for entry, leave in self._kept_free:
+            if entry >= front:
+                break
+            left = max(left, leave - front)
+        return left
 
     def look(
         self, time: float, front: float, speed: float, states: Mapping[str, str], traffic: Traffic

@@ -24,7 +24,7 @@ SIGHT = 10.0
 
 _ASIDE = 0.5  # [m] beside the ego's way people are on it as well
 _FOE = 9.0  # [s] before another vehicle comes by: the largest critical gap, and time to start
-_ROOM = 6.0  # [m] that the ego wants behind a crossing or a junction, besides its own length
+_ROOM = 3.5  # [m] that the ego wants behind a crossing or a junction, besides its own length
 _ABOUT, _SHORTEST = 20.0, 0.01  # [m] of path before and beyond what is looked at; a segment
 _STARTING = 3.0  # [s] in which an ego drives off that departs standing
 _HALT = 1.0  # [m] about a scheduled stop

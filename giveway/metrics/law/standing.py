@@ -40,7 +40,8 @@ def blocked_crossings(
 ) -> list[Blocked]:
     """The crossings on which the ego stood without having to, stand by stand.
 
-    A crossing that is closed to people, and on which nobody is, is not blocked.
+    A crossing that is closed to people, and on which nobody is, is not blocked; nor is one that
+    lies beside a place inside a junction where the ego may wait for vehicles to pass.
 
     Args:
         drive: the ego's.
@@ -48,6 +49,9 @@ def blocked_crossings(
         owed: when it owed somebody the way at which of them.
     """
     free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, areas, owed)
+    for junction in drive.way.junctions:
+        for place in junction.waiting:
+            free &= ~_waits_at(drive, place)
     front, found = drive.front, list[Blocked]()
     for area in areas:
         on = free & (front > area.entry) & (front < area.leave)
@@ -74,10 +78,15 @@ def blocked_junctions(
         inside = drive.front > junction.entry + _WAITING[1]
         inside &= drive.front < junction.exit + drive.shape.length
         for place in junction.waiting:
-            off = drive.front - place
-            inside &= (off < _WAITING[0]) | (off > _WAITING[1])
+            inside &= ~_waits_at(drive, place)
         found += [Blocked(str(number), *longest) for longest in _longest(drive, free & inside)]
     return found
+
+
+def _waits_at(drive: Drive, place: float) -> NDArray[np.bool_]:
+    """(T,) whether the ego's front is at a waiting place [m]."""
+    off = drive.front - place
+    return np.asarray((off >= _WAITING[0]) & (off <= _WAITING[1]))
 
 
 def _lets_pass(drive: Drive, areas: Sequence[Area], owed: Sequence[Owed]) -> NDArray[np.bool_]:

@@ -132,3 +132,21 @@ def test_it_drives_up_to_where_the_way_ends(room):
         hardest, v = max(hardest, (v - after) / DT), after
     assert room - 0.5 < x < room + 0.1
     assert hardest < 2.0
+
+
+@pytest.mark.parametrize("to_clear", [0.0, 4.0])
+def test_it_drives_on_from_where_it_would_block_others(bystanders, to_clear):
+    """Behind somebody who stays, with its rear on a crossing: nearer than it would stop else."""
+    controller = PlanningController(
+        Planner(MODEL, PlannerParameters()), TunedPid(TunedPidParameters(), MODEL)
+    )
+    crowd = bystanders(np.array([7.0]), [np.inf], N)
+    x, v = 0.0, 0.0
+    for k in range(200):
+        crowd.step, crowd.front = k, x
+        seen = Observation(x, v, crowd.gap(), FREE, foresight=crowd, to_clear=to_clear - x)
+        force = controller.control(seen).force
+        x += DT * v
+        v = max(0.0, MODEL.decay * v + MODEL.speed_per_force * force)
+    assert (x > 3.5) == bool(to_clear)
+    assert x < 6.5

@@ -16,6 +16,7 @@ import pytest
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.giving_way import STOP_BEFORE
 from giveway.ego.leader import Leader
+from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
@@ -209,3 +210,10 @@ def test_who_waits_before_two_crossings_for_the_second_one_stays_as_sure():
     assert waiting.stop_at(LINE, 0.0, later) < math.inf
     assert waiting.stop_at(LINE, 0.0, NOBODY) == math.inf
     assert waiting.stop_at(LINE, 0.0, later) == math.inf
+
+
+def test_what_it_keeps_free_and_how_far_it_has_to_drive_on():
+    way = WayAhead(crossings=crossings())
+    places = (LINE, 20.5, 24.0, 28.0, 29.2)  # [m] of the front bumper; the body is 5 m long
+    assert [way.to_clear(at) for at in places] == pytest.approx([0, 8.5, 5.0, 1.0, 0], abs=0.11)
+    assert WayAhead().to_clear(20.5) == 0.0

@@ -49,7 +49,8 @@ def test_a_drive_without_a_stop_has_none():
         ({"vehicles": [crosser(30.0)]}, 1),
         ({"vehicles": [crosser(5.0)]}, 1),  # was gone
         ({"vehicles": [crosser(14.0, x=45.0)]}, 1),  # elsewhere
-        ({"vehicles": [car(44.0 + 4.0)], "crossings": (FAR_CROSSING,)}, 0),  # a blocked exit
+        ({"vehicles": [car(43.0 + 4.0)], "crossings": (FAR_CROSSING,)}, 0),  # a blocked exit
+        ({"vehicles": [car(44.0 + 4.0)], "crossings": (FAR_CROSSING,)}, 1),  # room enough
         ({"vehicles": [car(44.0 + 4.0)], "junctions": (JunctionOnWay(32.0, 40.0, ()),)}, 0),
         ({"lines": (StopLine(31.0, "tls", 0),), "lights": [(0.0, "r")]}, 0),
         ({"lines": (StopLine(31.0, "tls", 0),), "lights": [(0.0, "r"), (11.0, "G")]}, 0),

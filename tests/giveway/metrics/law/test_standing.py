@@ -108,3 +108,10 @@ def test_who_crosses_at_red_ahead_is_let_pass_as_well():
     assert len(judged(24.0, 4.0, **both)[0]) == 1
     late = Person([(26.0, 1.0)] * 600, way=((26.0, 20.0),))
     assert judged(24.0, 4.0, late, **both)[0] == []
+
+
+def test_where_it_may_wait_inside_a_junction_it_blocks_no_crossing_with_its_rear():
+    turning = {"junctions": (JUNCTION._replace(waiting=(23.5,)),)}
+    assert judged(22.0, 4.0, **turning)[0] == []
+    found, _ = judged(26.0, 4.0, **turning)
+    assert [event.kind for event in found] == ["blocked crossing", "blocked junction"]
