@@ -13,8 +13,8 @@ from giveway.cosimulation.ways import way_of
 from giveway.ego.controllers import make_controller
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
-from giveway.ego.giving_way import CLOSEST
 from giveway.ego.junctions import PathJunction, junctions_on
+from giveway.ego.leader import CLOSEST
 from giveway.ego.lights import Lights
 from giveway.ego.merges import Merges, places_of
 from giveway.ego.right_of_way import RightOfWay

@@ -10,8 +10,7 @@ from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight
-from giveway.ego.giving_way import CLOSEST
-from giveway.ego.leader import FIRM, NO_LEADER, given_up
+from giveway.ego.leader import NO_LEADER, Following
 from giveway.ego.path_view import PathView
 from giveway.ego.relevance import Nearby, Relevance
 from giveway.ego.safety import Guard
@@ -26,10 +25,7 @@ from giveway.geometry.path import EgoPath, Pose
 from giveway.records.rows import STOP_SPEED, EgoRow
 from pedestrian_model import Crowd, Surroundings
 
-_KEPT = 0.5  # [m] before the safe distance at which the approach to a vehicle ends
 _BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
-_RECOVERY = 2.0  # [s] in which a lost safe distance is to be regained
-_REACTION = 1.0  # [s] in which a planning controller follows a leader's speed (Gipps 1981)
 _STRAIGHT = (
     1.0  # [s] for which other vehicles are predicted straight on; beyond it the road may bend
 )
@@ -100,13 +96,13 @@ class Ego:
         self._eases_off = False  # a brake, or drives off
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
-        # Ours follow with a headway. A planning controller plans no hard stop for a little less of
-        # the distance to a vehicle that it keeps on the average; the tuned PID, which brakes for
-        # a distance alone, is shown how far it is to where the vehicle in front could stop.
-        self._plans = waiting.controller.foresees
-        follows = self._plans or config.controller == "pid-tuned"
-        self._lag = config.regulation.comfortable_deceleration * _REACTION if follows else 0.0
-        self._firmly = 2.0 * FIRM if follows and not self._plans else math.inf
+        self._following = Following(
+            config.regulation.safe_distance,
+            self._origin,
+            config.regulation.comfortable_deceleration,
+            plans=waiting.controller.foresees,
+            tuned=config.controller == "pid-tuned",
+        )
 
     def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
         """Answers the planning controller how pedestrians would react to a manoeuvre."""
@@ -194,11 +190,8 @@ class Ego:
                 before, waits = self.way.merges.look(front, speed)
                 leader = min(leader, before)
                 vehicles = np.minimum(vehicles, before.station + before.speed * self._times)
-            tolerated = 0.0
-            if self._plans:
-                kept = self.config.regulation.safe_distance
-                tolerated = given_up(leader, vehicles, front, speed, kept, self._origin)
-            ahead = np.minimum(ahead, vehicles + max(tolerated, self._closes_up(to_clear)))
+            spared = self._following.given_up(leader, vehicles, front, speed, to_clear)
+            ahead = np.minimum(ahead, vehicles + spared)
         stop, stops_for = math.inf, ""
         if self.way.bounds:
             stop, stops_for = self.way.stop_at(front, speed, crowd, leader)
@@ -262,17 +255,18 @@ class Ego:
         origin = front + self._origin
         stop = seen.stop + self._origin + safe_distance
         free = seen.stop == math.inf == seen.leader.station
-        limit, lanes = math.inf if free else self._speed_limit(seen), None
+        limit, lanes = math.inf, None
+        if not free:
+            limit = self._following.speed_limit(leader, seen.stop, front, seen.to_clear)
         if self._profile is not None:
             limit = min(limit, self._profile.limit(front, vehicle.speed))
             lanes = self._profile.ahead(front, vehicle.speed, self._times)
         self._view.station = front
-        brought_to_rest = leader.station + leader.speed**2 / self._firmly
-        brought_to_rest += self._closes_up(seen.to_clear)
+        vehicle_ahead = self._following.station(leader, seen.to_clear)
         return Observation(  # by position: a third of the time that keywords take
             origin,
             vehicle.speed,
-            min(seen.pedestrian, brought_to_rest, stop) - origin,
+            min(seen.pedestrian, vehicle_ahead, stop) - origin,
             seen.ahead,
             limit,
             safe_distance,
@@ -296,34 +290,6 @@ class Ego:
     def expected(self, seen: Seen) -> Array | None:
         """(N, n, 2) [m] positions that the decision expects at steps 1 ... N; reused later."""
         return seen.predicted if seen.foresight is None else seen.foresight.best
-
-    def _speed_limit(self, seen: Seen) -> float:
-        """The speed [m/s] that comfortable braking allows before a light or behind a leader."""
-        regulation = self.config.regulation
-        b = regulation.comfortable_deceleration
-        limit = math.inf
-        if seen.stop < math.inf:
-            limit = math.sqrt(2.0 * b * max(0.0, seen.stop - self.front))
-        if seen.leader.station < math.inf:
-            v = seen.leader.speed
-            room = seen.leader.station - self.front - self._origin - regulation.safe_distance
-            room -= _KEPT
-            room += self._closes_up(seen.to_clear)
-            if room <= 0.0:
-                behind = v + room / _RECOVERY
-            else:
-                behind = math.sqrt(v * v + 2.0 * b * room + self._lag**2) - self._lag
-            limit = min(limit, max(0.0, behind))
-        return limit
-
-    def _closes_up(self, to_clear: float) -> float:
-        """How much [m] of the safe distance to a vehicle it gives up, rather than block a place.
-
-        Args:
-            to_clear: [m] to be driven on to leave it.
-        """
-        kept = self.config.regulation.safe_distance + self._origin
-        return min(to_clear, max(0.0, kept - CLOSEST))
 
     def advance(self) -> None:
         """Step the FMU with the force decided on."""

@@ -1,6 +1,9 @@
-"""The closest vehicle in front, as :mod:`giveway.ego.corridor` defines what is in front."""
+"""The closest vehicle in front, and how it is followed.
 
-from math import inf
+What is in front defines :mod:`giveway.ego.corridor`.
+"""
+
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -14,8 +17,12 @@ _PARALLEL = 0.95  # likewise: 18 degrees, as a body in a bend lies askew
 _OUTLINE = 1.0  # [m] at most between the points of a vehicle's outline that are looked at
 _FINEST_OUTLINE = 0.1  # [m] and at least
 _KEPT, _LEAST = 0.5, 0.25  # of d_safe that a plan keeps to vehicles, and that it keeps at least
+CLOSEST = 2.0  # [m] behind one who stands, where the ego would block a crossing or junction else
 FIRM = 3.0  # [m/s^2] of braking that the share in between may cost
 _BUILD_UP = 0.2  # [s] until the brake has it
+_APPROACHED = 0.5  # [m] before the safe distance at which the approach to a vehicle ends
+_RECOVERY = 2.0  # [s] in which a lost safe distance is to be regained
+_REACTION = 1.0  # [s] in which a planning controller follows a leader's speed (Gipps 1981)
 
 
 class Leader(NamedTuple):
@@ -26,6 +33,75 @@ class Leader(NamedTuple):
 
 
 NO_LEADER = Leader(inf, 0.0)
+
+
+class Following:
+    """How an ego follows and approaches vehicles.
+
+    Ours follow with a headway. A planning controller plans no hard stop for a little less of the
+    distance to a vehicle that it keeps on the average; the tuned PID, which brakes for a distance
+    alone, is shown how far it is to where the vehicle in front could stop.
+
+    Args:
+        safe_distance: d_safe [m] to a vehicle.
+        origin: of the distance to who is in front, ahead of the front bumper [m].
+        comfortable: deceleration [m/s^2] of an approach.
+        plans: a planning controller drives.
+        tuned: the tuned PID does.
+    """
+
+    def __init__(
+        self, safe_distance: float, origin: float, comfortable: float, *, plans: bool, tuned: bool
+    ) -> None:
+        self._safe_distance, self._origin = safe_distance, origin
+        self._comfortable, self._plans = comfortable, plans
+        self._lag = comfortable * _REACTION if plans or tuned else 0.0
+        self._firmly = 2.0 * FIRM if tuned else inf
+        self._spare = max(0.0, safe_distance + origin - CLOSEST)
+
+    def closes_up(self, to_clear: float) -> float:
+        """How much [m] of the safe distance it gives up, rather than block a place.
+
+        Args:
+            to_clear: [m] to be driven on to leave it.
+        """
+        return min(to_clear, self._spare)
+
+    def given_up(
+        self, leader: Leader, ahead: Array, front: float, speed: float, to_clear: float
+    ) -> float:
+        """What a plan may give up of the safe distance [m]; arguments of :func:`given_up`."""
+        spared = self.closes_up(to_clear)
+        if not self._plans:
+            return spared
+        return max(spared, given_up(leader, ahead, front, speed, self._safe_distance, self._origin))
+
+    def station(self, leader: Leader, to_clear: float) -> float:
+        """The station [m] of the vehicle in front that a controller is to keep its distance to."""
+        return leader.station + leader.speed**2 / self._firmly + self.closes_up(to_clear)
+
+    def speed_limit(self, leader: Leader, stop: float, front: float, to_clear: float) -> float:
+        """The speed [m/s] that comfortable braking allows before a stop or behind a leader.
+
+        Args:
+            leader: the closest vehicle in front.
+            stop: station [m] at which the front bumper has to stop; inf: nowhere.
+            front: its station [m].
+            to_clear: [m] to be driven on to leave what it would block.
+        """
+        b, limit = self._comfortable, inf
+        if stop < inf:
+            limit = sqrt(2.0 * b * max(0.0, stop - front))
+        if leader.station < inf:
+            v = leader.speed
+            room = leader.station - front - self._origin - self._safe_distance - _APPROACHED
+            room += self.closes_up(to_clear)
+            if room <= 0.0:
+                behind = v + room / _RECOVERY
+            else:
+                behind = sqrt(v * v + 2.0 * b * room + self._lag**2) - self._lag
+            limit = min(limit, max(0.0, behind))
+        return limit
 
 
 def given_up(
