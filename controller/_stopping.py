@@ -23,7 +23,6 @@ class Limits(NamedTuple):
     half_width: float  # of the ego [m]
     body_radius: float  # R [m]
     margin: float  # [m]
-    position_error: float  # [m]
 
 
 @kernel
@@ -93,7 +92,7 @@ def _clearance(travel: float, c: Limits) -> float:
     L = travel + c.walking_speed * c.time_step
     between = sqrt(c.body_radius * c.body_radius + 0.25 * L * L)
     between += 0.125 * c.walking_acceleration * c.time_step * c.time_step
-    return max(c.body_radius + c.margin, between) + c.position_error
+    return max(c.body_radius + c.margin, between)
 
 
 @kernel
@@ -144,25 +143,38 @@ def _stop(
 
 
 @kernel
-def _touches(box: Array, x: float, y: float, radius: float, slack: float, c: Limits) -> bool:
-    """Whether a body whose centre is within ``radius`` of (x, y) may meet the front in its box."""
+def _touches(
+    box: Array, x: float, y: float, radius: float, error: float, slack: float, c: Limits
+) -> bool:
+    """Whether a body whose centre is within ``radius`` of (x, y) may meet the front in its box.
+
+    (x, y) is off by ``error`` [m] at most.
+    """
     d_x, d_y = x - box[0], y - box[1]
     along, across = d_x * box[2] + d_y * box[3], d_y * box[2] - d_x * box[3]
-    behind = c.walking_speed * c.time_step + c.position_error  # it gets there within the step
+    behind = c.walking_speed * c.time_step + error  # it gets there within the step
     if along + radius < box[4] - behind:
         return False  # it can only walk into the side
     off = max(box[4] - along, 0.0, along - box[5])
     aside = max(box[6] - across, 0.0, across - box[7])
-    reach = radius + box[8] + slack
+    reach = radius + (box[8] + error) + slack
     touched: bool = off * off + aside * aside <= reach * reach
     return touched
 
 
 @kernel
 def _may_meet(
-    x: float, y: float, v_x: float, v_y: float, steps: int, slack: float, c: Limits, boxes: Array
+    x: float,
+    y: float,
+    v_x: float,
+    v_y: float,
+    error: float,
+    steps: int,
+    slack: float,
+    c: Limits,
+    boxes: Array,
 ) -> bool:
-    """Whether somebody now at (x, y) with velocity (v_x, v_y) can meet the moving front.
+    """Whether somebody seen at (x, y) with velocity (v_x, v_y) can meet the moving front.
 
     Who accelerates by at most a_max is within a_max t^2/2 of x + v t, and who walks at most at
     v_max is within v_max t of x.
@@ -173,9 +185,9 @@ def _may_meet(
             continue
         t = j * c.time_step
         accelerated = 0.5 * c.walking_acceleration * t * t
-        if not _touches(box, x + v_x * t, y + v_y * t, accelerated, slack, c):
+        if not _touches(box, x + v_x * t, y + v_y * t, accelerated, error, slack, c):
             continue
-        if _touches(box, x, y, c.walking_speed * t, slack, c):
+        if _touches(box, x, y, c.walking_speed * t, error, slack, c):
             return True
     return False
 
@@ -188,6 +200,7 @@ def is_safe(
     spacing: float,
     position: Array,
     velocity: Array,
+    errors: Array,
     c: Limits,
     commands: Array,
     boxes: Array,
@@ -200,12 +213,12 @@ def is_safe(
     widest = 0.0
     for j in range(steps + 1):
         widest = max(widest, boxes[j, 8])
-    reach = travel + c.half_width + widest + slack + c.walking_speed * steps * c.time_step
+    farthest = travel + c.half_width + widest + slack + c.walking_speed * steps * c.time_step
     for i in range(position.shape[0]):
-        x, y = position[i, 0], position[i, 1]
+        x, y, reach = position[i, 0], position[i, 1], farthest + errors[i]
         d_x, d_y = x - way[0, 0], y - way[0, 1]
         if d_x * d_x + d_y * d_y > reach * reach:
             continue
-        if _may_meet(x, y, velocity[i, 0], velocity[i, 1], steps, slack, c, boxes):
+        if _may_meet(x, y, velocity[i, 0], velocity[i, 1], errors[i], steps, slack, c, boxes):
             return False
     return True

@@ -103,9 +103,9 @@ class SafetyLayer:
             half_width=p.width / 2.0,
             body_radius=p.body_radius,
             margin=p.margin,
-            position_error=p.position_error,
         )
         self._plain_limits = tuple(self._limits)
+        self._errors = np.full(0, p.position_error)
         self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
         delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
         self._commands = np.zeros(1 + max(delay, 0))
@@ -149,6 +149,7 @@ class SafetyLayer:
         spacing: float,
         position: Array,
         velocity: Array,
+        errors: Array | None = None,
     ) -> SafeForce:
         """Let a force through, or the largest safe one below it.
 
@@ -160,7 +161,12 @@ class SafetyLayer:
             spacing: [m] of travel between the rows of ``way``.
             position: (n, 2) [m] people's centres, in the frame of ``way``.
             velocity: (n, 2) [m/s] theirs.
+            errors: (n,) [m] that ``position`` is off at most; None: the parameters' for everybody.
         """
+        if errors is None:
+            if len(self._errors) < len(position):
+                self._errors = np.full(2 * len(position), self.parameters.position_error)
+            errors = self._errors
         safe, verdict = largest_safe_force(
             force,
             speed,
@@ -168,6 +174,7 @@ class SafetyLayer:
             spacing,
             position,
             velocity,
+            errors,
             self._plain_limits,
             self._commands,
             self._boxes,
@@ -187,6 +194,7 @@ def largest_safe_force(
     spacing: float,
     position: Array,
     velocity: Array,
+    errors: Array,
     limits: tuple[float, ...],
     commands: Array,
     boxes: Array,
@@ -200,6 +208,7 @@ def largest_safe_force(
         spacing: [m] between them.
         position: (n, 2) [m].
         velocity: (n, 2) [m/s].
+        errors: (n,) [m], or more; how far off the positions are at most.
         limits: the numbers of :class:`Limits`; a plain tuple, which numba unpacks 2 us faster.
         commands: (delay + 1,) [N] the forces of the past, the latest last; changed.
         boxes: (longest stop [steps] + 1, 9) scratch.
@@ -207,17 +216,19 @@ def largest_safe_force(
     c, v = Limits(*limits), speed if speed > STANDSTILL else 0.0
     verdict, safe = LETS_THROUGH, force
     if position.shape[0] > 0 and not is_safe(
-        force, v, way, spacing, position, velocity, c, commands, boxes, _SLACK
+        force, v, way, spacing, position, velocity, errors, c, commands, boxes, _SLACK
     ):
         verdict = ACTS
         safe = max(-c.force_limit, commands[-1] - c.force_rate_limit)
         safe = min(safe, force)
         unsafe = force
-        if not is_safe(safe, v, way, spacing, position, velocity, c, commands, boxes, 0.0):
+        if not is_safe(safe, v, way, spacing, position, velocity, errors, c, commands, boxes, 0.0):
             verdict, unsafe = UNAVOIDABLE, safe
         while unsafe - safe > _RESOLUTION:
             middle = 0.5 * (safe + unsafe)
-            if is_safe(middle, v, way, spacing, position, velocity, c, commands, boxes, _SLACK):
+            if is_safe(
+                middle, v, way, spacing, position, velocity, errors, c, commands, boxes, _SLACK
+            ):
                 safe = middle
             else:
                 unsafe = middle

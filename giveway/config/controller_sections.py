@@ -316,6 +316,13 @@ class PerceptionConfig(Section):
         le=5,
         because="whom one looks for a lane off is not seen",
     )
+    tracker: bool | None = option(
+        None,
+        None,
+        "positions are filtered, and bounded for the safety layer. Left out: yes, but not for the "
+        "paper's controllers",
+        flag="--tracker",
+    )
     desired_speeds: Literal["known", "typical"] = option(
         "known", None, "of each person, or [crowd] desired_speed_mean for everybody"
     )

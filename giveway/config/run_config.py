@@ -202,6 +202,12 @@ class RunConfig(Section):
         return not self.controller.endswith("-paper") if priority is None else priority == "road"
 
     @property
+    def tracks_people(self) -> bool:
+        """Whether the controllers are shown tracked positions where perception is noisy."""
+        tracker = self.perception.tracker
+        return not self.controller.endswith("-paper") if tracker is None else tracker
+
+    @property
     def driver(self) -> str:
         """The controller as titles name it: "MPC", and somebody else's as it is written."""
         return self.controller.upper() if self.controller in BUNDLED else self.controller

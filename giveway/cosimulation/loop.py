@@ -270,9 +270,9 @@ class Loop:
         acting = ""
         for row, ego in enumerate(self._egos):
             look_at = perf_counter()
-            seen = ego.look(row, mirror.poses, crowd, surroundings)
+            seen = ego.look(row, mirror.poses, crowd, surroundings, self._roster.present)
             decide_at = perf_counter()
-            decision = ego.decide(self._k, time, seen, self._roster.present)
+            decision = ego.decide(self._k, time, seen)
             controlled_at = perf_counter()
             recorder.ego(ego.id, ego.row(time, seen, decision))
             predicted = ego.expected(seen) if self._looks else None

@@ -6,9 +6,12 @@ Prediction and control work on what is seen here; tables and metrics on the trut
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig
-from giveway.crowd.noise import planar_noise
+from giveway.crowd.noise import BOUND, planar_noise
+from giveway.crowd.tracking import Tracker
+from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 
 _STREAM = 0x5EE  # tells these draws from others of the same seed
@@ -20,13 +23,19 @@ class Perception:
     """One ego's eyes: positions with noise, and desired speeds and goals that cannot be seen.
 
     Each observation draws new noise for all, from a generator of this ego's own: equal runs see the
-    same, whatever other egos there are.
+    same, whatever other egos there are. A tracker makes the most of them, unless it is switched
+    off; the paper's controllers have none.
 
     Args:
         config: of the ego.
+        acceleration: [m/s^2] that no person exceeds, as far as the tracker is concerned.
+        time_step: [s] between two observations.
+
+    Attributes:
+        errors: (n,) [m] that the positions of the latest observation are off at most; None: none.
     """
 
-    def __init__(self, config: EgoRunConfig) -> None:
+    def __init__(self, config: EgoRunConfig, acceleration: float, time_step: float) -> None:
         self._noise = config.perception.position_noise
         known = config.perception.desired_speeds == "known"
         self._speed = None if known else config.crowd.desired_speed_mean
@@ -34,17 +43,22 @@ class Perception:
         self._random = np.random.default_rng((config.seed, _STREAM, *config.ego_id.encode()))
         self._truth: Crowd | None = None
         self._seen: Crowd | None = None
+        self._tracker: Tracker | None = None
+        if self._noise and config.tracks_people:
+            self._tracker = Tracker(BOUND * self._noise, acceleration, time_step)
+        self.errors: Array | None = None
 
     @property
     def exact(self) -> bool:
         """Whether it sees the truth."""
         return not self._noise and self._speed is None and self._goals
 
-    def observe(self, crowd: Crowd) -> Crowd:
+    def observe(self, crowd: Crowd, numbers: NDArray[np.int64]) -> Crowd:
         """The crowd as it is seen.
 
         Args:
             crowd: as it is; not changed. Its arrays are shared where they are seen as they are.
+            numbers: (n,) one for each person, which the person keeps.
 
         Returns:
             A crowd of the same pedestrians in the same order, which the next call overwrites.
@@ -57,6 +71,8 @@ class Perception:
             noise = planar_noise(self._random, len(crowd))
             noise *= self._noise
             np.add(crowd.position, noise, out=self._seen.position)
+            if self._tracker is not None:
+                self.errors = self._tracker.update(self._seen, numbers)
         return self._seen if self._goals else _walking_on(self._seen)
 
     def _look_at(self, crowd: Crowd) -> Crowd:

@@ -30,6 +30,7 @@ _STRAIGHT = (
     1.0  # [s] for which other vehicles are predicted straight on; beyond it the road may bend
 )
 _NEAR = 3.0  # [m] in addition to the distance kept: what is so near is what the ego stands for
+_LIKELY = 0.75  # of what positions are off at most, as plans count with it: the layer with all
 _FREE = ("clear", "drive on")  # reasons of a planning controller that sees nobody in its way
 
 
@@ -87,9 +88,9 @@ class Ego:
         self._nearby = Nearby(waiting, path, span, shape.length, self.corridor.half_width)
         self._view = PathView(path)
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
-        perception = Perception(config)
-        self._perception = None if perception.exact else perception
         safety = waiting.safety
+        perception = Perception(config, waiting.worst.acceleration, time_step)
+        self._perception = None if perception.exact else perception
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
         self._foresight = self._foresee(waiting)
         self._force = 0.0
@@ -151,7 +152,14 @@ class Ego:
             raise VehicleError(f"{msg} from the FMU")
         return pose
 
-    def look(self, row: int, poses: Array, crowd: Crowd, surroundings: Surroundings) -> Seen:
+    def look(
+        self,
+        row: int,
+        poses: Array,
+        crowd: Crowd,
+        surroundings: Surroundings,
+        numbers: NDArray[np.int64],
+    ) -> Seen:
         """Find what is in front, now and over the horizon.
 
         Args:
@@ -159,11 +167,13 @@ class Ego:
             poses: (N, m, 7) of all vehicles at steps 0 ... N-1.
             crowd: the pedestrians now, as they are; the controller acts on how they are seen.
             surroundings: the walls and lights that they heed.
+            numbers: (n,) one for each pedestrian that it keeps.
         """
         front, speed, corridor = self.front, self.vehicle.speed, self.corridor
-        truth, perception = crowd, self._perception
+        truth, perception, errors = crowd, self._perception, None
         if perception is not None:
-            crowd = perception.observe(truth)
+            crowd = perception.observe(truth, numbers)
+            errors = perception.errors
         pedestrian, reachable = corridor.closest_now(crowd.position, front)
         closest = pedestrian
         if perception is not None:
@@ -178,7 +188,8 @@ class Ego:
                 relevant = self._nearby.of(crowd, front, speed)
             pedestrians = crowd if relevant is None else crowd.select(relevant)
             if foresight is not None:
-                foresight.look(pedestrians, surroundings, poses, row, front, speed)
+                off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
+                foresight.look(pedestrians, surroundings, poses, row, front, speed, off)
             else:
                 predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
@@ -212,25 +223,24 @@ class Ego:
             foresight,
             poses,
             row,
+            numbers,
+            errors,
             to_clear,
         )
 
-    def decide(
-        self, step: int, time: float, seen: Seen, person_ids: NDArray[np.int64] | None = None
-    ) -> Decision:
+    def decide(self, step: int, time: float, seen: Seen) -> Decision:
         """The force for the step from t_k on; kept for :meth:`advance`.
 
         Args:
             step: k, for messages.
             time: t_k on SUMO's clock [s].
             seen: what the ego reacts to.
-            person_ids: (n,) a number for each pedestrian that it keeps; None: nobody asks.
 
         Raises:
             ControlError: the controller gave no finite force.
         """
         controller = self._controller
-        decision = controller.control(self._observation(time, seen, person_ids))
+        decision = controller.control(self._observation(time, seen))
         if not math.isfinite(decision.force):
             raise ControlError(
                 f"controller '{decision.acting}' of '{self.id}' at step {step}: force = "
@@ -238,7 +248,8 @@ class Ego:
                 "run's config.toml"
             )
         if self._guard is not None:
-            safe = self._guard.overrule(decision, self.front, self.vehicle.speed, seen.crowd)
+            there = self.front, self.vehicle.speed
+            safe = self._guard.overrule(decision, *there, seen.crowd, seen.errors)
             if safe is not None:
                 controller.applied(safe.force)
                 decision = safe
@@ -246,9 +257,7 @@ class Ego:
         self._force = decision.force
         return decision
 
-    def _observation(
-        self, time: float, seen: Seen, person_ids: NDArray[np.int64] | None
-    ) -> Observation:
+    def _observation(self, time: float, seen: Seen) -> Observation:
         """What the controller is shown."""
         front, vehicle, leader = self.front, self.vehicle, seen.leader
         safe_distance = self.config.regulation.safe_distance
@@ -283,7 +292,7 @@ class Ego:
             seen.pedestrian - origin,
             leader.station - origin,
             leader.speed,
-            person_ids,
+            seen.numbers,
             seen.to_clear,
         )
 

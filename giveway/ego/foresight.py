@@ -95,16 +95,16 @@ class CrowdForesight:
         )
         walking = predictor.parameters
         able = worst or WorstMotion(walking.max_acceleration, walking.max_speed)
-        self._alarm = tuple(
-            Alarm(
-                walking.body_radius,
-                clearance,
-                able.acceleration,
-                able.speed,
-                braking,
-                worst is not None,
-            )
+        self._limits = Alarm(
+            walking.body_radius,
+            clearance,
+            able.acceleration,
+            able.speed,
+            braking,
+            worst is not None,
         )
+        self._alarm = tuple(self._limits)
+        self._clearance, self._off = clearance, 0.0
         self._length = shape.length
         self._constant = np.arange(N + 1) * time_step
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
@@ -126,6 +126,7 @@ class CrowdForesight:
         row: int,
         front: float,
         speed: float,
+        off: float = 0.0,
     ) -> None:
         """Begin an instant.
 
@@ -136,7 +137,11 @@ class CrowdForesight:
             row: the ego's.
             front: the front bumper's station [m].
             speed: the ego's [m/s].
+            off: [m] how far people's positions are off at most, beside what the clearance has.
         """
+        if off != self._off:
+            self._off = off
+            self._alarm = tuple(self._limits._replace(clearance=self._clearance + off))
         self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front, self._now = poses, row, front, speed
         self._copied, self._stale, self._preferred = False, True, False

@@ -39,7 +39,12 @@ class Guard:
         self._poses = FrontPoses(path, shape.length)
 
     def overrule(
-        self, decision: Decision, front: float, speed: float, crowd: Crowd
+        self,
+        decision: Decision,
+        front: float,
+        speed: float,
+        crowd: Crowd,
+        errors: Array | None = None,
     ) -> Decision | None:
         """The safety layer's decision instead of the controller's; None: it lets that through.
 
@@ -48,10 +53,11 @@ class Guard:
             front: the front bumper's station [m].
             speed: the ego's [m/s].
             crowd: the pedestrians as it sees them.
+            errors: (n,) [m] that their positions are off at most; None: as the limits say.
         """
         poses, spacing = self._poses.sample(front, self._layer.reach(speed))
         safe = self._layer.filter(
-            decision.force, speed, poses, spacing, crowd.position, crowd.velocity
+            decision.force, speed, poses, spacing, crowd.position, crowd.velocity, errors
         )
         if not safe.acted:
             return None

@@ -4,7 +4,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from math import inf, sqrt
 
-from controller import Controller, SafetyParameters
+from controller import Controller, SafetyParameters, WorstMotion
 from fmus import FmuError, Vehicle
 from giveway.config import EgoRunConfig
 from giveway.config.presets import parameters_of
@@ -67,8 +67,21 @@ class WaitingEgo:
 
     @property
     def clearance(self) -> float:
-        """The distance that the safety layer keeps to pedestrians' bodies [m]."""
-        return 0.0 if self.safety is None else self.safety.margin + self.safety.position_error
+        """The distance that the safety layer keeps to pedestrians' bodies [m].
+
+        What it adds for the errors of tracked positions is in none: they differ.
+        """
+        if self.safety is None:
+            return 0.0
+        error = 0.0 if self.config.tracks_people else self.safety.position_error
+        return self.safety.margin + error
+
+    @property
+    def worst(self) -> WorstMotion:
+        """What people are taken to do at worst, with or without a safety layer."""
+        if self.safety is not None:
+            return self.safety.worst
+        return people_at_worst(self.config.safety.people, self.config.crowd.preset)
 
     @property
     def horizon(self) -> int:

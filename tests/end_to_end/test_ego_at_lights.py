@@ -56,7 +56,7 @@ def drive(
                 lights.update({"tls": colour}, ego.front, ego.vehicle.speed)
             rows.append((ego.front, ego.vehicle.speed, colour))
             ego.corridor.fill_poses(poses, 0, ego.front, ego.vehicle.speed)
-            ego.decide(k, time, ego.look(0, poses, nobody, OPEN_GROUND))
+            ego.decide(k, time, ego.look(0, poses, nobody, OPEN_GROUND, np.arange(0)))
             ego.advance()
     return rows
 

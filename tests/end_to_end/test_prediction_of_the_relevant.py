@@ -51,7 +51,9 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
                 poses = np.zeros((waiting.horizon, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
-                seen.append(ego.look(0, poses, people, OPEN_GROUND).ahead.copy())
+                seen.append(
+                    ego.look(0, poses, people, OPEN_GROUND, np.arange(len(people))).ahead.copy()
+                )
                 whom = ego._relevance.of(people, ego.pose.x, ego.pose.y, speed)
                 left_out += whom is not None and not whom.all()
         reach = ego.front + (speed + 8.0 * 0.75 / 2) * 0.75 + CONFIG.regulation.safe_distance
@@ -81,7 +83,7 @@ def test_who_is_left_out_hardly_changes_what_a_manoeuvre_would_lead_to(
                 poses = np.zeros((N, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
-                look = ego.look(0, poses, people, OPEN_GROUND)
+                look = ego.look(0, poses, people, OPEN_GROUND, np.arange(len(people)))
                 assert look.foresight is not None
                 left_out += look.relevant is not None and not look.relevant.all()
                 way = speed * 0.05 * np.arange(N + 1)
