@@ -264,14 +264,15 @@ class Ego:
         origin = front + self._origin
         stop = seen.stop + self._origin + safe_distance
         free = seen.stop == math.inf == seen.leader.station
-        limit, lanes = math.inf, None
+        vehicle_ahead = limit = math.inf
+        lanes = None
         if not free:
+            vehicle_ahead = self._following.station(leader, seen.to_clear)
             limit = self._following.speed_limit(leader, seen.stop, front, seen.to_clear)
         if self._profile is not None:
             limit = min(limit, self._profile.limit(front, vehicle.speed))
             lanes = self._profile.ahead(front, vehicle.speed, self._times)
         self._view.station = front
-        vehicle_ahead = self._following.station(leader, seen.to_clear)
         return Observation(  # by position: a third of the time that keywords take
             origin,
             vehicle.speed,
