@@ -28,6 +28,6 @@ class Seen(NamedTuple):
     )  # for a controller that foresees, if a pedestrian may come in front
     poses: Array  # (N, m, 7) of all vehicles at steps 0 ... N-1
     row: int  # the ego's among them
-    numbers: NDArray[np.int64]  # (n,) of the crowd: a person keeps its number
+    numbers: NDArray[np.int64] | None = None  # (n,) of the crowd: a person keeps its number
     errors: Array | None = None  # (n,) [m] its positions are off at most; None: as perception says
     to_clear: float = 0.0  # [m] to be driven on to leave the crossings and junctions that it is on
