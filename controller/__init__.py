@@ -19,6 +19,8 @@ from controller.mpc import Mpc
 from controller.parameters import PRINTED_PID, MpcParameters, PidParameters
 from controller.pid import Pid
 from controller.planning import (
+    ATTITUDES,
+    AttitudeName,
     ManoeuvreParameters,
     Planner,
     PlannerParameters,
@@ -38,9 +40,11 @@ from controller.tuned_pid import TunedPid, TunedPidParameters
 from controller.worst_motion import PeopleName, WorstMotion, worst_motion
 
 __all__ = [
+    "ATTITUDES",
     "PRINTED_PID",
     "Acceleration",
     "Answer",
+    "AttitudeName",
     "Controller",
     "ControllerError",
     "Decision",

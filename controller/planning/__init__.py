@@ -1,10 +1,17 @@
 """The planning MPC: a search over manoeuvres, and a QP that smooths the one chosen."""
 
 from controller.planning.costs import add_cost_of_others, later_cost, own_cost
-from controller.planning.parameters import ManoeuvreParameters, PlannerParameters
+from controller.planning.parameters import (
+    ATTITUDES,
+    AttitudeName,
+    ManoeuvreParameters,
+    PlannerParameters,
+)
 from controller.planning.planner import Plan, Planner, PlanningController
 
 __all__ = [
+    "ATTITUDES",
+    "AttitudeName",
     "ManoeuvreParameters",
     "Plan",
     "Planner",

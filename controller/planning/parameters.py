@@ -1,8 +1,10 @@
 """The numbers of the planning MPC; docs/controllers.md says what each one gives."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple, Self
+from types import MappingProxyType
+from typing import Final, Literal, NamedTuple, Self
 
 from controller.defaults import (
     FORCE_LIMIT,
@@ -74,6 +76,19 @@ _WEIGHTS = (
     "final_weight",
     "later_weight",
     "persistence",
+)
+
+
+AttitudeName = Literal["careful", "normal", "assertive"]
+
+#: What an attitude sets of :class:`ManoeuvreParameters`: points on the front of the ego's time
+#: against risk and people's delay, found by paired runs (docs/controllers.md).
+ATTITUDES: Final[Mapping[AttitudeName, Mapping[str, float]]] = MappingProxyType(
+    {
+        "careful": {"conflict_weight": 1.6, "nearness_weight": 10.0, "minimum_distance": 0.8},
+        "normal": {"conflict_weight": 0.8, "nearness_weight": 7.0, "minimum_distance": 0.4},
+        "assertive": {"conflict_weight": 0.4, "nearness_weight": 3.5, "minimum_distance": 0.4},
+    }
 )
 
 

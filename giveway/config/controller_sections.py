@@ -199,19 +199,27 @@ class PlannerConfig(Section):
         le=100,
         because="beyond, a plan is made of that weight alone",
     )
-    conflict_weight: float = option(
-        0.8,
+    attitude: Literal["careful", "normal", "assertive"] = option(
+        "normal",
+        None,
+        "careful, normal or assertive: how much delay it takes for people's sake, by the two "
+        "weights and the distance below",
+        flag="--attitude",
+    )
+    conflict_weight: float | None = option(
+        None,
         None,
         "seconds of delay that one person-second at v_r with less than 1.5 s to a collision is "
-        "worth",
+        "worth; none: the attitude's, 1.6, 0.8 or 0.4",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
     )
-    nearness_weight: float = option(
-        7.0,
+    nearness_weight: float | None = option(
         None,
-        "seconds of delay that a second at v_r right before somebody is worth, none at d_safe",
+        None,
+        "seconds of delay that a second at v_r right before somebody is worth, 0 at d_safe; none: "
+        "the attitude's, 10, 7 or 3.5",
         ge=0,
         le=1e3,
         because="beyond, a plan is made of that weight alone",
@@ -232,10 +240,10 @@ class PlannerConfig(Section):
         le=1e3,
         because="beyond, a plan is made of that weight alone",
     )
-    minimum_distance: float = option(
-        0.4,
+    minimum_distance: float | None = option(
+        None,
         "m",
-        "least distance to a person in front, at standstill",
+        "least distance to a person in front, at standstill; none: the attitude's, 0.8, 0.4 or 0.4",
         ge=0,
         le=100,
         least=MILLIMETRE,

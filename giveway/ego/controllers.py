@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from controller import (
+    ATTITUDES,
     Controller,
     ControllerError,
     LongitudinalModel,
@@ -24,6 +25,7 @@ from controller import (
     TunedPidParameters,
 )
 from giveway.config import EgoRunConfig
+from giveway.config.controller_sections import PlannerConfig
 from giveway.config.option import LANE, Section
 from giveway.ego.plug_in import plugged_in
 from giveway.ego.vehicle import model_margin
@@ -109,6 +111,21 @@ def _tuned_pid(config: EgoRunConfig, time_step: float) -> TunedPid:
     return TunedPid(parameters, _model(config, time_step))
 
 
+def manoeuvres_of(planner: PlannerConfig, margin: float = 0.0) -> ManoeuvreParameters:
+    """The planner's manoeuvres: what its attitude sets, unless the options say otherwise.
+
+    Args:
+        planner: the options.
+        margin: [m] kept to people for what the vehicle's model lacks.
+    """
+    weighed = {
+        name: usual if getattr(planner, name) is None else getattr(planner, name)
+        for name, usual in ATTITUDES[planner.attitude].items()
+    }
+    weighed["minimum_distance"] += margin
+    return filled(ManoeuvreParameters, planner, **weighed)
+
+
 def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
     """The planning MPC, with the tuned PID where a hard corridor leaves it no plan."""
     regulation, planner = config.regulation, config.planner
@@ -120,9 +137,7 @@ def _planning(config: EgoRunConfig, time_step: float) -> PlanningController:
         config.mpc,
         horizon=plan_steps(config, time_step),
         safe_distance=regulation.safe_distance + margin,
-        manoeuvres=filled(
-            ManoeuvreParameters, planner, minimum_distance=planner.minimum_distance + margin
-        ),
+        manoeuvres=manoeuvres_of(planner, margin),
     )
     return PlanningController(
         Planner(_model(config, time_step), parameters), _tuned_pid(config, time_step)

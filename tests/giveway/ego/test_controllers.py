@@ -8,6 +8,8 @@ from typing import get_args
 import pytest
 
 from controller import (
+    ATTITUDES,
+    AttitudeName,
     LongitudinalModel,
     ManoeuvreParameters,
     MpcParameters,
@@ -20,9 +22,9 @@ from controller import (
 )
 from fmus.sources.parameters import ControllerParameters
 from giveway.config import EgoRunConfig
-from giveway.config.controller_sections import SafetyConfig
+from giveway.config.controller_sections import PlannerConfig, SafetyConfig
 from giveway.config.sections import DEFAULT_SPEED
-from giveway.ego.controllers import filled
+from giveway.ego.controllers import filled, manoeuvres_of
 from giveway.ego.waiting import safety_parameters
 from giveway.geometry.bodies import BODY
 from pedestrian_model import SIM
@@ -39,7 +41,6 @@ CONFIG = EgoRunConfig()
         (PidParameters, ["regulation", "pid", "mpc"], {}),
         (ReferenceParameters, ["regulation", "tuned_pid"], {}),
         (TunedPidParameters, ["tuned_pid", "mpc"], {}),
-        (ManoeuvreParameters, ["planner"], {}),
         (PlannerParameters, ["regulation", "planner", "mpc"], {"horizon": 50}),
     ],
     ids=lambda value: getattr(value, "__name__", None),
@@ -80,6 +81,17 @@ def test_the_exported_controllers_defaults_are_the_configurations():
     shared = exported.keys() & ours.keys()
     assert len(shared) >= 10
     assert {name: exported[name] for name in shared} == {name: ours[name] for name in shared}
+
+
+def test_an_attitude_sets_what_the_options_leave_out():
+    assert manoeuvres_of(PlannerConfig()) == ManoeuvreParameters()
+    chosen = PlannerConfig.model_fields["attitude"].annotation
+    assert get_args(chosen) == get_args(AttitudeName) == tuple(ATTITUDES)
+    for name, usual in ATTITUDES.items():
+        found = manoeuvres_of(PlannerConfig(attitude=name, nearness_weight=5.0), margin=0.1)
+        assert found.conflict_weight == usual["conflict_weight"]
+        assert found.nearness_weight == 5.0
+        assert found.minimum_distance == usual["minimum_distance"] + 0.1
 
 
 def test_an_option_reaches_the_parameter_of_its_name():
