@@ -3,6 +3,7 @@
 Run: giveway study controllers --runs 50 --first-seed 501 --out FOLDER
      python benchmarks/controllers.py FOLDER                # as Markdown, on the terminal
      python benchmarks/controllers.py FOLDER --write        # into docs/controllers.md
+The same of: giveway study attitudes --first-seed 551 --out FOLDER
 
 Seeds from 501 on were never looked at while the default was tuned.
 """
@@ -10,6 +11,7 @@ Seeds from 501 on were never looked at while the default was tuned.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -43,29 +45,28 @@ COLUMNS = (
     Column("mean_people_delay", "people's mean delay [s]", 2, interval=True),
     Column("safety_share", "layer acts [%]", 2, scale=100.0),
 )
+BRIEFLY = ("completion_time", "longest_wait", "rms_jerk", "conflicts", "share_below_ttc",
+           "mean_people_delay")  # fmt: skip
 SUMS = (("frontal_contacts", "frontal"), ("side_contacts", "side"))
 
 
-def table(folder: Path) -> list[str]:
-    """Lines of Markdown: means and half their 95 % intervals by scene and controller."""
+def table(folder: Path, who: str, columns: Sequence[Column]) -> list[str]:
+    """Lines of Markdown: means and half their 95 % intervals by scene and ``who`` drives."""
     runs = pd.read_csv(folder / "runs.csv", low_memory=False)
     cells = pd.read_csv(folder / "cells.csv")
     levels = pd.read_csv(folder / "levels.csv")
     comparison = pd.read_csv(folder / "comparison.csv")
     general = comparison[comparison.situation == "general"]
     verdicts = general.set_index(["scene", "treatment", "metric"]).verdict
-    spread = levels.set_index(["scene", "controller", "metric"])
-    titles = [column.title for column in COLUMNS] + [title for _, title in SUMS]
-    lines = ["| scene | controller | " + " | ".join(titles) + " |"]
+    spread = levels.set_index(["scene", who, "metric"])
+    titles = [column.title for column in columns] + [title for _, title in SUMS]
+    lines = [f"| scene | {who} | " + " | ".join(titles) + " |"]
     lines.append("|" + "---|" * (len(titles) + 2))
     for scene, group in cells.groupby("scene", sort=False):
-        for row in group.itertuples():
-            of = runs[runs.cell == row.cell]
-            told = [scene if row.controller == group.controller.iloc[0] else "", row.controller]
-            told += [
-                entry(column, (scene, row.controller, column.name), spread, verdicts)
-                for column in COLUMNS
-            ]
+        for cell, name in zip(group.cell, group[who], strict=True):
+            of = runs[runs.cell == cell]
+            told = [scene if name == group[who].iloc[0] else "", name]
+            told += [entry(c, (scene, name, c.name), spread, verdicts) for c in columns]
             told += [str(int(of[name].sum())) for name, _ in SUMS]
             lines.append("| " + " | ".join(str(cell) for cell in told) + " |")
     return lines
@@ -123,10 +124,15 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--write", action="store_true", help="into docs/controllers.md")
     options = parser.parse_args()
-    for name, lines in (
-        ("differences", differences(options.folder)),
-        ("all scenes", table(options.folder)),
-    ):
+    if "driver" in pd.read_csv(options.folder / "cells.csv"):
+        briefly = [column for column in COLUMNS if column.name in BRIEFLY]
+        found = {"attitudes": table(options.folder, "driver", briefly)}
+    else:
+        found = {
+            "differences": differences(options.folder),
+            "all scenes": table(options.folder, "controller", COLUMNS),
+        }
+    for name, lines in found.items():
         if options.write:
             write(name, lines)
         else:
