@@ -12,7 +12,9 @@ from pedestrian_model.errors import (
 from pedestrian_model.influence import vehicle_influence
 from pedestrian_model.model import LONGEST_STEP, CrowdModel, arrived, require_steady
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
+from pedestrian_model.plain_models import PLAIN_MODELS, PlainModel, PlainName
 from pedestrian_model.prediction import Predictor, leap, start, wish
+from pedestrian_model.protocol import PedestrianModel
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
 from pedestrian_model.targets import remaining_distance, targets
 from pedestrian_model.vehicles import Vehicles
@@ -20,6 +22,7 @@ from pedestrian_model.vehicles import Vehicles
 __all__ = [
     "LONGEST_STEP",
     "OPEN_GROUND",
+    "PLAIN_MODELS",
     "PRESETS",
     "SIM",
     "TABLE2",
@@ -28,7 +31,10 @@ __all__ = [
     "CrowdModel",
     "DivergenceError",
     "ParameterError",
+    "PedestrianModel",
     "PedestrianModelError",
+    "PlainModel",
+    "PlainName",
     "Predictor",
     "Surroundings",
     "SurroundingsError",

@@ -47,7 +47,7 @@ def aim(x: float, y: float, p: Line, R: float) -> tuple[float, float]:
 
 
 @inlined
-def _is_passed(x: float, y: float, p: Line, radius: float) -> bool:
+def is_passed(x: float, y: float, p: Line, radius: float) -> bool:
     """Whether (x, y) is within ``radius`` of the way-point, or beyond its line where that is."""
     dx, dy = x - p.x, y - p.y
     if dx * dx + dy * dy <= radius * radius:
@@ -98,7 +98,7 @@ def set_targets_of(
         p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
         soft = c.s_des_2
         while at < last and not (signal[at] >= 0 and closed[signal[at]]):
-            if not _is_passed(x, y, p, radius):
+            if not is_passed(x, y, p, radius):
                 soft = _NO_SLOWING
                 break
             waypoint_index[i] += 1

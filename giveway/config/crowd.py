@@ -89,6 +89,13 @@ class CrowdConfig(Section):
     host_edge: str = option(
         "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"
     )
+    model: Literal["vci", "social-force", "gap-acceptance", "constant-velocity"] = option(
+        "vci",
+        None,
+        "what moves people: vci; social-force (Helbing and Molnar 1995); gap-acceptance (they stop "
+        "for vehicles that come too soon); constant-velocity. Controllers predict by VCI anyway",
+        flag="--crowd-model",
+    )
     preset: Preset = option(
         "SIM",
         None,

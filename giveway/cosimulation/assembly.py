@@ -12,13 +12,13 @@ from shapely.ops import substring
 
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.crowd import ENCOUNTERS
-from giveway.config.presets import parameters_of
 from giveway.cosimulation.departures import Departures
 from giveway.cosimulation.free_drive import free_drive
 from giveway.cosimulation.preflight import CheckedRun, substeps_of
 from giveway.cosimulation.yielding import Yielding
 from giveway.crowd.encounters import FreeDrive
 from giveway.crowd.exchange import Exchange
+from giveway.crowd.models import model_of
 from giveway.crowd.priority import PriorityOnFoot
 from giveway.crowd.roster import Roster
 from giveway.crowd.spawn import PREFIX, Spawned, spawn
@@ -38,7 +38,7 @@ from giveway.walkways import WalkNetwork
 from pedestrian_model import (
     OPEN_GROUND,
     Crowd,
-    CrowdModel,
+    PedestrianModel,
     PedestrianModelError,
     Surroundings,
 )
@@ -66,7 +66,7 @@ class Parts:
     egos: tuple[WaitingEgo, ...]  # as they were before their departure
     departures: Departures
     roster: Roster
-    crowd_model: CrowdModel
+    crowd_model: PedestrianModel
     exchange: Exchange | None  # None: the scenario's own pedestrians stay SUMO's
     surroundings: Surroundings
     yielding: Yielding | None  # None: background vehicles do not yield to pedestrians
@@ -177,13 +177,7 @@ def assemble(
         egos=waiting,
         departures=departures,
         roster=roster,
-        crowd_model=CrowdModel(
-            parameters_of(config.crowd.preset),
-            time_step,
-            detour=config.crowd.detour,
-            creep=config.crowd.creep,
-            threads=config.crowd.threads,
-        ),
+        crowd_model=model_of(config, time_step, threads=config.crowd.threads),
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
         yielding=yielding,

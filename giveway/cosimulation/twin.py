@@ -25,12 +25,13 @@ from giveway.cosimulation.followed import Followed
 from giveway.cosimulation.preflight import CheckedRun
 from giveway.cosimulation.replayed import ReplayedLoop
 from giveway.cosimulation.traffic_notes import TrafficNotes
+from giveway.crowd.models import model_of
 from giveway.crowd.roster import Roster, Walking
 from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.walk_log import WalkLog
 from giveway.records.walks import WalkTrack
-from pedestrian_model import Crowd, CrowdModel
+from pedestrian_model import Crowd
 
 _KEPT = 8  # crowds among themselves that a process remembers
 _alone: OrderedDict[bytes, CrowdAlone] = OrderedDict()
@@ -129,12 +130,7 @@ def _crowd_alone(config: RunConfig, followed: Followed, time_step: float) -> Cro
         return _alone[key]
     roster = Roster(followed.names, followed.crowd.copy())
     walks = WalkLog(time_step, lambda _: True)
-    model = CrowdModel(
-        parameters_of(config.crowd.preset),
-        time_step,
-        detour=config.crowd.detour,
-        creep=config.crowd.creep,
-    )
+    model = model_of(config, time_step)
     alone = _alone[key] = CrowdAlone(roster, Walking(config, model, roster, walks), walks)
     if len(_alone) > _KEPT:
         _alone.popitem(last=False)
@@ -148,7 +144,14 @@ def _key(config: RunConfig, crowd: Crowd, names: tuple[str, ...], time_step: flo
     noise = settings.acceleration_noise
     for part in (
         parameters_of(settings.preset),
-        (settings.detour, settings.creep, time_step, noise, config.seed if noise else None),
+        (
+            settings.model,
+            settings.detour,
+            settings.creep,
+            time_step,
+            noise,
+            config.seed if noise else None,
+        ),
         names,
     ):
         digest.update(repr(part).encode())

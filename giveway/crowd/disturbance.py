@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from giveway.config import RunConfig
 from giveway.crowd.noise import planar_noise
 from giveway.geometry.kernel import Array
-from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles
+from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles
 
 _STREAM = 0xACC  # tells these draws from others of the same seed
 
@@ -23,7 +23,7 @@ class Disturbance:
         seed: of the draws.
     """
 
-    def __init__(self, model: CrowdModel, deviation: float, seed: int) -> None:
+    def __init__(self, model: PedestrianModel, deviation: float, seed: int) -> None:
         self._model = model
         self._deviation = deviation
         self._time_step = model.time_step
@@ -74,7 +74,7 @@ class Disturbance:
         crowd.velocity[:] = wanted
 
 
-def disturbance_of(config: RunConfig, model: CrowdModel) -> Disturbance | None:
+def disturbance_of(config: RunConfig, model: PedestrianModel) -> Disturbance | None:
     """What pushes a run's crowd; None: nothing does."""
     noise = config.crowd.acceleration_noise
     return Disturbance(model, noise, config.seed) if noise else None

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from giveway.config import RunConfig
 from giveway.crowd.disturbance import disturbance_of
-from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles, arrived
+from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, arrived
 
 ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
 
@@ -94,7 +94,7 @@ class Walking:
     """
 
     def __init__(
-        self, config: RunConfig, model: CrowdModel, roster: Roster, log: Log | None = None
+        self, config: RunConfig, model: PedestrianModel, roster: Roster, log: Log | None = None
     ) -> None:
         self._model = model
         self._roster = roster

@@ -187,17 +187,20 @@ def _egos(
     """The contours of influence for each shape of vehicle, and the egos."""
     kinds: dict[tuple[Any, ...], float] = {}
     for name, config in run.egos.items():
-        kind = (_body(run, name), config.crowd.preset)
+        kind = (_body(run, name), config.crowd.preset, config.crowd.model)
         fastest = float(run.ego.loc[run.ego["id"] == name, "speed"].max())
         kinds[kind] = max(kinds.get(kind, 0.0), fastest)
     contours = [
         influence_contours(body, fastest, parameters_of(preset))
-        for (body, preset), fastest in kinds.items()
+        | ({} if model == "vci" else {"levels": []})  # others feel no such force
+        for (body, preset, model), fastest in kinds.items()
     ]
     egos = []
     for name, config in run.egos.items():
         ego = _ego(run, frame, name, names)
-        ego["contours"] = list(kinds).index((_body(run, name), config.crowd.preset))
+        ego["contours"] = list(kinds).index(
+            (_body(run, name), config.crowd.preset, config.crowd.model)
+        )
         mine = None if predictions is None else predictions[predictions["ego"] == name]
         ego["predicted"] = None if mine is None or mine.empty else pack_predictions(mine, frame)
         egos.append(ego)

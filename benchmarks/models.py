@@ -1,0 +1,65 @@
+"""The table of docs/models.md from its study.
+
+Run: giveway study models --first-seed 551 --out FOLDER
+     python benchmarks/models.py FOLDER                # as Markdown, on the terminal
+     python benchmarks/models.py FOLDER --write        # into docs/models.md
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import pandas as pd
+
+PAGE = Path(__file__).parents[1] / "docs" / "models.md"
+BEGIN, END = "<!-- table -->\n", "<!-- end of table -->"
+BASELINE = "pid-tuned"
+SIGNS = {"better": " **+**", "worse": " **−**"}
+MEANS = (
+    ("completion_time", "time [s]", 1),
+    ("longest_wait", "longest wait [s]", 1),
+    ("rms_jerk", "RMS jerk [m/s³]", 1),
+    ("conflicts", "conflicts", 1),
+    ("mean_people_delay", "people's mean delay [s]", 2),
+)
+
+
+def table(folder: Path) -> list[str]:
+    """Lines of Markdown: the drivers before each model of people, signs against the baseline."""
+    runs = pd.read_csv(folder / "runs.csv", low_memory=False)
+    cells = pd.read_csv(folder / "cells.csv")
+    compared = pd.read_csv(folder / "comparison.csv")
+    general = compared[compared.situation == "general"]
+    by = general.set_index(["scene", "people", "treatment", "metric"])
+    titles = [title for _, title, _ in MEANS]
+    lines = ["| scene | people | driver | " + " | ".join(titles) + " | frontal | side |"]
+    lines.append("|" + "---|" * (len(titles) + 5))
+    for row in cells.itertuples():
+        of = runs[runs.cell == row.cell]
+        told = [str(row.scene), str(row.people), f"`{row.driver}`"]
+        for name, _, digits in MEANS:
+            key = (row.scene, row.people, row.driver, name)
+            verdict = by.verdict[key] if key in by.index else ""
+            told.append(f"{of[name].mean():.{digits}f}" + SIGNS.get(str(verdict), ""))
+        told += [str(int(of[name].sum())) for name in ("frontal_contacts", "side_contacts")]
+        lines.append("| " + " | ".join(told) + " |")
+    return lines
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--write", action="store_true", help="into docs/models.md")
+    options = parser.parse_args()
+    lines = "\n".join(table(options.folder)) + "\n"
+    if options.write:
+        text = PAGE.read_text(encoding="utf-8")
+        before, rest = text.split(BEGIN)
+        PAGE.write_text(before + BEGIN + lines + END + rest.split(END)[1], encoding="utf-8")
+    else:
+        print(lines)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,333 @@
+"""Other models of people than VCI: is what holds for one crowd true whatever people do?
+
+``constant-velocity``
+    Everybody walks to the next way-point at the desired speed, through whatever is there: the
+    least that a model of people can be, and the assumption behind a time to collision.
+``social-force``
+    Helbing and Molnár, "Social force model for pedestrian dynamics" (Phys. Rev. E 51, 4282, 1995),
+    with its numbers: the way to the goal, elliptical repulsion among people, borders, and the
+    weight of what one sees. A vehicle is a rectangle that repels as a border does, by the ellipse
+    of its way in the next two seconds.
+``gap-acceptance``
+    Among themselves people walk by the same social force. To a vehicle that moves they answer by a
+    gap: they stop before the strip that it will sweep, unless it takes longer to arrive than their
+    critical headway t_c = L / v_0 + t_s, of the Highway Capacity Manual (2010, equation 19-69: the
+    way across over the walking speed, and 3 s to start and to be clear of it). Who has begun to
+    cross goes on. A vehicle that stands is a rectangle, as a wall is.
+
+All three know way-points, lines and signals, and keep to the parameters' largest acceleration and
+speed; they have no detour around cars, and no priority.
+"""
+
+import math
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pedestrian_model._jit import inlined, kernel
+from pedestrian_model._mathematics import cosine_sine, exponential
+from pedestrian_model._routes import Line, aim, is_passed
+from pedestrian_model._step import FINE, first_insane
+from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
+from pedestrian_model._walls import nearest_walls
+from pedestrian_model.crowd import Crowd
+from pedestrian_model.model import divergence, substeps, unknown_signal
+from pedestrian_model.parameters import SIM, VciParameters
+from pedestrian_model.surroundings import OPEN_GROUND, Surroundings
+from pedestrian_model.vehicles import Vehicles
+
+PlainName = Literal["constant-velocity", "social-force", "gap-acceptance"]
+PLAIN_MODELS: Final[tuple[PlainName, ...]] = ("constant-velocity", "social-force", "gap-acceptance")
+
+_STRAIGHT, _FORCES, _GAPS = range(3)
+Array = NDArray[np.float64]
+
+# Helbing and Molnár 1995
+_TAU = 0.5  # [s] in which people take up their pace
+_PERSON, _PERSON_RANGE = 2.1, 0.3  # V_0 [m^2/s^2] and sigma [m]
+_BORDER, _BORDER_RANGE = 10.0, 0.2  # U_0 [m^2/s^2] and R [m]
+_AHEAD = 2.0  # [s] of somebody's way that counts as theirs
+_SIGHT, _UNSEEN = -0.17364817766693033, 0.5  # cos 100 degrees; the share of what lies behind
+_FASTER = 1.3  # of the desired speed, at most
+_FAR = 8.0  # [m] beyond it nobody is felt: less than 1e-6 m/s^2 is left out
+
+# Highway Capacity Manual 2010, equation 19-69
+_START = 3.0  # [s] t_s, to start and to be clear of the way
+_HALT = 4.0 * _TAU  # [s] v = room / T stops before a kerb without going beyond it from here on
+_BESIDE = 0.3  # [m] between the vehicle's side and a body that waits (ours)
+_STANDS = 0.1  # [m/s] a slower vehicle stands
+_ARRIVES = 0.3  # [m] about a way-point at which somebody slows down (ours)
+_EPSILON = 1e-9  # [m]
+
+
+class PlainModel:
+    """One of the plain models with a time step; it holds no state but scratch memory.
+
+    Args:
+        name: which one.
+        parameters: of VCI; its body radius, largest speed and acceleration, and its way-points'
+            radius hold here too.
+        time_step: [s]; above 0.05 s it is divided into equal sub-steps, during which the vehicles
+            drive straight on at constant speed.
+
+    Raises:
+        ParameterError: if the time step is not positive and finite.
+    """
+
+    def __init__(
+        self, name: PlainName, parameters: VciParameters = SIM, time_step: float = 0.05
+    ) -> None:
+        self.name = name
+        self.parameters = parameters
+        self.time_step = float(time_step)
+        self._kind = PLAIN_MODELS.index(name)
+        self._substeps = substeps(self.time_step)
+        self._limits = (
+            parameters.body_radius,
+            parameters.max_acceleration,
+            parameters.max_speed,
+            parameters.waypoint_radius,
+        )
+        self._next = np.empty((0, 4))
+        self._walls = np.empty((3, 0))
+
+    def advance(
+        self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
+    ) -> None:
+        """Change position, velocity and waypoint_index of ``crowd`` in place, one time step on.
+
+        Raises:
+            DivergenceError: if a pedestrian's state is or becomes not finite.
+            SurroundingsError: if a way-point's signal is not one of the surroundings.
+        """
+        if crowd.signals > surroundings.closed.shape[0]:
+            raise unknown_signal(crowd, surroundings)
+        n = len(crowd)
+        if n == 0:
+            return
+        if n > len(self._next):
+            self._next, self._walls = np.empty((2 * n, 4)), np.empty((3, 2 * n))
+        closed, lines, cells = surroundings.arrays
+        bad = _advance(
+            self._kind,
+            crowd.state,
+            (crowd.desired_speed, *crowd.wishes[2:]),
+            closed,
+            surroundings.walls is not None,
+            lines,
+            cells,
+            vehicles.array,
+            self._limits,
+            self.time_step / self._substeps,
+            self._substeps,
+            self._next[:n],
+            self._walls[:, :n],
+        )
+        if bad != FINE:
+            raise divergence(bad, crowd, vehicles)
+
+
+@kernel
+def _advance(
+    kind: int,
+    state: tuple[Any, ...],
+    wishes: tuple[Any, ...],
+    closed: NDArray[np.bool_],
+    walled: bool,
+    lines: Array,
+    cells: NDArray[np.int64],
+    vehicles: Array,
+    limits: tuple[float, ...],
+    dt: float,
+    steps: int,
+    after: Array,
+    walls: Array,
+) -> int:
+    """Advance the state in place by ``steps`` steps of dt; ``FINE`` or the first bad index."""
+    position, velocity, waypoint_index = state
+    desired_speed, w, q, signal, start = wishes
+    radius, a_max, v_max, r_waypoint = limits
+    n = position.shape[0]
+    bad = first_insane(position, velocity)
+    if bad != FINE:
+        return bad
+    for step in range(steps):
+        if walled:
+            nearest_walls(position[:, 0].copy(), position[:, 1].copy(), lines, cells, walls)
+        for i in range(n):
+            x, y = position[i, 0], position[i, 1]
+            last = start[i + 1] - 1
+            at = start[i] + waypoint_index[i]
+            p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+            stops = True
+            while at < last and not (signal[at] >= 0 and closed[signal[at]]):
+                if not is_passed(x, y, p, r_waypoint):
+                    stops = False
+                    break
+                waypoint_index[i] += 1
+                at += 1
+                p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+            to_x, to_y = aim(x, y, p, radius)
+            e_x, e_y = to_x - x, to_y - y
+            left = math.sqrt(e_x * e_x + e_y * e_y)
+            e_x, e_y = e_x / max(left, _EPSILON), e_y / max(left, _EPSILON)
+            pace = desired_speed[i]
+            if stops:
+                pace *= left / math.sqrt(left * left + _ARRIVES * _ARRIVES)
+            if kind == _GAPS:
+                pace = min(pace, _pace_before(x, y, e_x, e_y, pace, vehicles, radius, step * dt))
+            a_x = (pace * e_x - velocity[i, 0]) / _TAU
+            a_y = (pace * e_y - velocity[i, 1]) / _TAU
+            fastest = min(_FASTER * desired_speed[i], v_max)
+            if kind != _STRAIGHT:
+                b_x, b_y = _of_people(i, e_x, e_y, position, velocity)
+                a_x, a_y = a_x + b_x, a_y + b_y
+                b_x, b_y = _of_vehicles(kind, x, y, e_x, e_y, vehicles, radius, step * dt)
+                a_x, a_y = a_x + b_x, a_y + b_y
+                if walled and walls[0, i] < np.inf:
+                    push = _border(walls[0, i] - radius)
+                    a_x, a_y = a_x + push * walls[1, i], a_y + push * walls[2, i]
+            a = math.sqrt(a_x * a_x + a_y * a_y)
+            scale = a_max / a if a > a_max else 1.0
+            v_x, v_y = velocity[i, 0] + dt * scale * a_x, velocity[i, 1] + dt * scale * a_y
+            v = math.sqrt(v_x * v_x + v_y * v_y)
+            scale = fastest / v if v > fastest else 1.0
+            after[i, 2], after[i, 3] = scale * v_x, scale * v_y
+            after[i, 0] = x + 0.5 * dt * (velocity[i, 0] + after[i, 2])
+            after[i, 1] = y + 0.5 * dt * (velocity[i, 1] + after[i, 3])
+        for i in range(n):
+            position[i, 0], position[i, 1] = after[i, 0], after[i, 1]
+            velocity[i, 0], velocity[i, 1] = after[i, 2], after[i, 3]
+    return first_insane(position, velocity)
+
+
+@inlined
+def _elliptical(r_x: float, r_y: float, s_x: float, s_y: float) -> tuple[float, float, float]:
+    """B [m] and its gradient, of the ellipse about somebody who steps (s_x, s_y), seen at r.
+
+    2 b = sqrt((|r| + |r - s|)^2 - |s|^2).
+    """
+    first = max(math.sqrt(r_x * r_x + r_y * r_y), _EPSILON)
+    u_x, u_y = r_x - s_x, r_y - s_y
+    second = max(math.sqrt(u_x * u_x + u_y * u_y), _EPSILON)
+    both = first + second
+    b = 0.5 * math.sqrt(max(both * both - s_x * s_x - s_y * s_y, _EPSILON))
+    share = both / (4.0 * b)
+    return b, share * (r_x / first + u_x / second), share * (r_y / first + u_y / second)
+
+
+@inlined
+def _seen(e_x: float, e_y: float, f_x: float, f_y: float) -> float:
+    """The weight of an influence f on somebody who looks along e."""
+    f = math.sqrt(f_x * f_x + f_y * f_y)
+    return 1.0 if -(e_x * f_x + e_y * f_y) >= f * _SIGHT else _UNSEEN
+
+
+@inlined
+def _of_people(
+    i: int, e_x: float, e_y: float, position: Array, velocity: Array
+) -> tuple[float, float]:
+    """The acceleration [m/s^2] that others give pedestrian i."""
+    a_x, a_y = 0.0, 0.0
+    for j in range(position.shape[0]):
+        r_x, r_y = position[i, 0] - position[j, 0], position[i, 1] - position[j, 1]
+        if j == i or r_x * r_x + r_y * r_y > _FAR * _FAR:
+            continue
+        s_x, s_y = _AHEAD * velocity[j, 0], _AHEAD * velocity[j, 1]
+        b, g_x, g_y = _elliptical(r_x, r_y, s_x, s_y)
+        push = _PERSON / _PERSON_RANGE * exponential(max(-b / _PERSON_RANGE, -700.0))
+        f_x, f_y = push * g_x, push * g_y
+        w = _seen(e_x, e_y, f_x, f_y)
+        a_x, a_y = a_x + w * f_x, a_y + w * f_y
+    return a_x, a_y
+
+
+@inlined
+def _border(distance: float) -> float:
+    """The acceleration [m/s^2] away from a border at a distance [m] of the skin."""
+    if distance > _FAR:
+        return 0.0
+    return _BORDER / _BORDER_RANGE * exponential(-max(distance, 0.0) / _BORDER_RANGE)
+
+
+@inlined
+def _in_frame(
+    x: float, y: float, vehicle: Array, travelled: float
+) -> tuple[float, float, float, float]:
+    """A point in the vehicle's frame after some time [s], and its heading's cosine and sine."""
+    c, s = cosine_sine(vehicle[HEADING])
+    d_x = x - vehicle[X] - travelled * vehicle[SPEED] * c
+    d_y = y - vehicle[Y] - travelled * vehicle[SPEED] * s
+    return d_x * c + d_y * s, d_y * c - d_x * s, c, s
+
+
+@inlined
+def _of_vehicles(
+    kind: int,
+    x: float,
+    y: float,
+    e_x: float,
+    e_y: float,
+    vehicles: Array,
+    radius: float,
+    travelled: float,
+) -> tuple[float, float]:
+    """The acceleration [m/s^2] that vehicles give somebody at (x, y)."""
+    a_x, a_y = 0.0, 0.0
+    for k in range(vehicles.shape[0]):
+        vehicle = vehicles[k]
+        along, across, c, s = _in_frame(x, y, vehicle, travelled)
+        half = 0.5 * vehicle[WIDTH]
+        off_x = along - min(max(along, -vehicle[REAR]), vehicle[FRONT])
+        off_y = across - min(max(across, -half), half)
+        distance = math.sqrt(off_x * off_x + off_y * off_y)
+        step = _AHEAD * vehicle[SPEED] if kind == _FORCES else 0.0
+        if distance > _FAR + abs(step):
+            continue
+        if distance <= _EPSILON:  # inside: out by the nearer side
+            off_x, off_y = 0.0, math.copysign(_EPSILON, across)
+        if step == 0.0:
+            push = _border(distance - radius)
+            g_x, g_y = off_x / max(distance, _EPSILON), off_y / max(distance, _EPSILON)
+        else:
+            shrink = max(distance - radius, _EPSILON) / max(distance, _EPSILON)
+            b, g_x, g_y = _elliptical(shrink * off_x, shrink * off_y, step, 0.0)
+            push = _BORDER / _BORDER_RANGE * exponential(max(-b / _BORDER_RANGE, -700.0))
+        f_x, f_y = push * (c * g_x - s * g_y), push * (s * g_x + c * g_y)
+        w = _seen(e_x, e_y, f_x, f_y)
+        a_x, a_y = a_x + w * f_x, a_y + w * f_y
+    return a_x, a_y
+
+
+@inlined
+def _pace_before(
+    x: float,
+    y: float,
+    e_x: float,
+    e_y: float,
+    pace: float,
+    vehicles: Array,
+    radius: float,
+    travelled: float,
+) -> float:
+    """The speed [m/s] that stops somebody before the strips of vehicles that come too soon."""
+    slowest = np.inf
+    for k in range(vehicles.shape[0]):
+        vehicle = vehicles[k]
+        along, across, c, s = _in_frame(x, y, vehicle, travelled)
+        half = 0.5 * vehicle[WIDTH] + radius + _BESIDE
+        forth, aside = e_x * c + e_y * s, e_y * c - e_x * s
+        u = vehicle[SPEED]
+        if u < _STANDS or abs(across) <= half or across * aside >= 0.0 or pace <= 0.0:
+            continue
+        room = (abs(across) - half) / abs(aside)  # [m] to walk to the strip
+        if room > _HALT * pace:
+            continue
+        meets = along + room * forth - vehicle[FRONT]  # [m] ahead of the front
+        if meets < -vehicle[REAR] - vehicle[FRONT]:
+            continue
+        critical = 2.0 * half / (abs(aside) * pace) + _START
+        if max(meets, 0.0) / u - room / pace < critical:
+            slowest = min(slowest, room / _HALT)
+    return slowest
