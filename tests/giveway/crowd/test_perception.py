@@ -137,3 +137,16 @@ def test_unknown_goals_turn_with_the_heading():
     observed(seen_by, crowd)
     crowd.velocity[0] = (0.0, 1.0)
     assert np.allclose((observed(seen_by, crowd).waypoints - crowd.position)[0], (0.0, 1000.0))
+
+
+def test_who_comes_back_after_nobody_was_there_is_new_to_the_tracker():
+    crowd, seen_by = make_crowd(), eyes(position_noise=0.1, tracker=True)
+    for _ in range(20):
+        observed(seen_by, crowd)
+    assert (seen_by.errors < 0.28).all()
+    observed(seen_by, Crowd.empty())
+    assert not len(seen_by.errors)
+    elsewhere = make_crowd()
+    elsewhere.position[:] += 0.1
+    observed(seen_by, elsewhere)
+    assert seen_by.errors == pytest.approx(np.full(40, 0.2 * np.sqrt(2.0)))
