@@ -18,12 +18,20 @@ from math import inf, sqrt
 import numpy as np
 
 from controller._jit import Array
+from controller.parameters import require_not_negative, require_positive
 from controller.plug_in import Acceleration, Setup
 from controller.protocol import Observation
 
 _SIGHT, _SPACING = 40.0, 0.5  # [m] of the way ahead that is looked at, and between its points
 _AT_LINE = 0.5  # [m] before a stop line it stands
 _NEARLY = 0.01  # [m] the shortest gap
+_POSITIVE = {
+    "acceleration": "m/s^2",
+    "deceleration": "m/s^2",
+    "exponent": "-",
+    "half_width": "m",
+    "length": "m",
+}
 _SLOWEST = 1.0  # [m/s] with which it counts when it will be somewhere
 
 
@@ -40,6 +48,9 @@ class IdmOptions:
         half_width: [m] from the middle of its way, nearer than which a person's centre is on it.
         length: [m] of the vehicle, to have passed somebody.
         margin: [s] between the vehicle and somebody who passes its way after or before it.
+
+    Raises:
+        ParameterError: a value is not finite or out of range.
     """
 
     acceleration: float = 1.0
@@ -50,6 +61,12 @@ class IdmOptions:
     half_width: float = 1.4
     length: float = 4.5
     margin: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, unit in _POSITIVE.items():
+            require_positive(name, getattr(self, name), unit)
+        for name, unit in {"headway": "s", "standing_gap": "m", "margin": "s"}.items():
+            require_not_negative(name, getattr(self, name), unit)
 
 
 class IntelligentDriver:

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from controller import Observation, Setup
+from controller import Observation, ParameterError, Setup
 from controller.idm import IdmOptions, IntelligentDriver
 
 SETUP = Setup(0.05, 1500.0, 100.0, 10.0, 8.0, 12000.0, 2.0)
@@ -66,3 +66,11 @@ def test_it_stops_before_a_line_and_behind_a_leader_without_braking_hard(speed, 
 )
 def test_whose_way_it_is(who, reason):
     assert answer(8.0, people=who).reason == reason
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("acceleration", 0.0), ("headway", -1.0), ("exponent", np.nan)]
+)
+def test_a_driver_that_cannot_be_is_refused(name, value):
+    with pytest.raises(ParameterError, match=name):
+        IdmOptions(**{name: value})
