@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import time
+
 import numpy as np
+import psutil
 import pytest
 
 from giveway.cosimulation import twin
@@ -73,6 +78,34 @@ def test_an_interrupted_study_with_twins_goes_on_to_the_same_bytes(study, study_
 
 def test_two_processes_give_the_same_bytes(study, study_of, tmp_path):
     assert bytes_of(study_of(TEXT, tmp_path / "two", jobs=2).path) == bytes_of(study.path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no SIGKILL")
+def test_a_study_whose_workers_are_killed_amid_runs_and_twins_has_the_same_bytes(study, tmp_path):
+    file, out = tmp_path / "twins.toml", tmp_path / "out"
+    file.write_text(TEXT, encoding="utf-8")
+    command = [sys.executable, "-m", "giveway", "study", str(file), "--out", str(out)]
+    child = subprocess.Popen([*command, "--quiet", "--no-report", "--jobs", "2"])
+    killed, deadline = 0, time.monotonic() + 120.0
+    while child.poll() is None:
+        assert time.monotonic() < deadline
+        made = len(list(out.glob("records/*/*.json")))
+        workers = [c for c in psutil.Process(child.pid).children(recursive=True) if _works(c)]
+        if workers and killed < 2 and made > 3 * killed:
+            workers[killed % len(workers)].kill()
+            killed += 1
+        time.sleep(0.01)
+    assert child.returncode == 0
+    assert killed
+    assert bytes_of(out) == bytes_of(study.path)
+
+
+def _works(process):
+    """Whether a process has been at work for a while: amid a run, or amid its twin."""
+    try:
+        return not process.children() and sum(process.cpu_times()[:2]) > 0.2
+    except psutil.Error:
+        return False
 
 
 def test_a_run_made_again_has_the_studys_delays(study, tmp_path):
