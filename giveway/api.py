@@ -11,6 +11,7 @@ from time import perf_counter
 from typing import Any, TypeVar
 
 from giveway.config import RunConfig
+from giveway.config.foreign_code import provenance
 from giveway.config.layers import dump_toml
 from giveway.config.loading import as_layer, load
 from giveway.cosimulation.assembly import Driven, Parts, assemble
@@ -18,7 +19,6 @@ from giveway.cosimulation.followed import Followed
 from giveway.cosimulation.loop import Loop
 from giveway.cosimulation.preflight import CheckedRun, preflight
 from giveway.cosimulation.twin import Twin, twin_of
-from giveway.ego.plug_in import provenance
 from giveway.ego.vehicle import model_margin
 from giveway.errors import CrowdError, GivewayError, ResultsError, SumoError
 from giveway.measures import unreached
@@ -367,7 +367,7 @@ def _result(
             remarks=remarks,
             ending=str(ending),
             error=None if error is None else str(error),
-            controllers=provenance([ego.config for ego in parts.egos]),
+            code=provenance(parts.config),
         ),
         sumo_messages=parts.sumo.messages,
         road=parts.sumo.lanes.areas(),

@@ -10,9 +10,9 @@ import numpy as np
 
 from giveway.api import in_journal, keep
 from giveway.config import RunConfig
+from giveway.config.foreign_code import named_in
 from giveway.config.layers import read_toml_text
 from giveway.config.loading import load
-from giveway.ego.plug_in import named_in
 from giveway.errors import CrashError, GivewayError, ResultsError
 from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.locks import FolderInUseError, locked

@@ -1,11 +1,13 @@
 """The vehicle-crowd interaction (VCI) model: a social force model of pedestrians near vehicles."""
 
+from pedestrian_model.conformance import Finding, check_model
 from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import (
     CrowdError,
     DivergenceError,
     ParameterError,
     PedestrianModelError,
+    PlugInError,
     SurroundingsError,
     VehicleError,
 )
@@ -13,6 +15,14 @@ from pedestrian_model.influence import vehicle_influence
 from pedestrian_model.model import LONGEST_STEP, CrowdModel, arrived, require_steady
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
 from pedestrian_model.plain_models import PLAIN_MODELS, PlainModel, PlainName
+from pedestrian_model.plug_in import (
+    Accelerations,
+    ModelPlugIn,
+    ModelSetup,
+    Velocities,
+    Walkers,
+)
+from pedestrian_model.plugged_in import PluggedInModel
 from pedestrian_model.prediction import Predictor, leap, start, wish
 from pedestrian_model.protocol import PedestrianModel
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
@@ -26,23 +36,32 @@ __all__ = [
     "PRESETS",
     "SIM",
     "TABLE2",
+    "Accelerations",
     "Crowd",
     "CrowdError",
     "CrowdModel",
     "DivergenceError",
+    "Finding",
+    "ModelPlugIn",
+    "ModelSetup",
     "ParameterError",
     "PedestrianModel",
     "PedestrianModelError",
     "PlainModel",
     "PlainName",
+    "PlugInError",
+    "PluggedInModel",
     "Predictor",
     "Surroundings",
     "SurroundingsError",
     "VciParameters",
     "VehicleError",
     "Vehicles",
+    "Velocities",
+    "Walkers",
     "Walls",
     "arrived",
+    "check_model",
     "leap",
     "remaining_distance",
     "require_steady",

@@ -57,6 +57,34 @@ def is_passed(x: float, y: float, p: Line, radius: float) -> bool:
 
 
 @inlined
+def heading_for(
+    x: float,
+    y: float,
+    at: int,
+    last: int,
+    routes: Any,
+    closed: NDArray[np.bool_],
+    radius: float,
+    R: float,
+) -> tuple[int, bool, float, float]:
+    """Which way-point is next for somebody at (x, y), whether to stop there, and where it is.
+
+    ``at`` was the next one so far, ``last`` ends the way; ``routes`` are the arrays of ``Routes``.
+    """
+    w, q, signal = routes[0], routes[1], routes[2]
+    stops = True
+    p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+    while at < last and not (signal[at] >= 0 and closed[signal[at]]):
+        if not is_passed(x, y, p, radius):
+            stops = False
+            break
+        at += 1
+        p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+    to_x, to_y = aim(x, y, p, R)
+    return at, stops, to_x, to_y
+
+
+@inlined
 def set_targets(
     rows: NDArray[np.float64],
     order: NDArray[np.int64],
@@ -88,22 +116,20 @@ def set_targets_of(
     c: Any,
 ) -> None:
     """As ``set_targets``, for the first n rows."""
-    w, q, signal, start = routes
-    radius, R = c.r_waypoint, c.R
+    start = routes.start
     for k in range(n):
         i = order[k]
-        x, y = rows[PX, k], rows[PY, k]
-        last = start[i + 1] - 1
-        at = start[i] + waypoint_index[i]
-        p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
-        soft = c.s_des_2
-        while at < last and not (signal[at] >= 0 and closed[signal[at]]):
-            if not is_passed(x, y, p, radius):
-                soft = _NO_SLOWING
-                break
-            waypoint_index[i] += 1
-            at += 1
-            p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
-        rows[TX, k], rows[TY, k] = aim(x, y, p, R)
+        at, stops, to_x, to_y = heading_for(
+            rows[PX, k],
+            rows[PY, k],
+            start[i] + waypoint_index[i],
+            start[i + 1] - 1,
+            routes,
+            closed,
+            c.r_waypoint,
+            c.R,
+        )
+        waypoint_index[i] = at - start[i]
+        rows[TX, k], rows[TY, k] = to_x, to_y
         rows[V0, k] = desired_speed[i]
-        rows[SOFT, k] = soft
+        rows[SOFT, k] = c.s_des_2 if stops else _NO_SLOWING

@@ -23,3 +23,15 @@ class SurroundingsError(PedestrianModelError):
 
 class DivergenceError(PedestrianModelError):
     """A step produced a state that is not finite."""
+
+
+class PlugInError(PedestrianModelError):
+    """Somebody else's model raised, or answered what no crowd can do.
+
+    Attributes:
+        person: which of the pedestrians it was about; None: all of them.
+    """
+
+    def __init__(self, message: str, person: int | None = None) -> None:
+        super().__init__(message)
+        self.person = person

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from pedestrian_model._jit import inlined, kernel
 from pedestrian_model._mathematics import cosine_sine, exponential
-from pedestrian_model._routes import Line, aim, is_passed
+from pedestrian_model._routes import heading_for
 from pedestrian_model._step import FINE, first_insane
 from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 from pedestrian_model._walls import nearest_walls
@@ -146,7 +146,7 @@ def _advance(
 ) -> int:
     """Advance the state in place by ``steps`` steps of dt; ``FINE`` or the first bad index."""
     position, velocity, waypoint_index = state
-    desired_speed, w, q, signal, start = wishes
+    desired_speed, routes, start = wishes[0], wishes[1:], wishes[4]
     radius, a_max, v_max, r_waypoint = limits
     n = position.shape[0]
     bad = first_insane(position, velocity)
@@ -157,18 +157,17 @@ def _advance(
             nearest_walls(position[:, 0].copy(), position[:, 1].copy(), lines, cells, walls)
         for i in range(n):
             x, y = position[i, 0], position[i, 1]
-            last = start[i + 1] - 1
-            at = start[i] + waypoint_index[i]
-            p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
-            stops = True
-            while at < last and not (signal[at] >= 0 and closed[signal[at]]):
-                if not is_passed(x, y, p, r_waypoint):
-                    stops = False
-                    break
-                waypoint_index[i] += 1
-                at += 1
-                p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
-            to_x, to_y = aim(x, y, p, radius)
+            at, stops, to_x, to_y = heading_for(
+                x,
+                y,
+                start[i] + waypoint_index[i],
+                start[i + 1] - 1,
+                routes,
+                closed,
+                r_waypoint,
+                radius,
+            )
+            waypoint_index[i] = at - start[i]
             e_x, e_y = to_x - x, to_y - y
             left = math.sqrt(e_x * e_x + e_y * e_y)
             e_x, e_y = e_x / max(left, _EPSILON), e_y / max(left, _EPSILON)

@@ -11,9 +11,10 @@ from typing import Annotated, Any, Literal
 import typer
 
 from giveway.cli.help import show_all_options
-from giveway.config.layers import OPTIONS, Location, Option, options
+from giveway.config.layers import Location, Option, options
 from giveway.config.toml import toml_value
 from giveway.errors import ConfigError
+from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, Socket
 
 if typing.TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -43,15 +44,20 @@ _HelpAll = Annotated[
         callback=show_all_options,
     ),
 ]
-_Set = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="KEY=VALUE",
-        help="An option of a controller that is not giveway's own; as often as needed.",
-        rich_help_panel="Run",
-    ),
-]
+
+
+def _set_flag(socket: Socket) -> Any:
+    return Annotated[
+        list[str] | None,
+        typer.Option(
+            socket.set_flag,
+            metavar="KEY=VALUE",
+            help=f"An option of a {socket.what} that is not giveway's own; as often as needed.",
+            rich_help_panel="Run",
+        ),
+    ]
+
+
 _EVERYDAY = frozenset(
     {
         ("controller",),
@@ -80,9 +86,10 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     def call(**arguments: Any) -> None:
         settings: dict[str, Any] = {}
         del arguments["help_all"]
-        own_options = set_options(arguments.pop("set_") or ())
-        if own_options:
-            settings[OPTIONS] = own_options
+        for socket in SOCKETS:
+            own_options = set_options(arguments.pop(socket.options) or (), socket)
+            if own_options:
+                settings[socket.options] = own_options
         for name, option in locations.items():
             value = arguments.pop(name)
             if value is not None:
@@ -95,7 +102,10 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
         inspect.Parameter(name, keyword, default=None, annotation=_annotation(option))
         for name, option in locations.items()
     ]
-    flags.append(inspect.Parameter("set_", keyword, default=None, annotation=_Set))
+    flags += [
+        inspect.Parameter(socket.options, keyword, default=None, annotation=_set_flag(socket))
+        for socket in SOCKETS
+    ]
     flags.append(inspect.Parameter("help_all", keyword, default=False, annotation=_HelpAll))
     call.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [parameter.replace(kind=keyword) for parameter in own] + flags
@@ -105,8 +115,8 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     return call
 
 
-def set_options(words: Sequence[str]) -> dict[str, Any]:
-    """The options of somebody else's controller, from words like ``headway=1.5``.
+def set_options(words: Sequence[str], socket: Socket = CONTROLLER) -> dict[str, Any]:
+    """The options of somebody else's code, from words like ``headway=1.5``.
 
     Raises:
         ConfigError: a word is no key and value, or a key stands twice.
@@ -116,9 +126,11 @@ def set_options(words: Sequence[str]) -> dict[str, Any]:
         key, equals, text = word.partition("=")
         key = key.strip()
         if not equals or not key:
-            raise ConfigError(f"--set {word}: expected an option and its value, like headway=1.5")
+            raise ConfigError(
+                f"{socket.set_flag} {word}: expected an option and its value, like headway=1.5"
+            )
         if key in values:
-            raise ConfigError(f"--set {word}: '{key}' stands twice; keep one")
+            raise ConfigError(f"{socket.set_flag} {word}: '{key}' stands twice; keep one")
         value = toml_value(text.strip())
         is_word = isinstance(value, float) and not math.isfinite(value)  # nan and inf are words
         values[key] = text.strip() if is_word else value

@@ -12,6 +12,7 @@ from giveway.config.presets import NAMES
 from giveway.config.run_config import EGO_TABLES, RunConfig
 from giveway.config.schema_names import PRESET, PROFILE, RUN, STUDY
 from giveway.plug_ins.finding import declared_names
+from giveway.plug_ins.sockets import CONTROLLER, MODEL
 from giveway.results.json_text import json_text
 from giveway.studies.definition import StudyDefinition
 from pedestrian_model import PRESETS
@@ -50,8 +51,10 @@ def schemas() -> dict[str, dict[str, Any]]:
 
 def _run_schema() -> dict[str, Any]:
     schema = RunConfig.model_json_schema()
-    declared = [{"enum": names}] if (names := declared_names()) else []
-    schema["properties"]["controller"]["anyOf"] += declared
+    places = {CONTROLLER: schema["properties"], MODEL: schema["$defs"]["CrowdConfig"]["properties"]}
+    for socket, properties in places.items():
+        declared = [{"enum": names}] if (names := declared_names(socket)) else []
+        properties[socket.location[-1]]["anyOf"] += declared
     own = {name: schema["properties"][name] for name in EGO_TABLES}
     schema["properties"]["egos"]["items"] = {
         "type": "object",

@@ -19,6 +19,7 @@ from giveway.config.option import (
     TextOrNumber,
     option,
 )
+from giveway.config.plug_in_names import BUNDLED_MODELS, ModelName
 from giveway.config.reasons import GAP, MILLIMETRE
 
 WALKING = "the model's people walk with 2.5 m/s at most, and somebody below 0.01 m/s stands"
@@ -89,11 +90,12 @@ class CrowdConfig(Section):
     host_edge: str = option(
         "", None, "edge that hosts the added persons inside SUMO; none: the nearest for pedestrians"
     )
-    model: Literal["vci", "social-force", "gap-acceptance", "constant-velocity"] = option(
+    model: ModelName = option(
         "vci",
         None,
         "what moves people: vci; social-force (Helbing and Molnar 1995); gap-acceptance (they stop "
-        "for vehicles that come too soon); constant-velocity. Controllers predict by VCI anyway",
+        "for vehicles that come too soon); constant-velocity; or somebody else's, by the name that "
+        "a package declares or as module:Class. Controllers predict by VCI anyway",
         flag="--crowd-model",
     )
     preset: Preset = option(
@@ -143,6 +145,11 @@ class CrowdConfig(Section):
         le=256,
         because="more than a machine has processors slow it down",
     )
+
+    @property
+    def plugged_in(self) -> bool:
+        """Whether the model of people is somebody else's."""
+        return self.model not in BUNDLED_MODELS
 
     @model_validator(mode="after")
     def _ordered(self) -> CrowdConfig:

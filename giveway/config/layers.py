@@ -17,13 +17,16 @@ from giveway.config.run_config import RunConfig
 from giveway.config.schema_names import RUN, with_schema
 from giveway.config.toml import read_toml_file
 from giveway.errors import ConfigError
+from giveway.plug_ins.sockets import SOCKETS
 
 Location = tuple[str, ...]
 
 
-OPTIONS = "controller_options"
-NO_FLAGS = frozenset({"egos", "measure", OPTIONS})
-"""Lists of tables, and a table whose keys are somebody else's (--set)."""
+PLUGGED = {socket.options: socket for socket in SOCKETS}
+"""The tables whose keys are somebody else's (--set)."""
+
+NO_FLAGS = frozenset({"egos", "measure", *PLUGGED})
+"""Lists of tables, and those."""
 
 
 @dataclass(frozen=True)
@@ -47,8 +50,8 @@ class Layer:
     def name(self, location: Location) -> str:
         """How the user calls the key at ``location`` in this layer."""
         if self.from_flags:
-            if len(location) > 1 and location[0] == OPTIONS:
-                return f"--set {location[1]}"
+            if len(location) > 1 and location[0] in PLUGGED:
+                return f"{PLUGGED[location[0]].set_flag} {location[1]}"
             return flag_of(location)
         *table, key = location
         heading = f"[{'.'.join(table)}] " if table else ""
@@ -139,11 +142,19 @@ def merge(layers: Sequence[Layer]) -> dict[str, Any]:
     """One nested dictionary in which the last layer to set a key wins."""
     merged: dict[str, Any] = {}
     for layer in layers:
-        before = merged.get("controller")
-        if before is not None and layer.values.get("controller", before) != before:
-            merged.pop(OPTIONS, None)  # they are those of another controller
+        for table, socket in PLUGGED.items():
+            before = _at(merged, socket.location)
+            if before is not None and _at(layer.values, socket.location) not in {None, before}:
+                merged.pop(table, None)  # they are those of another one
         _merge_into(merged, layer.values)
     return merged
+
+
+def _at(values: Any, location: Location) -> Any:
+    """The value at ``location``; None where there is none."""
+    for key in location:
+        values = values.get(key) if isinstance(values, Mapping) else None
+    return values
 
 
 def undotted(settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -182,7 +193,7 @@ def build_config(layers: Sequence[Layer]) -> RunConfig:
 
 def _explain(error: Any, layers: Sequence[Layer]) -> str:
     location = _known_part(tuple(str(part) for part in error["loc"]))
-    if location[:1] == (OPTIONS,) and len(location) > 1:
+    if len(location) > 1 and location[0] in PLUGGED:
         location = location[:2]
     holders = [layer for layer in layers if location and layer.holds(location)]
     name = holders[-1].name(location) if holders else ".".join(location) or "configuration"
@@ -192,7 +203,7 @@ def _explain(error: Any, layers: Sequence[Layer]) -> str:
         origin = f"{holders[-1].origin}: " if holders and not holders[-1].from_flags else ""
         table = f"[{'.'.join(location)}] " if location else ""
         return f"{origin}{table}{error['ctx']['error']}"  # of several keys
-    if location[:1] == (OPTIONS,) and len(location) > 1:
+    if len(location) > 1 and location[0] in PLUGGED:
         return f"{name} = {error['input']!r}: expected a finite number, a word, a list or a table"
     option = next((o for o in options() if o.location == location), None)
     if option is None:
@@ -234,8 +245,9 @@ def dump_toml(config: RunConfig) -> str:
         item = tomlkit.item(list(value) if isinstance(value, tuple) else value)
         unit = f"[{entry.unit}] " if entry.unit else ""
         node.add(key, item.comment(f"{unit}{entry.field.description}"))
-    if config.controller_options:
-        document.add("controller_options", tomlkit.item(config.controller_options))
+    for table in PLUGGED:
+        if own := getattr(config, table):
+            document.add(table, tomlkit.item(own))
     if config.egos:
         tables = tomlkit.aot()
         for ego in config.egos:

@@ -5,18 +5,16 @@ The TOML file, the command line's flags and the Python API are all derived from 
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any
 
 from pydantic import (
     BeforeValidator,
     Field,
     JsonValue,
     ValidationError,
-    WithJsonSchema,
     model_validator,
 )
 from pydantic.fields import FieldInfo
-from pydantic_core import PydanticCustomError
 
 from giveway.config.controller_sections import (
     MpcConfig,
@@ -29,6 +27,7 @@ from giveway.config.controller_sections import (
 from giveway.config.crowd import CrowdConfig
 from giveway.config.measures import MeasureConfig, read_measures
 from giveway.config.option import Section, expectation, option
+from giveway.config.plug_in_names import BUNDLED, ControllerName
 from giveway.config.regulation import RegulationConfig
 from giveway.config.sections import (
     EgoConfig,
@@ -37,27 +36,6 @@ from giveway.config.sections import (
     TrafficConfig,
     VehicleConfig,
 )
-from giveway.plug_ins.finding import declared_names, is_reference
-
-Bundled = Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"]
-BUNDLED: frozenset[str] = frozenset(get_args(Bundled))
-
-
-def _full_name(value: Any) -> Any:
-    """A controller that there is; ``pid`` was the paper's before there was another one."""
-    name = "pid-paper" if value == "pid" else value
-    if isinstance(name, str) and (name in BUNDLED or is_reference(name)):
-        return name
-    declared = declared_names()
-    if name in declared:
-        return name
-    known = ", ".join(f"'{one}'" for one in [*get_args(Bundled), *declared])
-    msg = f"expected {known}, or module:Class of an installed package"
-    raise PydanticCustomError("controller", "{expected}", {"expected": msg})
-
-
-_Other = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"^[\w.]+:[\w.]+$"})]
-ControllerName = Annotated[Bundled | _Other, BeforeValidator(_full_name)]
 
 PAPER_STEP = 0.05
 """[s] The control step where none is set (Yang & Özgüner 2019, table 1)."""
@@ -143,6 +121,10 @@ class RunConfig(Section):
     controller_options: dict[str, JsonValue] = Field(
         default_factory=dict, description="the options of a controller that is not giveway's own"
     )
+    model_options: dict[str, JsonValue] = Field(
+        default_factory=dict,
+        description="the options of a pedestrian model that is not giveway's own",
+    )
     safety: SafetyConfig = SafetyConfig()
     perception: PerceptionConfig = PerceptionConfig()
     traffic: TrafficConfig = TrafficConfig()
@@ -160,6 +142,12 @@ class RunConfig(Section):
     def _check_egos(self) -> RunConfig:
         for ego in self.each_ego():
             ego.require_sound()
+        if self.model_options and not self.crowd.plugged_in:
+            key = next(iter(self.model_options))
+            raise ValueError(
+                f"[model_options] {key}: '{self.crowd.model}' has no options there; the "
+                "parameters of people are a preset (docs/pedestrian_model.md)"
+            )
         return self
 
     def each_ego(self) -> tuple[EgoRunConfig, ...]:

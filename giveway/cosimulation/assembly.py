@@ -177,7 +177,7 @@ def assemble(
         egos=waiting,
         departures=departures,
         roster=roster,
-        crowd_model=model_of(config, time_step, threads=config.crowd.threads),
+        crowd_model=model_of(config, time_step, roster, threads=config.crowd.threads),
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
         yielding=yielding,

@@ -37,7 +37,7 @@ from giveway.processes.heartbeat import INSTANT, MILLISECONDS, PHASE, Phase
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
-from pedestrian_model import PedestrianModelError
+from pedestrian_model import PedestrianModelError, PlugInError
 
 
 def looks_ahead(period: float | None, time_step: float) -> int:
@@ -148,6 +148,9 @@ class Loop:
     def _blame(self, error: PedestrianModelError) -> str:
         """Name the pedestrian whose state is not finite by its id."""
         crowd, roster = self._roster.crowd, self._roster
+        if isinstance(error, PlugInError):
+            whom = "" if error.person is None else f"pedestrian '{roster.names[error.person]}': "
+            return f"crowd at step {self._k}: {whom}{error}"
         state = np.concatenate([crowd.position, crowd.velocity], axis=1)
         bad = np.flatnonzero(~np.isfinite(state).all(axis=1))
         if not len(bad):

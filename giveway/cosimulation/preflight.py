@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from giveway.config import EgoRunConfig, RunConfig
+from giveway.config.foreign_code import require_code
 from giveway.config.presets import require_steady_preset
 from giveway.crowd.zone import Zone
-from giveway.ego.plug_in import require_controllers
 from giveway.ego.vehicle import require_vehicles
 from giveway.errors import ConfigError
 from giveway.measures import require_pedpy
@@ -44,7 +44,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
     Raises:
         ScenarioError: a file of the scenario is missing or cannot be read.
         ConfigError: the zone is none, two egos have the same id, or people would tremble.
-        ControlError: a controller is not installed.
+        ControlError: a controller or model is not installed.
         VehicleError: a vehicle FMU cannot be read, or its profile does not fit.
     """
     if config.measure:
@@ -56,7 +56,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
     _require_distinct(egos)
     time_step = control_step(config, files)
     require_vehicles(egos, time_step)
-    require_controllers(egos)
+    require_code(config)
     require_steady_preset(config.crowd.preset, time_step, "[crowd] preset")
     for ego in egos:
         if ego.perception.preset:

@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from giveway.config import RunConfig
+from giveway.config.foreign_code import code_hashes
 from giveway.config.presets import parameters_of
 from giveway.cosimulation.alone import CrowdAlone
 from giveway.cosimulation.assembly import Driven, assemble
@@ -130,7 +131,7 @@ def _crowd_alone(config: RunConfig, followed: Followed, time_step: float) -> Cro
         return _alone[key]
     roster = Roster(followed.names, followed.crowd.copy())
     walks = WalkLog(time_step, lambda _: True)
-    model = model_of(config, time_step)
+    model = model_of(config, time_step, roster)
     alone = _alone[key] = CrowdAlone(roster, Walking(config, model, roster, walks), walks)
     if len(_alone) > _KEPT:
         _alone.popitem(last=False)
@@ -146,6 +147,9 @@ def _key(config: RunConfig, crowd: Crowd, names: tuple[str, ...], time_step: flo
         parameters_of(settings.preset),
         (
             settings.model,
+            sorted(code_hashes(config).items()),
+            sorted(config.model_options.items()),
+            config.seed if settings.plugged_in else None,
             settings.detour,
             settings.creep,
             time_step,

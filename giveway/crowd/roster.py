@@ -1,5 +1,6 @@
 """The pedestrians that giveway moves: who they are, where they came from, where they went, how."""
 
+import hashlib
 import itertools
 from collections.abc import Iterable, Sequence
 from typing import Protocol
@@ -34,6 +35,7 @@ class Roster:
         self.added = frozenset(ids)
         self.newcomers = list(range(len(self.ids)))
         self._index = {name: i for i, name in enumerate(self.ids)}
+        self._keys: list[int] = []
         self._counts = {"taken_over": 0, "handed_back": 0, "arrived": 0, "continued": 0}
 
     def __len__(self) -> int:
@@ -44,6 +46,14 @@ class Roster:
         """Where they are; added + taken over = handed back + arrived + continued + walking."""
         added, walking = len(self.added), len(self.present)
         return {"added": added, **self._counts, "walking": walking}
+
+    @property
+    def keys(self) -> NDArray[np.int64]:
+        """(n,) a number for each of them, by the id alone: the same in every run and twin."""
+        for name in itertools.islice(self.ids, len(self._keys), None):
+            digest = hashlib.blake2b(name.encode(), digest_size=8).digest()
+            self._keys.append(int.from_bytes(digest, "big") >> 1)
+        return np.array(self._keys, dtype=np.int64)[self.present]
 
     def take_in(self, names: Iterable[str], crowd: Crowd) -> None:
         """Add walkers of the scenario; who comes back keeps the index."""

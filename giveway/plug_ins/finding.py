@@ -16,7 +16,7 @@ import json
 import os
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from importlib import metadata
 from pathlib import Path
@@ -25,9 +25,8 @@ from urllib.parse import unquote, urlsplit
 from urllib.request import url2pathname
 
 from giveway.errors import ControlError
-
-GROUP = "giveway.controllers"
-"""Of the entry points that declare controllers."""
+from giveway.plug_ins.options import read_options
+from giveway.plug_ins.sockets import CONTROLLER, Socket
 
 _REFERENCE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*(\.[A-Za-z_]\w*)*")
 
@@ -37,6 +36,7 @@ class Found:
     """A plug-in and what it belongs to, as manifests tell it.
 
     Attributes:
+        socket: it is for.
         name: as the user wrote it.
         reference: ``module:attribute``.
         distribution: the installed distribution that has it.
@@ -44,6 +44,7 @@ class Found:
         sha256: of all files of its package.
     """
 
+    socket: Socket
     name: str
     reference: str
     distribution: str
@@ -52,7 +53,7 @@ class Found:
 
     def described(self) -> dict[str, Any]:
         """For the manifest."""
-        return asdict(self)
+        return {key: value for key, value in asdict(self).items() if key != "socket"}
 
 
 def is_reference(name: str) -> bool:
@@ -60,21 +61,21 @@ def is_reference(name: str) -> bool:
     return _REFERENCE.fullmatch(name) is not None
 
 
-def declared_names() -> list[str]:
-    """The names of the controllers that installed distributions declare."""
-    return sorted({point.name for point in metadata.entry_points(group=GROUP)})
+def declared_names(socket: Socket = CONTROLLER) -> list[str]:
+    """The names that installed distributions declare for a socket."""
+    return sorted({point.name for point in metadata.entry_points(group=socket.group)})
 
 
-def find(name: str) -> Found:
+def find(name: str, socket: Socket = CONTROLLER) -> Found:
     """What a name means; nobody's code is imported.
 
     Raises:
         ControlError: nothing installed has it.
     """
-    reference = name if is_reference(name) else _declared(name)
+    reference = name if is_reference(name) else _declared(name, socket)
     module = reference.partition(":")[0]
-    owner, files = _owner(name, module.partition(".")[0])
-    return Found(name, reference, owner.metadata["Name"], owner.version, _digest(files))
+    owner, files = _owner(f"{socket.setting} = '{name}'", module.partition(".")[0])
+    return Found(socket, name, reference, owner.metadata["Name"], owner.version, _digest(files))
 
 
 def load(found: Found) -> Any:
@@ -92,30 +93,53 @@ def load(found: Found) -> Any:
     except (Exception, SystemExit) as error:
         said = " ".join(str(error).split())
         raise ControlError(
-            f"controller = '{found.name}': {found.reference} of {found.distribution} "
+            f"{found.socket.setting} = '{found.name}': {found.reference} of {found.distribution} "
             f"{found.version} cannot be imported ({type(error).__name__}: {said}); mend or "
             "reinstall that package"
         ) from error
     return value
 
 
-def _declared(name: str) -> str:
+def load_class(name: str, socket: Socket, settings: Mapping[str, Any]) -> tuple[Any, Any]:
+    """The class that a name means, and the options that it is made with; None: it has none.
+
+    Args:
+        name: of the plug-in.
+        socket: it is for.
+        settings: of its options, as the user has set them.
+
+    Raises:
+        ConfigError: its options cannot be used.
+        ControlError: it is not installed, cannot be imported, or is no class.
+    """
+    kind = load(find(name, socket))
+    if not callable(kind):
+        raise ControlError(
+            f"{socket.setting} = '{name}': {kind!r} is no class; expected one with a method "
+            f"{socket.method} (docs/plugins.md)"
+        )
+    return kind, read_options(name, getattr(kind, "Options", None), settings, socket)
+
+
+def _declared(name: str, socket: Socket) -> str:
     """The ``module:attribute`` of an entry point."""
-    values = {point.value for point in metadata.entry_points(group=GROUP, name=name)}
+    group = socket.group
+    values = {point.value for point in metadata.entry_points(group=group, name=name)}
     if len(values) == 1:
         return values.pop().partition("[")[0].strip()
     if values:
         both = " and ".join(sorted(values))
         raise ControlError(
-            f"controller = '{name}': {both} both have this name; choose one as module:Class"
+            f"{socket.setting} = '{name}': {both} both have this name; choose one as module:Class"
         )
-    known = ", ".join(declared_names()) or "none"
+    known = ", ".join(declared_names(socket)) or "none"
     raise ControlError(
-        f"controller = '{name}': no installed package declares it (entry points {GROUP}: {known})"
+        f"{socket.setting} = '{name}': no installed package declares it (entry points {group}: "
+        f"{known})"
     )
 
 
-def _owner(name: str, package: str) -> tuple[metadata.Distribution, list[Path]]:
+def _owner(setting: str, package: str) -> tuple[metadata.Distribution, list[Path]]:
     """The distribution of a top-level package or module, and the package's files."""
     with _without_working_folder():
         try:
@@ -129,7 +153,7 @@ def _owner(name: str, package: str) -> tuple[metadata.Distribution, list[Path]]:
                 return distribution, _files(origins)
     place = f"; {origins[0]} is not installed" if origins else ""
     raise ControlError(
-        f"controller = '{name}': no installed package has the module '{package}'{place}; code "
+        f"{setting}: no installed package has the module '{package}'{place}; code "
         "from other places is not imported, install it with: pip install FOLDER (or -e FOLDER)"
     )
 

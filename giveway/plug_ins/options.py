@@ -11,15 +11,19 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.errors import PydanticUserError
 
 from giveway.errors import ConfigError, ControlError
+from giveway.plug_ins.sockets import CONTROLLER, Socket
 
 
-def read_options(name: str, kind: type | None, values: Mapping[str, Any]) -> Any:
+def read_options(
+    name: str, kind: type | None, values: Mapping[str, Any], socket: Socket = CONTROLLER
+) -> Any:
     """The options of a plug-in.
 
     Args:
         name: of the plug-in, for messages.
         kind: its ``Options``, a dataclass or pydantic model; None: it has no options.
         values: as the user has set them; a command line's are texts.
+        socket: that the plug-in is for.
 
     Returns:
         An instance of ``kind``; None without one.
@@ -28,13 +32,14 @@ def read_options(name: str, kind: type | None, values: Mapping[str, Any]) -> Any
         ConfigError: a key is unknown, or a value cannot be used.
         ControlError: ``kind`` is neither a dataclass nor a pydantic model.
     """
-    known = [] if kind is None else _names(name, kind)
+    table = f"[{socket.options}]"
+    known = [] if kind is None else _names(name, kind, socket)
     for key in values:
         if key not in known:
             close = difflib.get_close_matches(key, known, n=1, cutoff=0.5)
             expected = f"one of {', '.join(known)}" if known else "none: it has no options"
             hint = f"did you mean '{close[0]}'?" if close else f"expected {expected}"
-            raise ConfigError(f"[controller_options] {key}: '{name}' has no such option; {hint}")
+            raise ConfigError(f"{table} {key}: '{name}' has no such option; {hint}")
     if kind is None:
         return None
     try:
@@ -44,13 +49,15 @@ def read_options(name: str, kind: type | None, values: Mapping[str, Any]) -> Any
         key = ".".join(map(str, first["loc"])) or "options"
         said = str(first["msg"]).removeprefix("Input ")
         given = "is missing" if first["type"] == "missing" else f"= {first['input']!r}"
-        raise ConfigError(f"[controller_options] {key} {given}: {said} ('{name}')") from None
+        raise ConfigError(f"{table} {key} {given}: {said} ('{name}')") from None
     except PydanticUserError as error:
         said = str(error).partition("\n")[0]
-        raise ControlError(f"controller = '{name}': its Options cannot be read ({said})") from error
+        raise ControlError(
+            f"{socket.setting} = '{name}': its Options cannot be read ({said})"
+        ) from error
     except (Exception, SystemExit) as error:  # its own validators
         said = f"{type(error).__name__}: {str(error).partition(chr(10))[0]}"
-        raise ConfigError(f"[controller_options]: '{name}' refuses them ({said})") from error
+        raise ConfigError(f"{table}: '{name}' refuses them ({said})") from error
 
 
 def plain(options: Any) -> dict[str, Any]:
@@ -63,11 +70,11 @@ def plain(options: Any) -> dict[str, Any]:
     return values
 
 
-def _names(name: str, kind: Any) -> list[str]:
+def _names(name: str, kind: Any, socket: Socket) -> list[str]:
     if isinstance(kind, type) and issubclass(kind, BaseModel):
         return list(kind.model_fields)
     if isinstance(kind, type) and dataclasses.is_dataclass(kind):
         return [field.name for field in dataclasses.fields(kind) if field.init]
     raise ControlError(
-        f"controller = '{name}': Options = {kind!r}: expected a dataclass or a pydantic model"
+        f"{socket.setting} = '{name}': Options = {kind!r}: expected a dataclass or a pydantic model"
     )

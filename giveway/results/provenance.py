@@ -76,7 +76,7 @@ def manifest(
     remarks: Sequence[str],
     ending: str,
     error: str | None,
-    controllers: Mapping[str, Mapping[str, Any]] = MappingProxyType({}),
+    code: Mapping[str, Mapping[str, Any]] = MappingProxyType({}),
 ) -> dict[str, Any]:
     """The contents of ``manifest.json``; nothing in it depends on when the run was made.
 
@@ -92,9 +92,8 @@ def manifest(
         remarks: for the user.
         ending: why the run ended.
         error: what ended it, if it failed.
-        controllers: of each ego that somebody else drives.
+        code: of other packages, under the keys of its sockets.
     """
-    others = {"controllers": dict(controllers)} if controllers else {}
     return {
         "ending": ending,
         "error": error,
@@ -105,7 +104,7 @@ def manifest(
         "sumo": sumo,
         "scenario": {"name": scenario.name, "sha256": scenario_hashes(scenario)},
         "vehicles": vehicles,
-        **others,
+        **code,
         "pedestrians": pedestrians,
         "traffic": traffic,
         CONFIGURATION: None if config_text is None else sha256(config_text.encode()),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from giveway.config.layers import OPTIONS, Layer, merge, options, results_of
+from giveway.config.layers import PLUGGED, Layer, merge, options, results_of
 from giveway.errors import ConfigError
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
@@ -219,7 +219,7 @@ def _option_factor(name: str, values: list[Any], place: str, definition: StudyDe
     known = {".".join(option.location): option for option in options()}
     if name == "seed":
         raise ConfigError(f"{place}: seeds are not a factor; set replications and first_seed")
-    plugged_in = name.startswith(f"{OPTIONS}.")
+    plugged_in = name.partition(".")[0] in PLUGGED and "." in name
     if name not in known and not plugged_in:
         close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
         hint = f"did you mean '{close[0]}'?" if close else "giveway config lists the options"

@@ -12,11 +12,10 @@ from pathlib import Path
 
 from giveway._environment import ROOMS
 from giveway.config import RunConfig
+from giveway.config.foreign_code import code_hashes
 from giveway.config.presets import is_preset_file
-from giveway.config.trust import CONTROLLER_OF
 from giveway.ego.vehicle import fmu_path
 from giveway.errors import ConfigError, GivewayError
-from giveway.plug_ins.finding import find as find_plug_in
 from giveway.results.provenance import scenario_hashes, scenario_inputs, sha256, software_versions
 from giveway.scenario_files.options import parse_options
 from giveway.studies.record import Task
@@ -55,7 +54,7 @@ def input_hashes(config: RunConfig, scenario: Scenario) -> dict[str, str]:
     """SHA-256 of every file that the run reads: the scenario's, FMUs, profiles, presets."""
     hashes = {f"scenario {name}": hash_ for name, hash_ in scenario_hashes(scenario).items()}
     hashes |= {name: _hash(file) for name, file in _own_files(config)}
-    return hashes | _plug_ins(config)
+    return hashes | code_hashes(config)
 
 
 def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str:
@@ -102,7 +101,7 @@ def require_same(task: Task) -> None:
     except (ScenarioError, GivewayError):  # the file that names the inputs is missing
         files = {}
     found = {name: _hash(file) for name, file in files.items() if file.is_file()}
-    found |= _plug_ins(config)
+    found |= code_hashes(config)
     for name, expected in task.inputs.items():
         if found.get(name) != expected:
             what = "another content" if name in found else "nothing"
@@ -127,15 +126,6 @@ def _scenario_files_of(scenario: Scenario, _stamps: object) -> tuple[tuple[str, 
 def _own_files(config: RunConfig) -> list[tuple[str, Path]]:
     """The files that a run reads apart from its scenario."""
     return [*_vehicle_files(config), *_preset_files(config), *_option_files(config)]
-
-
-def _plug_ins(config: RunConfig) -> dict[str, str]:
-    """SHA-256 of the package of each controller that is not ours."""
-    return {
-        f"{CONTROLLER_OF}{ego.ego_id}: {ego.controller}": find_plug_in(ego.controller).sha256
-        for ego in config.each_ego()
-        if ego.plugged_in
-    }
 
 
 def _preset_files(config: RunConfig) -> list[tuple[str, Path]]:

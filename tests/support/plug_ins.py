@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Path]]:
-    """Install a module as pip would: (module, its text, version=, declares=) -> its file.
+    """Install a module as pip would: (module, its text, version=, declares=, group=) -> its file.
 
     It can be imported here and in processes that are started from here.
     """
@@ -27,7 +27,14 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Calla
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(path for path in paths if path))
     modules: list[str] = []
 
-    def install(module: str, text: str, *, version: str = "1.0", declares: str = "") -> Path:
+    def install(
+        module: str,
+        text: str,
+        *,
+        version: str = "1.0",
+        declares: str = "",
+        group: str = "giveway.controllers",
+    ) -> Path:
         file = site / f"{module}.py"
         file.write_text(text, encoding="utf-8")
         for old in site.glob(f"{module}-*"):
@@ -40,7 +47,7 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Calla
         (info / "METADATA").write_text(about, encoding="utf-8")
         (info / "RECORD").write_text(f"{module}.py,,\n{info.name}/METADATA,,\n", encoding="utf-8")
         if declares:
-            points = f"[giveway.controllers]\n{declares}\n"
+            points = f"[{group}]\n{declares}\n"
             (info / "entry_points.txt").write_text(points, encoding="utf-8")
         modules.append(module)
         sys.modules.pop(module, None)

@@ -6,6 +6,7 @@ import os
 import shutil
 import tempfile
 import time
+import weakref
 from contextlib import suppress
 from pathlib import Path
 from typing import Final
@@ -28,6 +29,8 @@ class Scratch:
         place = place or Path(tempfile.gettempdir())
         _sweep(place)
         self._path = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=place))
+        # A signal may raise before whoever asked for the folder has it: it goes with the process.
+        self._gone = weakref.finalize(self, shutil.rmtree, self._path, ignore_errors=True)
         self._numbers = itertools.count(1)
 
     def folder(self) -> Path:
@@ -36,7 +39,7 @@ class Scratch:
 
     def remove(self) -> None:
         """Remove the folder."""
-        shutil.rmtree(self._path, ignore_errors=True)
+        self._gone()
 
 
 def _sweep(place: Path) -> None:

@@ -1,0 +1,106 @@
+"""The code of other packages that a configuration names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from giveway.errors import ConfigError
+from giveway.plug_ins.finding import find, load_class
+from giveway.plug_ins.options import plain
+from giveway.plug_ins.sockets import CONTROLLER, MODEL, Socket
+
+if TYPE_CHECKING:
+    from giveway.config.run_config import RunConfig
+
+
+class Named(NamedTuple):
+    """One plug-in that a run has.
+
+    Attributes:
+        socket: that it is for.
+        whose: the ego's id, or "the crowd".
+        name: as the user wrote it.
+        options: as the user has set them.
+    """
+
+    socket: Socket
+    whose: str
+    name: str
+    options: Mapping[str, Any]
+
+    @property
+    def key(self) -> str:
+        """By which the inputs of a study's cell know it."""
+        return f"{self.socket.what} of {self.whose}: {self.name}"
+
+
+_PLACES = ((CONTROLLER, "in the controller at"), (MODEL, "in the crowd's step from"))
+"""As a heartbeat tells them."""
+
+
+def foreign_code(config: RunConfig) -> list[Named]:
+    """All plug-ins of a run: of its egos, and of its crowd."""
+    named = [
+        Named(CONTROLLER, ego.ego_id, ego.controller, ego.controller_options)
+        for ego in config.each_ego()
+        if ego.plugged_in
+    ]
+    if config.crowd.plugged_in:
+        named.append(Named(MODEL, "the crowd", config.crowd.model, config.model_options))
+    return named
+
+
+def code_hashes(config: RunConfig) -> dict[str, str]:
+    """SHA-256 of the package of each plug-in, by :attr:`Named.key`.
+
+    Raises:
+        ControlError: one is not installed.
+    """
+    return {one.key: find(one.name, one.socket).sha256 for one in foreign_code(config)}
+
+
+def named_in(failure: str, config: RunConfig) -> str:
+    """What is said of a process that died in somebody else's code, with that code's name.
+
+    Args:
+        failure: as the supervisor tells it.
+        config: of the run.
+    """
+    code = foreign_code(config)
+    for socket, place in _PLACES:
+        names = dict.fromkeys(one.name for one in code if one.socket is socket)
+        if names:
+            shown = " or ".join(f"'{name}'" for name in names)
+            failure = failure.replace(place, f"in the {socket.what} {shown} at")
+    return failure
+
+
+def require_code(config: RunConfig) -> None:
+    """Make sure, before anything runs, that every plug-in is there and takes its options.
+
+    Raises:
+        ConfigError: one has no such option.
+        ControlError: one is not installed, or cannot be imported.
+    """
+    for one in foreign_code(config):
+        _loaded(one)
+
+
+def provenance(config: RunConfig) -> dict[str, dict[str, dict[str, Any]]]:
+    """For the manifest: distribution, version, hash and all options of each plug-in."""
+    told: dict[str, dict[str, dict[str, Any]]] = {}
+    for one in foreign_code(config):
+        _, options = _loaded(one)
+        described = find(one.name, one.socket).described() | {"options": plain(options)}
+        told.setdefault(one.socket.manifest, {})[one.whose] = described
+    return told
+
+
+def _loaded(one: Named) -> tuple[Any, Any]:
+    try:
+        return load_class(one.name, one.socket, one.options)
+    except ConfigError as error:
+        whose = one.whose if one.socket is MODEL else f"ego '{one.whose}'"
+        error.args = (f"{whose}: {error}",)
+        raise

@@ -1,0 +1,42 @@
+"""Names of what drives and of what moves people: ours, declared by a package, or module:Class."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import BeforeValidator, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+from giveway.plug_ins.finding import declared_names, is_reference
+from giveway.plug_ins.sockets import CONTROLLER, MODEL, Socket
+
+BundledController = Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"]
+BundledModel = Literal["vci", "social-force", "gap-acceptance", "constant-velocity"]
+BUNDLED: frozenset[str] = frozenset(get_args(BundledController))
+BUNDLED_MODELS: frozenset[str] = frozenset(get_args(BundledModel))
+
+
+def _controller(value: Any) -> Any:
+    """``pid`` was the paper's before there was another one."""
+    return _known("pid-paper" if value == "pid" else value, get_args(BundledController), CONTROLLER)
+
+
+def _model(value: Any) -> Any:
+    return _known(value, get_args(BundledModel), MODEL)
+
+
+def _known(name: Any, bundled: tuple[str, ...], socket: Socket) -> Any:
+    """A name that there is."""
+    if isinstance(name, str) and (name in bundled or is_reference(name)):
+        return name
+    declared = declared_names(socket)
+    if name in declared:
+        return name
+    known = ", ".join(f"'{one}'" for one in [*bundled, *declared])
+    msg = f"expected {known}, or module:Class of an installed package"
+    raise PydanticCustomError("plug_in", "{expected}", {"expected": msg})
+
+
+_Other = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"^[\w.]+:[\w.]+$"})]
+ControllerName = Annotated[BundledController | _Other, BeforeValidator(_controller)]
+ModelName = Annotated[BundledModel | _Other, BeforeValidator(_model)]
