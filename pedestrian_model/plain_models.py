@@ -14,22 +14,36 @@
     critical headway t_c = L / v_0 + t_s, of the Highway Capacity Manual (2010, equation 19-69: the
     way across over the walking speed, and 3 s to start and to be clear of it). Who has begun to
     cross goes on. A vehicle that stands is a rectangle, as a wall is.
+``orca``
+    Optimal reciprocal collision avoidance (van den Berg et al. 2011): everybody takes the velocity
+    closest to the desired one that meets nobody within the next 3 s, if the others do their half;
+    out of a vehicle's way people get alone.
 
-All three know way-points, lines and signals, and keep to the parameters' largest acceleration and
+All of them know way-points, lines and signals, and keep to the parameters' largest acceleration and
 speed; they have no detour around cars, and no priority.
 """
 
 import math
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pedestrian_model._jit import inlined, kernel
-from pedestrian_model._mathematics import cosine_sine, exponential
+from pedestrian_model._orca import LINES, orca_velocity
 from pedestrian_model._routes import heading_for
+from pedestrian_model._social_force import (
+    AHEAD,
+    EPSILON,
+    FASTER,
+    RELAXATION,
+    border,
+    in_frame,
+    of_people,
+    of_vehicles,
+)
 from pedestrian_model._step import FINE, first_insane
-from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
+from pedestrian_model._vehicles import FRONT, REAR, SPEED, WIDTH
 from pedestrian_model._walls import nearest_walls
 from pedestrian_model.crowd import Crowd
 from pedestrian_model.model import divergence, substeps, unknown_signal
@@ -37,28 +51,18 @@ from pedestrian_model.parameters import SIM, VciParameters
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings
 from pedestrian_model.vehicles import Vehicles
 
-PlainName = Literal["constant-velocity", "social-force", "gap-acceptance"]
-PLAIN_MODELS: Final[tuple[PlainName, ...]] = ("constant-velocity", "social-force", "gap-acceptance")
+PlainName = Literal["constant-velocity", "social-force", "gap-acceptance", "orca"]
+PLAIN_MODELS: Final[tuple[PlainName, ...]] = get_args(PlainName)
 
-_STRAIGHT, _FORCES, _GAPS = range(3)
+_STRAIGHT, _FORCES, _GAPS, _ORCA = range(len(PLAIN_MODELS))
 Array = NDArray[np.float64]
-
-# Helbing and Molnár 1995
-_TAU = 0.5  # [s] in which people take up their pace
-_PERSON, _PERSON_RANGE = 2.1, 0.3  # V_0 [m^2/s^2] and sigma [m]
-_BORDER, _BORDER_RANGE = 10.0, 0.2  # U_0 [m^2/s^2] and R [m]
-_AHEAD = 2.0  # [s] of somebody's way that counts as theirs
-_SIGHT, _UNSEEN = -0.17364817766693033, 0.5  # cos 100 degrees; the share of what lies behind
-_FASTER = 1.3  # of the desired speed, at most
-_FAR = 8.0  # [m] beyond it nobody is felt: less than 1e-6 m/s^2 is left out
 
 # Highway Capacity Manual 2010, equation 19-69
 _START = 3.0  # [s] t_s, to start and to be clear of the way
-_HALT = 4.0 * _TAU  # [s] v = room / T stops before a kerb without going beyond it from here on
+_HALT = 4.0 * RELAXATION  # [s] v = room / T stops before a kerb and not beyond it
 _BESIDE = 0.3  # [m] between the vehicle's side and a body that waits (ours)
 _STANDS = 0.1  # [m/s] a slower vehicle stands
 _ARRIVES = 0.3  # [m] about a way-point at which somebody slows down (ours)
-_EPSILON = 1e-9  # [m]
 
 
 class PlainModel:
@@ -91,6 +95,7 @@ class PlainModel:
         )
         self._next = np.empty((0, 4))
         self._walls = np.empty((3, 0))
+        self._scratch = (np.empty((LINES, 4)), np.empty((LINES, 4)), np.empty((LINES, 2)))
 
     def advance(
         self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND
@@ -123,6 +128,7 @@ class PlainModel:
             self._substeps,
             self._next[:n],
             self._walls[:, :n],
+            self._scratch,
         )
         if bad != FINE:
             raise divergence(bad, crowd, vehicles)
@@ -143,11 +149,13 @@ def _advance(
     steps: int,
     after: Array,
     walls: Array,
+    scratch: tuple[Array, Array, Array],
 ) -> int:
     """Advance the state in place by ``steps`` steps of dt; ``FINE`` or the first bad index."""
     position, velocity, waypoint_index = state
     desired_speed, routes, start = wishes[0], wishes[1:], wishes[4]
     radius, a_max, v_max, r_waypoint = limits
+    ahead = AHEAD if kind == _FORCES else 0.0
     n = position.shape[0]
     bad = first_insane(position, velocity)
     if bad != FINE:
@@ -170,22 +178,38 @@ def _advance(
             waypoint_index[i] = at - start[i]
             e_x, e_y = to_x - x, to_y - y
             left = math.sqrt(e_x * e_x + e_y * e_y)
-            e_x, e_y = e_x / max(left, _EPSILON), e_y / max(left, _EPSILON)
+            e_x, e_y = e_x / max(left, EPSILON), e_y / max(left, EPSILON)
             pace = desired_speed[i]
             if stops:
                 pace *= left / math.sqrt(left * left + _ARRIVES * _ARRIVES)
             if kind == _GAPS:
                 pace = min(pace, _pace_before(x, y, e_x, e_y, pace, vehicles, radius, step * dt))
-            a_x = (pace * e_x - velocity[i, 0]) / _TAU
-            a_y = (pace * e_y - velocity[i, 1]) / _TAU
-            fastest = min(_FASTER * desired_speed[i], v_max)
-            if kind != _STRAIGHT:
-                b_x, b_y = _of_people(i, e_x, e_y, position, velocity)
+            a_x = (pace * e_x - velocity[i, 0]) / RELAXATION
+            a_y = (pace * e_y - velocity[i, 1]) / RELAXATION
+            fastest = min(FASTER * desired_speed[i], v_max)
+            if kind == _ORCA:
+                wall = (walls[0, i], walls[1, i], walls[2, i]) if walled else (np.inf, 0.0, 0.0)
+                o_x, o_y = orca_velocity(
+                    i,
+                    position,
+                    velocity,
+                    (velocity[i, 0] + dt * a_x, velocity[i, 1] + dt * a_y),
+                    fastest,
+                    radius,
+                    vehicles,
+                    step * dt,
+                    wall,
+                    dt,
+                    *scratch,
+                )
+                a_x, a_y = (o_x - velocity[i, 0]) / dt, (o_y - velocity[i, 1]) / dt
+            elif kind != _STRAIGHT:
+                b_x, b_y = of_people(i, e_x, e_y, position, velocity)
                 a_x, a_y = a_x + b_x, a_y + b_y
-                b_x, b_y = _of_vehicles(kind, x, y, e_x, e_y, vehicles, radius, step * dt)
+                b_x, b_y = of_vehicles(ahead, x, y, e_x, e_y, vehicles, radius, step * dt)
                 a_x, a_y = a_x + b_x, a_y + b_y
                 if walled and walls[0, i] < np.inf:
-                    push = _border(walls[0, i] - radius)
+                    push = border(walls[0, i] - radius)
                     a_x, a_y = a_x + push * walls[1, i], a_y + push * walls[2, i]
             a = math.sqrt(a_x * a_x + a_y * a_y)
             scale = a_max / a if a > a_max else 1.0
@@ -199,104 +223,6 @@ def _advance(
             position[i, 0], position[i, 1] = after[i, 0], after[i, 1]
             velocity[i, 0], velocity[i, 1] = after[i, 2], after[i, 3]
     return first_insane(position, velocity)
-
-
-@inlined
-def _elliptical(r_x: float, r_y: float, s_x: float, s_y: float) -> tuple[float, float, float]:
-    """B [m] and its gradient, of the ellipse about somebody who steps (s_x, s_y), seen at r.
-
-    2 b = sqrt((|r| + |r - s|)^2 - |s|^2).
-    """
-    first = max(math.sqrt(r_x * r_x + r_y * r_y), _EPSILON)
-    u_x, u_y = r_x - s_x, r_y - s_y
-    second = max(math.sqrt(u_x * u_x + u_y * u_y), _EPSILON)
-    both = first + second
-    b = 0.5 * math.sqrt(max(both * both - s_x * s_x - s_y * s_y, _EPSILON))
-    share = both / (4.0 * b)
-    return b, share * (r_x / first + u_x / second), share * (r_y / first + u_y / second)
-
-
-@inlined
-def _seen(e_x: float, e_y: float, f_x: float, f_y: float) -> float:
-    """The weight of an influence f on somebody who looks along e."""
-    f = math.sqrt(f_x * f_x + f_y * f_y)
-    return 1.0 if -(e_x * f_x + e_y * f_y) >= f * _SIGHT else _UNSEEN
-
-
-@inlined
-def _of_people(
-    i: int, e_x: float, e_y: float, position: Array, velocity: Array
-) -> tuple[float, float]:
-    """The acceleration [m/s^2] that others give pedestrian i."""
-    a_x, a_y = 0.0, 0.0
-    for j in range(position.shape[0]):
-        r_x, r_y = position[i, 0] - position[j, 0], position[i, 1] - position[j, 1]
-        if j == i or r_x * r_x + r_y * r_y > _FAR * _FAR:
-            continue
-        s_x, s_y = _AHEAD * velocity[j, 0], _AHEAD * velocity[j, 1]
-        b, g_x, g_y = _elliptical(r_x, r_y, s_x, s_y)
-        push = _PERSON / _PERSON_RANGE * exponential(max(-b / _PERSON_RANGE, -700.0))
-        f_x, f_y = push * g_x, push * g_y
-        w = _seen(e_x, e_y, f_x, f_y)
-        a_x, a_y = a_x + w * f_x, a_y + w * f_y
-    return a_x, a_y
-
-
-@inlined
-def _border(distance: float) -> float:
-    """The acceleration [m/s^2] away from a border at a distance [m] of the skin."""
-    if distance > _FAR:
-        return 0.0
-    return _BORDER / _BORDER_RANGE * exponential(-max(distance, 0.0) / _BORDER_RANGE)
-
-
-@inlined
-def _in_frame(
-    x: float, y: float, vehicle: Array, travelled: float
-) -> tuple[float, float, float, float]:
-    """A point in the vehicle's frame after some time [s], and its heading's cosine and sine."""
-    c, s = cosine_sine(vehicle[HEADING])
-    d_x = x - vehicle[X] - travelled * vehicle[SPEED] * c
-    d_y = y - vehicle[Y] - travelled * vehicle[SPEED] * s
-    return d_x * c + d_y * s, d_y * c - d_x * s, c, s
-
-
-@inlined
-def _of_vehicles(
-    kind: int,
-    x: float,
-    y: float,
-    e_x: float,
-    e_y: float,
-    vehicles: Array,
-    radius: float,
-    travelled: float,
-) -> tuple[float, float]:
-    """The acceleration [m/s^2] that vehicles give somebody at (x, y)."""
-    a_x, a_y = 0.0, 0.0
-    for k in range(vehicles.shape[0]):
-        vehicle = vehicles[k]
-        along, across, c, s = _in_frame(x, y, vehicle, travelled)
-        half = 0.5 * vehicle[WIDTH]
-        off_x = along - min(max(along, -vehicle[REAR]), vehicle[FRONT])
-        off_y = across - min(max(across, -half), half)
-        distance = math.sqrt(off_x * off_x + off_y * off_y)
-        step = _AHEAD * vehicle[SPEED] if kind == _FORCES else 0.0
-        if distance > _FAR + abs(step):
-            continue
-        if distance <= _EPSILON:  # inside: out by the nearer side
-            off_x, off_y = 0.0, math.copysign(_EPSILON, across)
-        if step == 0.0:
-            push = _border(distance - radius)
-            g_x, g_y = off_x / max(distance, _EPSILON), off_y / max(distance, _EPSILON)
-        else:
-            shrink = max(distance - radius, _EPSILON) / max(distance, _EPSILON)
-            b, g_x, g_y = _elliptical(shrink * off_x, shrink * off_y, step, 0.0)
-            push = _BORDER / _BORDER_RANGE * exponential(max(-b / _BORDER_RANGE, -700.0))
-        f_x, f_y = push * (c * g_x - s * g_y), push * (s * g_x + c * g_y)
-        w = _seen(e_x, e_y, f_x, f_y)
-        a_x, a_y = a_x + w * f_x, a_y + w * f_y
-    return a_x, a_y
 
 
 @inlined
@@ -314,7 +240,7 @@ def _pace_before(
     slowest = np.inf
     for k in range(vehicles.shape[0]):
         vehicle = vehicles[k]
-        along, across, c, s = _in_frame(x, y, vehicle, travelled)
+        along, across, c, s = in_frame(x, y, vehicle, travelled)
         half = 0.5 * vehicle[WIDTH] + radius + _BESIDE
         forth, aside = e_x * c + e_y * s, e_y * c - e_x * s
         u = vehicle[SPEED]

@@ -94,8 +94,9 @@ class CrowdConfig(Section):
         "vci",
         None,
         "what moves people: vci; social-force (Helbing and Molnar 1995); gap-acceptance (they stop "
-        "for vehicles that come too soon); constant-velocity; or somebody else's, by the name that "
-        "a package declares or as module:Class. Controllers predict by VCI anyway",
+        "for vehicles that come too soon); orca (van den Berg et al. 2011); constant-velocity; or "
+        "somebody else's, by the name that a package declares or as module:Class. Controllers "
+        "predict by VCI anyway",
         flag="--crowd-model",
     )
     preset: Preset = option(

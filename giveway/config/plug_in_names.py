@@ -11,7 +11,7 @@ from giveway.plug_ins.finding import declared_names, is_reference
 from giveway.plug_ins.sockets import CONTROLLER, MODEL, Socket
 
 BundledController = Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"]
-BundledModel = Literal["vci", "social-force", "gap-acceptance", "constant-velocity"]
+BundledModel = Literal["vci", "social-force", "gap-acceptance", "constant-velocity", "orca"]
 BUNDLED: frozenset[str] = frozenset(get_args(BundledController))
 BUNDLED_MODELS: frozenset[str] = frozenset(get_args(BundledModel))
 

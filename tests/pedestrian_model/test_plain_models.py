@@ -85,7 +85,7 @@ def test_at_constant_velocity_nothing_is_in_the_way():
     assert (places[:, :, 1] == 0.0).all()
 
 
-@pytest.mark.parametrize("name", ["social-force", "gap-acceptance"])
+@pytest.mark.parametrize("name", ["social-force", "gap-acceptance", "orca"])
 def test_people_who_meet_pass_each_other(name):
     both = people([(0.0, 0.02), (10.0, -0.02)], [(20.0, 0.0), (-10.0, 0.0)])
     places = walk(name, both, 220)
@@ -157,6 +157,8 @@ def test_walls_hold_people_and_steps_may_be_long():
     walls = Surroundings(walls=Walls.create([[-20.0, -1.0, 20.0, -1.0]]))  # walkable above it
     who = people((0.0, 0.0), (10.0, -3.0))
     assert walk("social-force", who, 200, surroundings=walls)[:, 0, 1].min() > -1.0
+    again = people((0.0, 0.0), (10.0, -3.0))
+    assert walk("orca", again, 200, surroundings=walls)[:, 0, 1].min() > -1.0 + SIM.body_radius / 2
     long, short = (walk("social-force", group(), n, car(3.0, -8.0), dt=dt)
                    for n, dt in ((40, 0.1), (80, 0.05)))  # fmt: skip
     assert np.abs(long[-1] - short[-1]).max() < 1e-9
