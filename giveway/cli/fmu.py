@@ -19,6 +19,11 @@ _Limit = Annotated[float, typer.Option(help="Largest force in N.", min=1.0, max=
 _Force = Annotated[bool, typer.Option("--force", help="Replace a file that is there.")]
 
 
+def _formats(incomplete: str) -> list[str]:
+    known = ("fcd", "pedpy", "jupedsim", "geojson", "mp4", "gif")
+    return [name for name in known if name.startswith(incomplete)]
+
+
 def build_fmu() -> typer.Typer:
     """The commands about vehicle FMUs."""
     app = Commands("Look at, try and fit a vehicle FMU.")
@@ -35,14 +40,41 @@ def build_export(with_flags: Callable[[Callable[..., None]], Callable[..., None]
     Args:
         with_flags: adds the flags of the configuration.
     """
-    app = Commands("Make FMUs for other co-simulation masters.")
+    app = Commands("Write the controller as an FMU, or a run in other formats.")
     app.add("controller", with_flags(_controller))
+    app.add("run", _run)
     app.callback()(_export)
     return app
 
 
 def _export() -> None:
-    """Make FMUs for other co-simulation masters."""
+    """Write the controller as an FMU, or a run in other formats."""
+
+
+def _run(
+    folder: Annotated[Path, typer.Argument(help="Results folder of a run.")],
+    to: Annotated[
+        str,
+        typer.Option(
+            "--format",
+            "-f",
+            help="fcd (SUMO replays it), pedpy, jupedsim, geojson, mp4 or gif.",
+            autocompletion=_formats,
+        ),
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="File to write (default: here, named so).")
+    ] = None,
+    step: Annotated[
+        float | None,
+        typer.Option(help="Between two instants in s (default: the run's; MP4 0.05, GIF 0.1)."),
+    ] = None,
+    force: _Force = False,
+) -> None:
+    """Write a run for SUMO, PedPy, JuPedSim or a map, or as a film."""
+    from giveway.cli.export_run import export_run_command
+
+    raise typer.Exit(export_run_command(folder, to, out, step=step, force=force))
 
 
 def _inspect(

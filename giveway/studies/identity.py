@@ -21,7 +21,16 @@ from giveway.scenario_files.options import parse_options
 from giveway.studies.record import Task
 from sumo_scenarios import Scenario, ScenarioError, find
 
-_NOT_NUMBERS = ("cli", "doctor", "figures", "replays", "reports", "studies", "validation")
+_NOT_NUMBERS = (
+    "cli",
+    "doctor",
+    "exports",
+    "figures",
+    "replays",
+    "reports",
+    "studies",
+    "validation",
+)
 """Parts of giveway that look at results only: a change there leaves every record valid."""
 _NAMING_FILES = (
     ("vehicle", "fmu"),

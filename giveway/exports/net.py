@@ -1,0 +1,94 @@
+"""What exports need of a SUMO network: the lanes of its normal edges, and its projection."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import shapely
+
+from giveway.errors import ResultsError
+from giveway.geometry.kernel import Array
+from giveway.replays.run_folder import RunFolder
+from giveway.scenario_files import read_scenario
+from giveway.scenario_files.network import read_network
+from sumo_scenarios import find
+
+_INTERNAL = ":"  # how SUMO's ids of what lies inside junctions begin
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where on a lane somebody is."""
+
+    edge: str
+    lane: str
+    position: float  # [m] from its beginning
+    distance: float  # [m] beside its middle
+
+
+class Net:
+    """A network's normal lanes and projection.
+
+    Attributes:
+        file: of the network.
+        offset: (2,) [m] that netconvert has added to projected coordinates.
+        projection: PROJ's parameters; "!" where there is none.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self.file = file
+        self.offset: Array = np.zeros(2)
+        self.projection = "!"
+        self._edge = ""
+        self._lanes: list[tuple[str, str, float, shapely.LineString]] = []
+        handlers = {"location": self._location, "edge": self._begin, "lane": self._lane}
+        read_network(file, handlers)
+
+    @classmethod
+    def of(cls, run: RunFolder) -> Net:
+        """The network of a run's scenario.
+
+        Raises:
+            GivewayError: the scenario is not there any more, or its network cannot be read.
+        """
+        return cls(read_scenario(find(run.config.scenario).config_file).net_file)
+
+    def _location(self, attributes: dict[str, str]) -> None:
+        x, y = attributes["netOffset"].split(",")
+        self.offset = np.array([float(x), float(y)])
+        self.projection = attributes.get("projParameter", "!")
+
+    def _begin(self, attributes: dict[str, str]) -> None:
+        self._edge = attributes["id"]
+
+    def _lane(self, attributes: dict[str, str]) -> None:
+        if self._edge.startswith(_INTERNAL):
+            return
+        points = [tuple(map(float, point.split(",")[:2])) for point in attributes["shape"].split()]
+        line = shapely.LineString(points)
+        self._lanes.append((self._edge, attributes["id"], float(attributes["length"]), line))
+
+    @cached_property
+    def _tree(self) -> shapely.STRtree:
+        return shapely.STRtree([line for *_, line in self._lanes])
+
+    def nearest(self, x: Array, y: Array) -> list[Place]:
+        """The nearest lane of a normal edge to each point [m].
+
+        Raises:
+            ResultsError: the network has none.
+        """
+        if not self._lanes:
+            raise ResultsError(f"{self.file}: no edge in it but those of junctions")
+        points = shapely.points(x, y)
+        _, found = self._tree.query_nearest(points, all_matches=False)
+        return [self.place(int(k), point) for k, point in zip(found, points, strict=True)]
+
+    def place(self, k: int, point: shapely.Point) -> Place:
+        """Where on the k-th lane is nearest to a point [m]."""
+        edge, lane, length, line = self._lanes[k]
+        along = min(line.project(point) * length / max(line.length, 1e-9), length)
+        return Place(edge, lane, along, line.distance(point))
