@@ -138,12 +138,15 @@ def _corner_cases(setup: Setup, horizon: int) -> Iterator[tuple[str, Observation
     yield "no limit", usual._replace(speed_limit=inf)
 
 
-def check_controller(make: Callable[[Setup], object], setup: Setup) -> list[Finding]:
+def check_controller(
+    make: Callable[[Setup], object], setup: Setup, begins: Callable[[str], None] | None = None
+) -> list[Finding]:
     """The battery.
 
     Args:
         make: makes the controller for a setup.
         setup: of the drives.
+        begins: told each rule before it is checked.
 
     Returns:
         A finding for each rule, kept or broken.
@@ -167,6 +170,8 @@ def check_controller(make: Callable[[Setup], object], setup: Setup) -> list[Find
     }
     findings = [Finding("can be made")]
     for rule, check in rules.items():
+        if begins is not None:
+            begins(rule)
         try:
             findings.append(Finding(rule, check()))
         except PlugInError as error:

@@ -113,7 +113,10 @@ def _corner_cases() -> Iterator[tuple[str, Crowd, Vehicles, Surroundings]]:
 
 
 def check_model(
-    make: Callable[[ModelSetup], object], setup: ModelSetup, parameters: VciParameters = SIM
+    make: Callable[[ModelSetup], object],
+    setup: ModelSetup,
+    parameters: VciParameters = SIM,
+    begins: Callable[[str], None] | None = None,
 ) -> list[Finding]:
     """The battery.
 
@@ -121,6 +124,7 @@ def check_model(
         make: makes the model for a setup.
         setup: of the walks.
         parameters: bodies and limits.
+        begins: told each rule before it is checked.
 
     Returns:
         A finding for each rule, kept or broken.
@@ -145,6 +149,8 @@ def check_model(
     }
     findings = [Finding("can be made")]
     for rule, check in rules.items():
+        if begins is not None:
+            begins(rule)
         try:
             findings.append(Finding(rule, check()))
         except (PlugInError, DivergenceError) as error:

@@ -12,12 +12,14 @@ import pandas as pd
 import pytest
 
 import giveway
+from giveway.cli.check_command import check_command
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.layers import dump_toml, read_toml
 from giveway.config.loading import load
 from giveway.cosimulation.preflight import preflight
 from giveway.ego.controllers import make_controller
 from giveway.errors import ConfigError, ControlError
+from giveway.plug_ins.sockets import CONTROLLER
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run, rerun
 
@@ -319,3 +321,16 @@ def test_predictions_for_whoever_wants_them(installed):
     own = EgoRunConfig(controller="far_driver:Driver")
     assert make_controller(own, 0.05).horizon == 12
     assert preflight(*load([])).time_step == 0.05
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [("hang", "does not come back: ended after 2 s"), ("exit", "ends the process (exit code 0)")],
+)
+def test_check_comes_back_from_a_controller_that_does_not(faulty, capsys, kind, said):
+    code = check_command("broken", [f"kind={kind}"], CONTROLLER, limit=2.0)
+    assert code == 1
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[:2] == ["kept    can be made", "broken  answers numbers"]
+    assert shown[2].strip() == said
+    assert shown[3] == "broken: 1 of 2 rules broken"

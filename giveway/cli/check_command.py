@@ -1,0 +1,109 @@
+"""What ``giveway check`` does: a battery of made-up scenes, in a process of its own."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Sequence
+from multiprocessing.connection import Connection
+from typing import Any
+
+import typer
+
+from giveway.cli.flags import set_options
+from giveway.config import RunConfig
+from giveway.config.foreign_code import foreign_code, require_code
+from giveway.config.layers import Layer, build_config
+from giveway.errors import ConfigError
+from giveway.plug_ins.sockets import CONTROLLER, Socket
+
+LIMIT = 60.0  # [s] that a rule may take: most take a tenth of a second
+_START = 60.0  # [s] more for the first: kernels may have to be compiled
+_END = 5.0  # [s] in which a process that has closed its pipe is gone
+_STEP = 0.05  # [s] the control step
+
+
+def check_command(name: str, words: Sequence[str], socket: Socket, limit: float = LIMIT) -> int:
+    """Print what was found; the exit code is 1 if a rule is broken.
+
+    The battery runs in a process of its own, which may hang or end.
+
+    Args:
+        name: of the plug-in.
+        words: that set its options.
+        socket: that it is for.
+        limit: [s] for one rule.
+
+    Raises:
+        GivewayError: it cannot be found, imported or given its options.
+    """
+    config = _configured(name, words, socket)
+    own = [one for one in foreign_code(config) if one.socket is socket]
+    if not own:
+        msg = f"{name}: is giveway's own; expected a {socket.what} of another package"
+        raise ConfigError(msg)
+    require_code(config)
+    findings = _in_a_process(config, socket, limit)
+    for rule, problem in findings:
+        typer.echo(f"{'broken' if problem else 'kept':7} {rule}")
+        if problem:
+            typer.echo(f"        {problem}")
+    broken = sum(bool(problem) for _, problem in findings)
+    typer.echo(f"{name}: {broken} of {len(findings)} rules broken" if broken else f"{name}: sound")
+    return 1 if broken else 0
+
+
+def _configured(name: str, words: Sequence[str], socket: Socket) -> RunConfig:
+    settings: dict[str, Any] = {socket.options: set_options(words)}
+    node = settings
+    for table in socket.location[:-1]:
+        node = node.setdefault(table, {})
+    node[socket.location[-1]] = name
+    return build_config([Layer("command line", settings, from_flags=True)])
+
+
+def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple[str, str]]:
+    """Rules, and what breaks them; the last one broken if the process hangs or ends in it."""
+    spawn = multiprocessing.get_context("spawn")  # a fresh one: nothing of ours is in the way
+    ours, theirs = spawn.Pipe(duplex=False)
+    process = spawn.Process(
+        target=_battery, args=(theirs, config.model_dump_json(), socket.what), daemon=True
+    )
+    process.start()
+    theirs.close()
+    begun, rule = list[str](), "can be made"
+    try:
+        while ours.poll(limit if begun else limit + _START):
+            message = ours.recv()
+            if not isinstance(message, str):
+                return list(message)
+            begun.append(rule)
+            rule = message
+        problem = f"does not come back: ended after {limit:g} s"
+    except EOFError:
+        process.join(_END)
+        problem = f"ends the process (exit code {process.exitcode})"
+    finally:
+        process.kill()
+        process.join()
+    return [*((one, "") for one in begun), (rule, problem)]
+
+
+def _battery(connection: Connection, config: str, what: str) -> None:
+    """In the process: the findings, and before each rule its name."""
+    effective = RunConfig.model_validate_json(config)
+    if what == CONTROLLER.what:
+        from controller import check_controller
+        from giveway.ego import plug_in
+
+        (own,) = effective.each_ego()
+        found = check_controller(
+            plug_in.maker(own), plug_in.setup_of(own, _STEP), begins=connection.send
+        )
+        connection.send([(finding.rule, finding.problem) for finding in found])
+    else:
+        from giveway.crowd import models
+        from pedestrian_model import check_model
+
+        setup = models.setup_of(effective, _STEP)
+        said = check_model(models.maker(effective), setup, begins=connection.send)
+        connection.send([(finding.rule, finding.problem) for finding in said])
