@@ -67,6 +67,7 @@ class VehicleFmu(Drivable):
     def _set_up(self, prepared: Prepared, folder: Path, stack: ExitStack) -> None:
         super().__init__(prepared.path)
         self.prepared = prepared
+        self.record = prepared.wiring.record
         self.step_size = prepared.step_size
         self._pace = prepared.pace
         self._command = prepared.command
@@ -117,10 +118,11 @@ class VehicleFmu(Drivable):
         self._instance.start(
             start_values(self.prepared, position, speed),
             [wire.channel for wire in wiring.inputs],
-            [wire.channel for wire in wiring.outputs],
+            wiring.read,
         )
         self._inputs = self._instance.inputs
         self._outputs = self._instance.outputs
+        self.recorded = self._outputs[len(wiring.outputs) :]  # a view: always the last step's
         self._tick = self._instance.tick
         self._motion = motion = Motion(self.prepared)
         self.warnings = motion.warnings

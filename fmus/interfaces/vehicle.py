@@ -1,6 +1,7 @@
 """What any vehicle offers, wherever its FMU runs."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
 from types import TracebackType
@@ -8,6 +9,7 @@ from typing import Self
 
 from fmus.errors import FmuStateError, FmuStepError
 from fmus.profile.preparation import Prepared
+from fmus.profile.wiring import Recorded
 
 
 class Vehicle(ABC):
@@ -22,6 +24,8 @@ class Vehicle(ABC):
         acceleration: [m/s2] as of the last step.
         time: [s] the number of steps times the step size, never a running sum.
         step_size: of the controller [s].
+        record: what the profile wants to have recorded.
+        recorded: values of the profile's ``record`` as of the last step, in the FMU's own units.
         warnings: what the user should know of this FMU, since its last start.
     """
 
@@ -31,6 +35,8 @@ class Vehicle(ABC):
     def __init__(self, path: Path) -> None:
         self.path = path
         self.position = self.speed = self.acceleration = self.time = 0.0
+        self.record: tuple[Recorded, ...] = ()
+        self.recorded: Sequence[float] = ()
         self._failed = False  # at the last start or step
         self._refusal = ""  # why no step can be done; empty while the vehicle is running
         self._refuse("has not been started; call start() first")

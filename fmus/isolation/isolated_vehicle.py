@@ -67,6 +67,7 @@ class IsolatedVehicle(Vehicle):
         self._start_timeout = prepared.profile.fmu.start_timeout
         self._step_timeout = prepared.profile.fmu.step_timeout
         self._stretch = prepared.pace.stretch
+        self.record = prepared.wiring.record
         self._steps = 0
         self._client: Client | None = None
         folder = Path(tempfile.mkdtemp(prefix="vehicle-fmu-"))
@@ -102,7 +103,7 @@ class IsolatedVehicle(Vehicle):
         self.warnings = []
         self._end()
         self._refuse("has not started; call start() again")
-        self._client = Client(self._host.start_process())
+        self._client = Client(self._host.start_process(), len(self.record))
         self._steps, self.time = 0, 0.0
         self._exchange(LOAD, 0.0, 0.0, self._start_timeout)
         self._exchange(START, position, speed, self._start_timeout)
@@ -155,6 +156,7 @@ class IsolatedVehicle(Vehicle):
             self._fail()
             raise
         self.position, self.speed, self.acceleration = x, v, a
+        self.recorded = self._client.recorded
 
     def _reported_error(self, text: Text, state: tuple[float, float, float]) -> FmuError:
         """The error that the FMU's process reported; only our own error classes are accepted."""

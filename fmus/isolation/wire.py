@@ -12,6 +12,7 @@ import socket
 import struct
 import sys
 import weakref
+from collections.abc import Sequence
 from time import monotonic
 from typing import Any, Final
 
@@ -22,7 +23,7 @@ QUIT: Final = b"quit"  # 0, 0
 DONE: Final = b"done"  # position [m], speed [m/s], acceleration [m/s2]
 FAILED: Final = b"fail"  # the same values; the text is the error
 REQUEST: Final = struct.Struct("<4sIdd")  # what, number, two values
-REPLY: Final = struct.Struct("<4sIIddd")  # what, number of the request, size of the text, values
+REPLY: Final = "<4sIIddd"  # what, number of the request, size of the text, values
 TEXT_LIMIT: Final = 1 << 16  # [bytes]
 START_WORKER: Final = b"fork"  # to the watchdog, with the worker's end of the connection
 END_WORKER: Final = b"end"  # with a patience [ms], before it is killed; answered by its report
@@ -45,16 +46,22 @@ class Client:
 
     Args:
         connection: a stream socket, owned by the client from now on.
+        recorded: how many values each reply has besides its three.
+
+    Attributes:
+        recorded: those of the last reply.
     """
 
-    def __init__(self, connection: socket.socket) -> None:
+    def __init__(self, connection: socket.socket, recorded: int = 0) -> None:
+        self._layout = reply_layout(recorded)
+        self.recorded: Sequence[float] = (0.0,) * recorded
         self._connection = connection
         self._prompt = connection.dup()  # the same one, for calls that do not wait
         self._prompt.settimeout(None)  # saves a system call in each of them
         self._closing = weakref.finalize(self, _close, connection, self._prompt)
         self._number = 0
         self._timeout: float | None = None
-        self._head = bytearray(REPLY.size)
+        self._head = bytearray(self._layout.size)
 
     def ask(self, what: bytes, first: float, second: float, timeout: float) -> Reply:
         """Send one request and return its reply, which must come within ``timeout`` [s].
@@ -71,9 +78,10 @@ class Client:
         try:
             self._prompt.send(REQUEST.pack(what, number, first, second))
             size = self._receive_head()
-            if size != REPLY.size:
+            if size != self._layout.size:
                 self._fill(self._head, size, timeout)
-            kind, echo, length, x, v, a = REPLY.unpack(self._head)
+            kind, echo, length, x, v, a, *recorded = self._layout.unpack(self._head)
+            self.recorded = recorded
             if echo != number or length > TEXT_LIMIT or (kind != DONE and kind != FAILED):
                 raise GarbledError
             return kind == DONE, x, v, a, self._text(length, timeout) if length else {}
@@ -125,6 +133,11 @@ def _close(*connections: socket.socket) -> None:
         connection.close()
 
 
+def reply_layout(recorded: int) -> struct.Struct:
+    """The fixed head of replies with so many values besides the three."""
+    return struct.Struct(f"{REPLY}{recorded}d")
+
+
 def receive(connection: socket.socket) -> tuple[bytes, int, float, float] | None:
     """The next request, received in the FMU's process; None: the connection has been closed."""
     head = connection.recv(REQUEST.size, socket.MSG_WAITALL)
@@ -135,12 +148,13 @@ def reply(
     connection: socket.socket,
     kind: bytes,
     number: int,
-    state: tuple[float, float, float],
+    state: Sequence[float],
+    layout: struct.Struct,
     text: Text | None = None,
 ) -> None:
     """Answer a request with DONE or FAILED."""
     if not text:
-        connection.sendall(REPLY.pack(kind, number, 0, *state))
+        connection.sendall(layout.pack(kind, number, 0, *state))
         return
     body = json.dumps(text).encode()
-    connection.sendall(REPLY.pack(kind, number, len(body), *state) + body)
+    connection.sendall(layout.pack(kind, number, len(body), *state) + body)

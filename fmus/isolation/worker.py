@@ -28,6 +28,7 @@ from fmus.isolation.wire import (
     Text,
     receive,
     reply,
+    reply_layout,
 )
 from fmus.profile.preparation import Prepared
 from fmus.text import printable
@@ -114,6 +115,8 @@ class _Worker:
         self._vehicle: VehicleFmu | None = None
         self._warned = 0
         self._follower = Follower()
+        self._recorded = len(order.prepared.wiring.recorded)
+        self._layout = reply_layout(self._recorded)
 
     def run(self) -> None:
         while (request := receive(self._connection)) is not None:
@@ -125,7 +128,7 @@ class _Worker:
             except Exception as error:  # a fault of giveway, or an FMU that tampers with Python
                 self._refuse(number, "", f"{type(error).__name__}: {printable(error)}")
             else:
-                reply(self._connection, DONE, number, self._state(), text)
+                reply(self._connection, DONE, number, self._state(), self._layout, text)
                 if what == QUIT:
                     return
 
@@ -151,14 +154,18 @@ class _Worker:
         self._warned = len(warnings)
         return {"warnings": [printable(w, _WARNING) for w in new]}
 
-    def _state(self) -> tuple[float, float, float]:
-        vehicle = self._vehicle
+    def _state(self) -> tuple[float, ...]:
+        vehicle, count = self._vehicle, self._recorded
         if vehicle is None:
-            return 0.0, 0.0, 0.0
-        return vehicle.position, vehicle.speed, vehicle.acceleration
+            return (0.0,) * (3 + count)
+        state = vehicle.position, vehicle.speed, vehicle.acceleration
+        if not count:
+            return state
+        recorded = vehicle.recorded
+        return (*state, *(recorded if len(recorded) == count else (0.0,) * count))
 
     def _refuse(self, number: int, kind: str, message: str) -> None:
         text: dict[str, Any] = {"error": kind, "message": printable(message, _MESSAGE)}
         text["time"] = 0.0 if self._vehicle is None else self._vehicle.time
         text |= self._new_warnings() or {}
-        reply(self._connection, FAILED, number, self._state(), text)
+        reply(self._connection, FAILED, number, self._state(), self._layout, text)

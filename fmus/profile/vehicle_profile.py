@@ -157,6 +157,7 @@ class FittedModel(Table):
 class VehicleProfile(Table):
     """Everything that giveway needs to drive a foreign FMU."""
 
+    record: tuple[str, ...] = Field((), max_length=100)  # variables whose values the rows keep
     fmu: Fmu = Fmu()
     inputs: Inputs
     outputs: Outputs
@@ -165,6 +166,14 @@ class VehicleProfile(Table):
     limits: Limits = Limits()
     inverse_map: InverseMap = InverseMap()
     model: FittedModel | None = None
+
+    @field_validator("record")
+    @classmethod
+    def _each_once(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"record: '{name}' stands twice; keep one")
+        return names
 
     @field_validator("parameters", mode="before")
     @classmethod

@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from fmus.description import units
 from fmus.description.channels import find_channel, known_names, start_channels
 from fmus.description.model import (
     NUMERIC_TYPES,
+    REAL_TYPES,
     Channel,
     Dimension,
     Interface,
@@ -62,6 +64,14 @@ class Wire:
         return (value - self.shift) / self.scale
 
 
+class Recorded(NamedTuple):
+    """A variable whose values the rows keep, as the FMU describes it."""
+
+    name: str
+    unit: str  # empty if it has none
+    description: str
+
+
 @dataclass(frozen=True)
 class Wiring:
     """A profile that fits its FMU."""
@@ -72,6 +82,20 @@ class Wiring:
     initial_speed: Wire | None
     initial_position: Wire | None
     start_values: Mapping[Channel, Value]
+    recorded: tuple[Channel, ...] = ()  # read beside the outputs, in the FMU's own units
+
+    @property
+    def read(self) -> list[Channel]:
+        """All that is read after a step: the outputs, then what is recorded."""
+        return [*(wire.channel for wire in self.outputs), *self.recorded]
+
+    @property
+    def record(self) -> tuple[Recorded, ...]:
+        """What is recorded, in words."""
+        return tuple(
+            Recorded(channel.name, channel.variable.unit, channel.variable.description)
+            for channel in self.recorded
+        )
 
     def output(self, role: str) -> int | None:
         """The index of a role among the outputs; None: the profile does not name it."""
@@ -105,6 +129,27 @@ def wire(
         initial_speed=_initial(model, "speed", initial.speed),
         initial_position=_initial(model, "position", initial.position),
         start_values=start_channels(model, {**profile.parameters, **(start_values or {})}),
+        recorded=tuple(_recorded(model, name) for name in profile.record),
+    )
+
+
+def _recorded(model: Model, name: str) -> Channel:
+    """A variable whose value is kept.
+
+    Raises:
+        FmuVariableError: there is none, or it is no number that changes.
+    """
+    channel = find_channel(model, "record:", name)
+    variable = channel.variable
+    if variable.kind in NUMERIC_TYPES and _is_output(variable):
+        return channel
+    fitting = known_names(
+        v.name for v in model.variables.values() if v.causality == "output" and v.kind in REAL_TYPES
+    )
+    what = f"is {variable.causality} {variable.kind}"
+    raise FmuVariableError(
+        f"{model.path}: record: variable '{name}' {what}; expected a number that the FMU computes: "
+        f"{fitting}"
     )
 
 

@@ -27,6 +27,7 @@ from fmus.profile.vehicle_profile import Axis, FittedModel
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.sections import BUNDLED_VEHICLES, DEFAULT_SPEED, VehicleConfig
 from giveway.errors import VehicleError
+from giveway.records.columns import EGO_COLUMNS
 
 _CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
 _SAME_STEP = 1e-6  # relative
@@ -51,11 +52,18 @@ def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
         VehicleError: one cannot be driven.
     """
     for config in egos:
-        path = fmu_path(config.vehicle)
+        path, profile = fmu_path(config.vehicle), _profile(config.vehicle)
         try:
-            prepare(path, step_size=time_step, profile=_profile(config.vehicle))
+            prepare(path, step_size=time_step, profile=profile)
         except FmuError as error:
             raise VehicleError(str(error)) from error
+        taken = {column.name for column in EGO_COLUMNS}
+        for name in () if profile is None else profile.record:
+            if name in taken:
+                raise VehicleError(
+                    f"{config.vehicle.profile or path}: record: '{name}' is a column of ego.csv "
+                    "already; expected a variable of another name, or a copy of it in the FMU"
+                )
 
 
 def open_for(

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.recording.journal import Array
+from giveway.records.outputs import Output
 from giveway.records.rows import LEDGER
 from giveway.records.tracks import (
     BackgroundTrack,
@@ -33,6 +34,7 @@ class RecordedEgo(NamedTuple):
     first: int  # the control instant at which it departed
     track: EgoTrack
     predictions: PredictionTrack
+    outputs: tuple[Output, ...] = ()
 
 
 class RecordedRows:
@@ -71,6 +73,7 @@ class RecordedRows:
                     int(rows[0, 0]),
                     self._track(rows),
                     self._predictions_of(number),
+                    self._outputs_of(name, rows),
                 )
 
     def _track(self, rows: Array) -> EgoTrack:
@@ -92,6 +95,19 @@ class RecordedRows:
             x=x,
             y=y,
         )
+
+    def _outputs_of(self, ego: str, rows: Array) -> tuple[Output, ...]:
+        """What the profile of an ego's FMU wanted to have recorded, at each of its instants."""
+        recorded, found = self._rows["outputs"], list[Output]()
+        for key, text in enumerate(self._names["outputs"]):
+            whose, name, unit, description = json.loads(text)
+            if whose == ego:
+                own = recorded[recorded[:, 1] == key]
+                values = np.full(len(self.time), np.nan)
+                known = own[own[:, 0] < len(values)]
+                values[_indices(known[:, 0])] = known[:, 2]
+                found.append(Output(name, unit, description, values[_indices(rows[:, 0])]))
+        return tuple(found)
 
     def _words(self, indices: Array) -> NDArray[np.str_]:
         return np.array(self._names["words"], dtype=np.str_)[_indices(indices)]

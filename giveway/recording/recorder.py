@@ -1,5 +1,6 @@
 """The rows of a run, gathered step by step, from our own state and not SUMO's mirror of it."""
 
+import json
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -37,11 +38,14 @@ class Recorder:
         self._predictions = rows("predictions", 6)  # instant, ego, pedestrian, look-ahead, x, y
         self._signals = rows("signals", 3)  # time, system, state
         self._people = rows("people", 5)  # instant, pedestrian, desired speed, x, y
+        self._outputs = rows("outputs", 3)  # instant, which of them, value
         self._ways = names("ways")  # as JSON
+        self._recorded = names("outputs")  # ego, name, unit, description, as JSON
         self._words = names("words")
         self._egos = names("egos")
         self._pedestrians = names("pedestrians")
         self._vehicles = names("vehicles")
+        self._keys: dict[tuple[str, str], int] = {}
         self._steps = 0
 
     def instant(self, time: float) -> None:
@@ -58,6 +62,24 @@ class Recorder:
         """Note an ego that departs: its body and the distance [m] it is to drive."""
         row = (self._egos.index(ego_id), shape.length, shape.width, goal)
         self._drives.block(1)[0] = row
+
+    def outputs(
+        self, ego_id: str, record: Sequence[tuple[str, str, str]], values: Sequence[float]
+    ) -> None:
+        """Record what an FMU's profile wants to have recorded at the present control instant.
+
+        Args:
+            ego_id: the ego that it drives.
+            record: name, unit and description of each variable.
+            values: of them.
+        """
+        block = self._outputs.block(len(record))
+        for row, (about, value) in enumerate(zip(record, values, strict=True)):
+            key = self._keys.get((ego_id, about[0]))
+            if key is None:
+                key = self._recorded.index(json.dumps([ego_id, *about]))
+                self._keys[ego_id, about[0]] = key
+            block[row] = self._steps - 1, key, value
 
     def way(self, way: EgoWay) -> None:
         """Note what the law of the road speaks of on the way of an ego that departs."""
@@ -172,8 +194,10 @@ class Recorder:
                 "predictions": self._predictions.filled,
                 "signals": self._signals.filled,
                 "people": self._people.filled,
+                "outputs": self._outputs.filled,
             },
             {
+                "outputs": self._recorded.names,
                 "ways": self._ways.names,
                 "words": self._words.names,
                 "egos": self._egos.names,

@@ -24,6 +24,7 @@ from giveway.metrics import (
 )
 from giveway.metrics.law import Drive, Ledger, Undisturbed, ledger
 from giveway.recording.recorded import RecordedEgo, RecordedRows
+from giveway.records.outputs import Output
 from giveway.records.progress import Ending
 from giveway.records.tracks import BackgroundTrack, CrowdTrack, EgoTrack, PredictionTrack
 from giveway.results.effect import Effect
@@ -49,6 +50,7 @@ class EgoResult:
         predictions: what its controller expected of the crowd, if that was recorded.
         background: the background vehicles of the run.
         law: what its drive is judged by; None: the law of the road has no say on its way.
+        outputs: what the profile of its FMU wants to have recorded.
         effect: the run's people beside those of its twin; None: there is no twin.
     """
 
@@ -62,6 +64,7 @@ class EgoResult:
     crowd: CrowdTrack
     predictions: PredictionTrack
     background: BackgroundTrack
+    outputs: tuple[Output, ...] = ()
     law: LawRows | None = None
     effect: Effect | None = None
 
@@ -197,6 +200,7 @@ def results_of_egos(
             crowd=crowd.during(ego.first, len(ego.track.time)),
             predictions=ego.predictions,
             background=background,
+            outputs=ego.outputs,
             law=law_of(ego),
         )
         for ego in recorded

@@ -142,9 +142,9 @@ class RunTables:
     @cached_property
     def ego(self) -> "pd.DataFrame":
         """One row per control instant and ego."""
-        names = [column.name for column in EGO_COLUMNS]
-        tables = [ego_table(ego.track, ego.id) for ego in self.egos]
-        return _stacked(tables, names, by="time")
+        names = [column.name for column in self.schemas["ego"]]
+        tables = [ego_table(ego.track, ego.id, ego.outputs) for ego in self.egos]
+        return _stacked([table.reindex(columns=names) for table in tables], names, by="time")
 
     @cached_property
     def trajectories(self) -> "pd.DataFrame":
@@ -268,12 +268,13 @@ class RunTables:
         if self.effect is not None:
             summary = (*summary, *DELAY_SUMMARY_FIELDS)
             pedestrians = (*pedestrians, *DELAY_FIELDS)
+        outputs = {output.name: output.column for ego in self.egos for output in ego.outputs}
         if len(self.signal_track.time):
             optional |= {"signals": SIGNAL_COLUMNS}
         if self.config.measure:
             optional |= {"measures": MEASURE_COLUMNS}
         return {
-            "ego": EGO_COLUMNS,
+            "ego": (*EGO_COLUMNS, *outputs.values()),
             "trajectories": TRAJECTORY_COLUMNS,
             "pedestrians": pedestrians,
             "summary": summary,

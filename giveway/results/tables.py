@@ -13,6 +13,7 @@ from giveway.records.columns import (
     TIMING_COLUMNS,
     TRAJECTORY_COLUMNS,
 )
+from giveway.records.outputs import Output
 from giveway.records.tracks import (
     BackgroundTrack,
     CrowdTrack,
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 _STANDING = 1e-6  # [m/s] below it a pedestrian keeps the angle it had
 
 
-def ego_table(track: EgoTrack, ego_id: str) -> "pd.DataFrame":
+def ego_table(track: EgoTrack, ego_id: str, outputs: Sequence[Output] = ()) -> "pd.DataFrame":
     """``ego.csv``: one row per control instant."""
     import pandas as pd
 
@@ -54,7 +55,9 @@ def ego_table(track: EgoTrack, ego_id: str) -> "pd.DataFrame":
         track.waits_for,
     )
     names = [column.name for column in EGO_COLUMNS]
-    return pd.DataFrame(dict(zip(names, values, strict=True)), index=range(len(track.time)))
+    own = {output.name: output.values for output in outputs}
+    columns = dict(zip(names, values, strict=True)) | own
+    return pd.DataFrame(columns, index=range(len(track.time)))
 
 
 def prediction_table(track: PredictionTrack, ego_id: str, ids: Sequence[str]) -> "pd.DataFrame":

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from fmus.errors import FmuCrashError
 from fmus.isolation import wire as protocol
-from fmus.isolation.wire import DONE, REPLY, STEP, Client, GarbledError
+from fmus.isolation.wire import DONE, STEP, Client, GarbledError, reply_layout
 
 
 def answered(answer, timeout=0.02):
@@ -36,14 +36,14 @@ def test_noise_is_told_from_a_reply(noise):
 
 @given(st.binary(max_size=100))
 def test_noise_instead_of_the_text_is_no_reply(noise):
-    head = REPLY.pack(DONE, 1, len(noise) + 1, 0.0, 0.0, 0.0)
+    head = reply_layout(0).pack(DONE, 1, len(noise) + 1, 0.0, 0.0, 0.0)
     with pytest.raises((GarbledError, EOFError)):
         answered(head + b"!" + noise)
 
 
 def test_a_reply_is_read_whole():
     body = json.dumps({"warnings": ["x" * 50_000]}).encode()
-    head = REPLY.pack(DONE, 1, len(body), 1.0, 2.0, 3.0)
+    head = reply_layout(0).pack(DONE, 1, len(body), 1.0, 2.0, 3.0)
     done, x, v, a, text = answered(head + body)
     assert (done, x, v, a, len(text["warnings"][0])) == (True, 1.0, 2.0, 3.0, 50_000)
 
@@ -53,13 +53,13 @@ def test_a_reply_is_read_whole():
 )
 def test_a_reply_to_something_else_or_without_measure_is_refused(number, length):
     with pytest.raises(GarbledError):
-        answered(REPLY.pack(DONE, number, length, 0.0, 0.0, 0.0))
+        answered(reply_layout(0).pack(DONE, number, length, 0.0, 0.0, 0.0))
 
 
 def test_a_text_nested_without_end_is_refused():
     body = b"[" * 60_000
     with pytest.raises(GarbledError):
-        answered(REPLY.pack(DONE, 1, len(body), 0.0, 0.0, 0.0) + body)
+        answered(reply_layout(0).pack(DONE, 1, len(body), 0.0, 0.0, 0.0) + body)
 
 
 def test_a_reply_in_drops_does_not_stretch_the_time_out():
@@ -81,7 +81,7 @@ def test_every_request_has_a_time_out_of_its_own():
                 with pytest.raises(TimeoutError):
                     line.ask(STEP, 1.0, 0.0, timeout)
             else:
-                there.sendall(REPLY.pack(DONE, number, 0, 1.0, 2.0, 3.0))
+                there.sendall(reply_layout(0).pack(DONE, number, 0, 1.0, 2.0, 3.0))
                 assert line.ask(STEP, 1.0, 0.0, timeout)[0]
             assert here.gettimeout() == timeout
     line.close()
