@@ -16,13 +16,14 @@ from dataclasses import dataclass
 from math import inf, sqrt
 
 import numpy as np
+from numpy.typing import NDArray
 
 from controller._jit import Array
 from controller.parameters import require_not_negative, require_positive
+from controller.people_ahead import people_ahead
 from controller.plug_in import Acceleration, Setup
 from controller.protocol import Observation
 
-_SIGHT, _SPACING = 40.0, 0.5  # [m] of the way ahead that is looked at, and between its points
 _AT_LINE = 0.5  # [m] before a stop line it stands
 _NEARLY = 0.01  # [m] the shortest gap
 _POSITIVE = {
@@ -81,7 +82,6 @@ class IntelligentDriver:
 
     def __init__(self, setup: Setup, options: IdmOptions) -> None:
         self._setup, self._options = setup, options
-        self._ahead = np.arange(0.0, _SIGHT, _SPACING)
 
     def control(self, seen: Observation) -> Acceleration:
         """The acceleration towards the leader that asks for the least."""
@@ -117,23 +117,15 @@ class IntelligentDriver:
 
     def _nearest_person(self, seen: Observation) -> float:
         """The distance [m] along the way to who is on it, or takes it first; inf: nobody."""
-        if seen.path is None or seen.people is None or not len(seen.people.position):
+        found = people_ahead(seen)
+        if found is None:
             return inf
-        way = seen.path.poses(self._ahead)
-        apart = seen.people.position[:, None] - way[None, :, :2]  # (n, k, 2)
-        nearest = np.hypot(apart[..., 0], apart[..., 1]).argmin(axis=1)
-        people = np.arange(len(nearest))
-        heading = way[nearest, 2]
-        off, v = apart[people, nearest], seen.people.velocity
-        along = off[:, 0] * np.cos(heading) + off[:, 1] * np.sin(heading)
-        aside = off[:, 1] * np.cos(heading) - off[:, 0] * np.sin(heading)
-        towards = -np.sign(aside) * (v[:, 1] * np.cos(heading) - v[:, 0] * np.sin(heading))
-        distance = self._ahead[nearest] + along
-        blocks = self._takes_the_way(distance, np.abs(aside), towards, seen.speed)
-        ahead = (distance > 0.0) & (distance < _SIGHT)
-        return float(distance[blocks & ahead].min(initial=inf))
+        blocks = self._takes_the_way(*found, seen.speed)
+        return float(found.distance[blocks & found.in_sight].min(initial=inf))
 
-    def _takes_the_way(self, distance: Array, aside: Array, towards: Array, speed: float) -> Array:
+    def _takes_the_way(
+        self, distance: Array, aside: Array, towards: Array, speed: float
+    ) -> NDArray[np.bool_]:
         """Who is on the way, or comes onto it and not after the vehicle has passed, (n,).
 
         Args:
