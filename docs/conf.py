@@ -1,0 +1,85 @@
+"""How Sphinx makes the site of the documentation: CONTRIBUTING.md has the command.
+
+The repository is the source folder, so that the pages are the files that GitHub shows, with the
+same links between them. Equations become MathML while the site is built: a page needs no network.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from latex2mathml.converter import convert
+
+from giveway import __version__
+
+if TYPE_CHECKING:
+    from docutils import nodes
+    from sphinx.application import Sphinx
+    from sphinx.writers.html5 import HTML5Translator
+
+project = "giveway"
+author = "the giveway engineers"
+project_copyright = "the giveway engineers, MIT licence"
+version = release = __version__
+
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+root_doc = "docs/index"
+include_patterns = [
+    "README.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "docs/*.md",
+    "docs/**/*.md",
+    "fmus/README.md",
+    "sumo_scenarios/README.md",
+]
+exclude_patterns = [".*", ".venv/**", "build/**", "dist/**", "results/**"]
+
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_heading_anchors = 4
+myst_links_external_new_tab = False
+
+autodoc_typehints = "signature"
+autodoc_member_order = "bysource"
+autodoc_class_signature = "mixed"
+napoleon_google_docstring = True
+napoleon_use_ivar = True
+add_module_names = False
+
+html_theme = "furo"
+html_title = "giveway"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_additional_pages = {"index": "first_page.html"}
+templates_path = ["_templates"]
+html_copy_source = False
+html_show_sphinx = False
+html_math_renderer = "mathml"
+
+
+def inline_equation(writer: HTML5Translator, node: nodes.Element) -> None:
+    """Write an equation within a line."""
+    writer.body.append(convert(node.astext()))
+    skip_children()
+
+
+def block_equation(writer: HTML5Translator, node: nodes.Element) -> None:
+    """Write an equation of its own, with its number if it has one."""
+    writer.body.append(writer.starttag(node, "div", CLASS="math"))
+    if node.get("number"):
+        writer.body.append(f'<span class="eqno">({node["number"]})</span>')
+    writer.body.append(convert(node.astext(), display="block") + "</div>\n")
+    skip_children()
+
+
+def skip_children() -> None:
+    """Tell docutils that what is inside has been written."""
+    from docutils import nodes
+
+    raise nodes.SkipNode
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Add the renderer of equations."""
+    app.add_html_math_renderer("mathml", (inline_equation, None), (block_equation, None))
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
