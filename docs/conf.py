@@ -6,6 +6,8 @@ same links between them. Equations become MathML while the site is built: a page
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from latex2mathml.converter import convert
@@ -17,12 +19,14 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
     from sphinx.writers.html5 import HTML5Translator
 
+sys.path.insert(0, str(Path(__file__).parent))  # field_comments
+
 project = "giveway"
 author = "the giveway engineers"
 project_copyright = "the giveway engineers, MIT licence"
 version = release = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "field_comments"]
 root_doc = "docs/index"
 include_patterns = [
     "README.md",
@@ -36,6 +40,7 @@ include_patterns = [
 exclude_patterns = [".*", ".venv/**", "build/**", "dist/**", "results/**"]
 
 myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_fence_as_directive = ["math"]  # as on GitHub
 myst_heading_anchors = 4
 myst_links_external_new_tab = False
 
@@ -54,6 +59,7 @@ html_additional_pages = {"index": "first_page.html"}
 templates_path = ["_templates"]
 html_copy_source = False
 html_show_sphinx = False
+html_show_search_summary = False  # a page that is opened as a file cannot read others
 html_math_renderer = "mathml"
 
 
