@@ -1,0 +1,140 @@
+"""The documentation as a site: complete, without warnings, readable without a network."""
+
+from __future__ import annotations
+
+import importlib
+import re
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import TYPE_CHECKING
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("giveway", "controller", "pedestrian_model", "fmus", "sumo_scenarios")
+NEEDED = ("sphinx", "myst_parser", "furo", "latex2mathml")
+FETCHED = {  # what a browser loads by itself
+    ("script", "src"),
+    ("img", "src"),
+    ("iframe", "src"),
+    ("source", "src"),
+    ("object", "data"),
+}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_reference_has_every_public_name(package: str) -> None:
+    page = (ROOT / "docs" / "api" / f"{package}.md").read_text(encoding="utf-8")
+    named = re.findall(r"^\.\. auto\w+:: (\w+)$", page, re.MULTILINE)
+    public = set(importlib.import_module(package).__all__) - {"__version__"}
+    assert sorted(named) == sorted(public)
+
+
+def test_every_page_is_in_the_site_s_lists() -> None:
+    listed: set[Path] = set()
+    for page in (ROOT / "docs").rglob("index.md"):
+        for block in re.findall(r"```\{toctree\}\n(.*?)```", page.read_text("utf-8"), re.DOTALL):
+            for entry in block.splitlines():
+                if entry and not entry.startswith(":"):
+                    name = entry.rpartition("<")[2].rstrip(">")
+                    listed.add((page.parent / f"{name}.md").resolve())
+    pages = {file for file in (ROOT / "docs").rglob("*.md") if file != ROOT / "docs" / "index.md"}
+    assert sorted(pages - listed) == []
+    assert [page for page in listed if not page.is_file()] == []
+
+
+class Page(HTMLParser):
+    """What a page of the site refers to."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.links: list[str] = []  # to be followed by a reader
+        self.fetched: list[str] = []  # by the browser
+        self.anchors: set[str] = set()
+        self.equations = 0
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        values = {name: value or "" for name, value in attributes}
+        self.anchors |= {values[name] for name in ("id", "name") if name in values}
+        self.equations += tag == "math"
+        if tag == "a" and "href" in values:
+            self.links.append(values["href"])
+        if tag == "link":
+            self.fetched.append(values.get("href", ""))
+        self.fetched += [values[name] for kind, name in FETCHED if kind == tag and name in values]
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    for module in NEEDED:
+        pytest.importorskip(module, reason=f"{module}: giveway[docs] has it")
+    folder = tmp_path_factory.mktemp("site")
+    command = [
+        sys.executable,
+        "-m",
+        "sphinx",
+        "-q",
+        "-W",
+        "--keep-going",
+        "-c",
+        "docs",
+        ".",
+        folder,
+    ]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def pages(site: Path) -> Iterator[tuple[Path, Page]]:
+    for file in sorted(site.rglob("*.html")):
+        yield file, Page(file.read_text(encoding="utf-8"))
+
+
+def test_nothing_is_fetched_from_a_network(site: Path) -> None:
+    remote = [
+        (file.name, address)
+        for file, page in pages(site)
+        for address in page.fetched
+        if urlsplit(address).scheme not in {"", "data"} or address.startswith("//")
+    ]
+    assert remote == []
+    for sheet in site.rglob("*.css"):
+        text = sheet.read_text(encoding="utf-8")
+        assert not re.search(r"(@import|url\()\s*[\"']?\s*(https?:)?//", text), sheet
+
+
+def test_links_between_pages_lead_somewhere(site: Path) -> None:
+    there = dict(pages(site))
+    broken = []
+    for file, page in there.items():
+        for address in page.links + page.fetched:
+            parts = urlsplit(address)
+            if parts.scheme or address.startswith("//"):
+                continue
+            target = (file.parent / unquote(parts.path)).resolve() if parts.path else file
+            if not target.is_file():
+                broken.append((file.name, address))
+            elif target in there and parts.fragment:
+                if unquote(parts.fragment) not in there[target].anchors:
+                    broken.append((file.name, address))
+    assert broken == []
+
+
+def test_equations_are_written_into_the_pages(site: Path) -> None:
+    text = (site / "docs" / "pedestrian_model.html").read_text(encoding="utf-8")
+    assert Page(text).equations >= 2
+    assert "<mfrac>" in text
+
+
+def test_a_field_is_described_by_its_comment(site: Path) -> None:
+    text = (site / "docs" / "api" / "controller.html").read_text(encoding="utf-8")
+    assert "h [s] between two answers" in text
+    assert "Alias for field number" not in text
