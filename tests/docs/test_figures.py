@@ -1,0 +1,51 @@
+"""Every picture of README and docs stands beside a record of how it was made."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+FIGURES = ROOT / "docs" / "figures"
+RECORDS: dict[str, dict[str, Any]] = tomllib.loads(
+    (FIGURES / "records.toml").read_text(encoding="utf-8")
+)
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def shown() -> dict[str, Path]:
+    """The pictures that pages show, with a page of each."""
+    return {
+        str((page.parent / address).resolve().relative_to(ROOT)): page
+        for page in PAGES
+        for address in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8"))
+    }
+
+
+def test_pages_and_folder_and_records_have_the_same_pictures() -> None:
+    recorded = sorted(f"docs/figures/{name}.png" for name in RECORDS)
+    assert sorted(shown()) == recorded
+    assert sorted(f"docs/figures/{file.name}" for file in FIGURES.glob("*.png")) == recorded
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_the_picture_is_the_recorded_one(name: str) -> None:
+    file = FIGURES / f"{name}.png"
+    assert hashlib.sha256(file.read_bytes()).hexdigest() == RECORDS[name]["sha256"], (
+        f"{file.name} differs from its record: python docs/make_figures.py {name}"
+    )
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_a_record_says_how_to_make_it_again(name: str) -> None:
+    record = RECORDS[name]
+    assert record["commands"]
+    assert re.fullmatch(r"[0-9a-f]{7,10}", record["commit"])
+    assert record["made"].endswith(".png")
+    for file, told in record["data"].items():
+        assert re.fullmatch(r"[0-9a-f]{64}", told), file

@@ -1,0 +1,123 @@
+"""Every command that README, docs and tutorials print is one, and a few of them are run."""
+
+from __future__ import annotations
+
+import random
+import re
+import shlex
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import typer.main
+
+from giveway.cli.app import build_app
+from sumo_scenarios import available
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from subprocess import CompletedProcess
+
+ROOT = Path(__file__).parents[2]
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "CONTRIBUTING.md",
+    *sorted((ROOT / "docs").rglob("*.md")),
+    ROOT / "fmus" / "README.md",
+    ROOT / "sumo_scenarios" / "README.md",
+]
+RUN = 2  # of those that need nothing, drawn by a seed
+ENDS = {"&&", "||", ";", "|", ">", ">>", "2>"}
+BLOCK = re.compile(r"^( *)```(sh|bash|)\n(.*?)^\1```", re.DOTALL | re.MULTILINE)
+
+
+def commands_in(text: str) -> list[list[str]]:
+    """The words behind each ``giveway`` in shell lines."""
+    found = []
+    for line in text.replace("\\\n", " ").splitlines():
+        if not re.match(r"\s*(\$ )?(\S*/)?(giveway)\s", line):
+            continue
+        lexer = shlex.shlex(line, posix=True, punctuation_chars=";|&>")
+        lexer.whitespace_split = True
+        words = list(lexer)
+        words = words[words.index(next(w for w in words if w.endswith("giveway"))) + 1 :]
+        end = next((at for at, word in enumerate(words) if word in ENDS), len(words))
+        found.append(words[:end])
+    return found
+
+
+def printed() -> dict[str, list[str]]:
+    """Every printed command, by its page and its words."""
+    found = {}
+    for page in PAGES:
+        for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
+            for words in commands_in(block[3]):
+                found[f"{page.relative_to(ROOT)}: {' '.join(words)}"] = words
+    records = tomllib.loads((ROOT / "docs" / "figures" / "records.toml").read_text("utf-8"))
+    for name, record in records.items():
+        for words in commands_in("\n".join(record["commands"])):
+            found[f"records.toml, {name}: {' '.join(words)}"] = words
+    return found
+
+
+PRINTED = printed()
+
+
+def parse(words: list[str]) -> None:
+    """Read a command's arguments as the program does, without doing anything."""
+    command: Any = typer.main.get_command(build_app(words))
+    context = command.make_context("giveway", list(words))
+    while hasattr(command, "resolve_command"):
+        rest = [*context._protected_args, *context.args]
+        name, command, rest = command.resolve_command(context, rest)
+        if {"--help", "--help-all", "-h"} & set(rest):
+            return
+        context = command.make_context(name, rest, parent=context)
+
+
+def test_the_pages_print_many() -> None:
+    assert len(PRINTED) > 60
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_a_printed_command_is_one(name: str) -> None:
+    parse(PRINTED[name])
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["runn", "encounter"], ["run", "encounter", "--sed", "4"], ["study", "--runs", "many"]],
+)
+def test_another_is_not(words: list[str]) -> None:
+    with pytest.raises(Exception, match=r"No such|valid integer"):
+        parse(words)
+
+
+def needs_nothing(words: list[str]) -> bool:
+    """Whether a command can be typed in an empty folder, and is a matter of seconds."""
+    if words[:1] in (["scenarios"], ["studies"]) or words[:2] == ["config", "street"]:
+        return True
+    foreign = {"careful", "shy", "--set", "--set-model", "--config", "--vehicle", "--profile"}
+    return (
+        words[:1] == ["run"]
+        and words[1:2] != []
+        and words[1] in available()
+        and not foreign & set(words)
+        and not any(re.search(r"[:<]|\.(toml|fmu|sumocfg)$", word) for word in words)
+    )
+
+
+def drawn() -> list[str]:
+    """Some of those that need nothing, the same every time."""
+    able = sorted({" ".join(words) for words in PRINTED.values() if needs_nothing(words)})
+    return random.Random(21).sample(able, RUN)
+
+
+@pytest.mark.parametrize("command", drawn())
+def test_a_printed_command_does_something(
+    command: str, type_here: Callable[..., CompletedProcess[str]]
+) -> None:
+    done = type_here(*shlex.split(command))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout
