@@ -114,6 +114,7 @@ def extras_table(project: dict[str, Any], there: set[str]) -> list[str]:
         if extra in DEVELOPERS:
             continue
         names = [name_of(Requirement(text).name) for text in texts]
+        names = [name for name in names if name != "giveway"]
         added = set().union(*map(needs, names)) - there
         missing = [name for name in names if not needs(name)]
         megabytes = f"{sum(map(size, added)):.1f}" if not missing else "not installed here"

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _MARKER = "compiled-for-"
 _KEPT = 30 * 86400.0  # [s] since the last run
-_MESSAGE = "Compiling the numerical kernels (once after installation, about half a minute) ..."
+_MESSAGE = "Compiling the numerical kernels (once after installation, about a minute) ..."
 _MESSAGE_THREADS = "Compiling the kernels of several threads (once, some ten seconds) ..."
 _LONGEST: Final = 600.0  # [s] that the other process is waited for
 _HELP: Final = "from giveway.precompile import help_compiling; help_compiling(*arguments)"

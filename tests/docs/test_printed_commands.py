@@ -13,6 +13,7 @@ import pytest
 import typer.main
 
 from giveway.cli.app import build_app
+from giveway.studies.definition import read_definition
 from sumo_scenarios import available
 
 if TYPE_CHECKING:
@@ -121,3 +122,20 @@ def test_a_printed_command_does_something(
     done = type_here(*shlex.split(command))
     assert done.returncode == 0, done.stderr
     assert done.stdout
+
+
+STUDIES = [
+    pytest.param(block, id=f"{page.name}-{number}")
+    for page in PAGES
+    for number, block in enumerate(
+        re.findall(r"```toml\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    )
+    if "[factors" in block
+]
+
+
+@pytest.mark.parametrize("block", STUDIES)
+def test_a_printed_study_is_one(block: str, tmp_path: Path) -> None:
+    file = tmp_path / "study.toml"
+    file.write_text(block, encoding="utf-8")
+    assert read_definition(file).factors

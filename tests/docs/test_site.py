@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("giveway", "controller", "pedestrian_model", "fmus", "sumo_scenarios")
-NEEDED = ("sphinx", "myst_parser", "furo", "latex2mathml")
+NEEDED = ("sphinx", "myst_parser", "furo", "latex2mathml", "gymnasium")
 FETCHED = {  # what a browser loads by itself
     ("script", "src"),
     ("img", "src"),
