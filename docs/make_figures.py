@@ -32,14 +32,17 @@ def sha256(file: Path) -> str:
 
 
 def commit() -> str:
-    """The commit that is checked out, marked if code differs from it."""
+    """The last commit that changed the code, marked if what is there differs from it."""
     words = ["git", "-C", str(ROOT)]
-    head = subprocess.run(
-        [*words, "rev-parse", "--short=10", "HEAD"], capture_output=True, text=True, check=True
-    )
     code = ["giveway", "controller", "pedestrian_model", "fmus", "sumo_scenarios"]
+    last = subprocess.run(
+        [*words, "log", "-1", "--abbrev=10", "--format=%h", "--", *code],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     same = subprocess.run([*words, "diff", "--quiet", "HEAD", "--", *code], check=False)
-    return head.stdout.strip() + ("" if same.returncode == 0 else "+changes")
+    return last.stdout.strip() + ("" if same.returncode == 0 else "+changes")
 
 
 def run(command: str, folder: Path) -> None:
