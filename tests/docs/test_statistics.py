@@ -32,5 +32,5 @@ def test_every_metric_is_documented_with_its_better_side(metric) -> None:
 def test_settings_shown_are_settings_and_the_first_ones_the_defaults() -> None:
     blocks = [tomllib.loads(block.split("```")[0]) for block in PAGE.split("```toml\n")[1:]]
     shown = Comparison.model_validate(blocks[0]["comparison"])
-    assert shown == Comparison(baseline="pid")
+    assert shown == Comparison(baseline="pid-tuned")
     Precision.model_validate(blocks[1]["precision"])
