@@ -237,6 +237,7 @@ def write_mp4(run: RunFolder, sampled: Sampled, file: Path) -> str:
             "MP4 needs imageio-ffmpeg; install it with: pip install 'giveway[video]', or write a "
             "GIF (--format gif)"
         ) from error
+    file.touch()  # FFmpeg's own words about a place that cannot be written are many
     painter = Painter(run, sampled, MP4_SIZE)
     sink = imageio_ffmpeg.write_frames(
         str(file),
@@ -254,7 +255,7 @@ def write_mp4(run: RunFolder, sampled: Sampled, file: Path) -> str:
             sink.send(frame.tobytes())
         sink.close()
     except OSError as error:
-        said = " ".join(str(error).split())[:200]
+        said = " ".join(str(error).partition("FFMPEG")[0].split())[:200]
         raise ResultsError(f"{file}: FFmpeg could not encode the film ({said})") from error
     return _told(sampled, MP4_SIZE)
 

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from giveway.errors import ResultsError
+from giveway.errors import ResultsError, ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.replays.run_folder import RunFolder
 from giveway.scenario_files import read_scenario
 from giveway.scenario_files.network import read_network
+from sumo_scenarios import ScenarioError as MissingScenarioError
 from sumo_scenarios import find
 
 _INTERNAL = ":"  # how SUMO's ids of what lies inside junctions begin
@@ -54,7 +55,13 @@ class Net:
         Raises:
             GivewayError: the scenario is not there any more, or its network cannot be read.
         """
-        return cls(read_scenario(find(run.config.scenario).config_file).net_file)
+        try:
+            scenario = find(run.config.scenario)
+        except MissingScenarioError as error:
+            raise ScenarioError(
+                f"{run.path}: its network is needed, but {error}; put the scenario back"
+            ) from error
+        return cls(read_scenario(scenario.config_file).net_file)
 
     def _location(self, attributes: dict[str, str]) -> None:
         x, y = attributes["netOffset"].split(",")

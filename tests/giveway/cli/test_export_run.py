@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
+import sys
+
 import pytest
 
 import giveway
@@ -34,6 +37,11 @@ def test_a_file_named_after_the_run_is_written_here(made, type_here, tmp_path, m
         (["--format", "gif", "--out", "film.mp4"], "expected the name of a .gif file"),
         (["--format", "pedpy", "--step", "0"], "--step 0: expected 0.001 to 10 [s]"),
         (["--format", "geojson"], "no projection"),
+        pytest.param(
+            ["--format", "mp4", "--out", "/proc/film.mp4"],
+            "/proc/film.mp4: cannot be written",
+            marks=pytest.mark.skipif(sys.platform != "linux", reason="/proc"),
+        ),
     ],
 )
 def test_what_cannot_be_is_one_line_and_leaves_nothing(
@@ -51,3 +59,15 @@ def test_a_folder_without_a_run(type_here, tmp_path):
     typed = type_here("export", "run", tmp_path, "--format", "fcd")
     assert typed.returncode != 0
     assert "no run in it" in typed.stderr
+
+
+def test_a_run_whose_scenario_is_gone(made, type_here, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(made, tmp_path / "moved")
+    config = tmp_path / "moved" / "config.toml"
+    text = config.read_text(encoding="utf-8").replace('"shared_space"', '"gone.sumocfg"')
+    config.write_text(text, encoding="utf-8")
+    typed = type_here("export", "run", "moved", "--format", "fcd")
+    assert typed.returncode != 0
+    assert "gone.sumocfg" in typed.stderr
+    assert len(typed.stderr.strip().splitlines()) == 1
