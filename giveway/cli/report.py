@@ -19,7 +19,7 @@ def report_command(
         study: the study's folder.
         replays: whether to make the shown runs again.
         quiet: print nothing.
-        trusted: controllers, as module:Class, that the study may have imported.
+        trusted: code, as module:Class, that the study may have imported.
 
     Raises:
         GivewayError: there is no study, or nothing to show, or the disk is full.

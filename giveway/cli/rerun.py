@@ -31,7 +31,7 @@ def rerun_command(
         run: the run's id.
         outputs: what is kept and printed.
         predictions: keep the predicted positions.
-        trusted: controllers, as module:Class, that the study may have imported.
+        trusted: code, as module:Class, that the study may have imported.
         journal: a folder for the rows in case this process dies.
 
     Raises:

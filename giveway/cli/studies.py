@@ -10,9 +10,7 @@ from giveway.cli.help import Commands, JsonFlag
 
 _Trust = Annotated[
     list[str] | None,
-    typer.Option(
-        metavar="MODULE:CLASS", help="A controller that the study names and that you know."
-    ),
+    typer.Option(metavar="MODULE:CLASS", help="Code that the study names and that you know."),
 ]
 _Folder = Annotated[Path, typer.Argument(help="The study's folder.")]
 

@@ -14,6 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from giveway.cli.printing import print_json
 from giveway.cli.study_summary import print_plan, print_summary
+from giveway.config.foreign_code import foreign_code
 from giveway.precompile import compile_kernels_once
 from giveway.studies.definition import changed, read_definition
 from giveway.studies.finding import find_study
@@ -75,8 +76,8 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
     if request.report:
         from giveway.cli.report import write_all
 
-        controllers = {cell.config.controller for cell in planned.cells}
-        write_all(study, console, trusted=controllers)  # the user has just had them imported
+        imported = {one.name for cell in planned.cells for one in foreign_code(cell.config)}
+        write_all(study, console, trusted=imported)  # the user's own word, a moment ago
     if request.as_json:
         print_json(
             {

@@ -30,7 +30,7 @@ def write_report_of(
         replays: make the runs that the report shows once more, for pages that play them and
             for the examples of speed and gap; those that a former report has made are kept.
         tell: takes one line at each step.
-        trusted: controllers, as module:Class, that the study may have imported.
+        trusted: code, as module:Class, that the study may have imported.
 
     Raises:
         GivewayError: the disk is full.

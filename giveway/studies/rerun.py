@@ -32,7 +32,7 @@ def checked_run(
         study: whose.
         run_id: such as ``c2-s17``.
         predictions: the predicted positions are to be kept, for the replay.
-        trusted: controllers, as module:Class, that the study may have imported.
+        trusted: code, as module:Class, that the study may have imported.
 
     Raises:
         GivewayError: there is no such run, or its scenario is no longer there.

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from support.plug_ins import printed
 
 import giveway
 from giveway.cli.check_command import check_command
@@ -23,7 +24,6 @@ from giveway.plug_ins.sockets import CONTROLLER
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run, rerun
 
-PAGE = (Path(__file__).parents[2] / "docs" / "plugins.md").read_text(encoding="utf-8")
 SHORT = {"time_limit": 2.0, "crowd": {"pedestrians": 3}}
 
 FAULTY = """
@@ -58,13 +58,6 @@ class Driver:
             time.sleep(600)
         return Acceleration(0.1)
 """
-
-
-def printed(mark: str) -> str:
-    """The block of the page below a mark."""
-    found = re.search(rf"<!-- {re.escape(mark)} -->\n```\w*\n(.*?)```", PAGE, re.DOTALL)
-    assert found, mark
-    return found.group(1)
 
 
 @pytest.fixture

@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from support.plug_ins import printed
 
 import giveway
 from giveway.config import RunConfig
@@ -20,7 +20,6 @@ from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run
 from pedestrian_model import ModelSetup, check_model
 
-PAGE = (Path(__file__).parents[2] / "docs" / "plugins.md").read_text(encoding="utf-8")
 GROUP = "giveway.pedestrian_models"
 SHORT = {"controller": "pid-tuned", "time_limit": 2.0}
 
@@ -54,13 +53,6 @@ class People:
             os._exit(0)
         return answer
 """
-
-
-def printed(mark: str) -> str:
-    """The block of the page below a mark."""
-    found = re.search(rf"<!-- {re.escape(mark)} -->\n```\w*\n(.*?)```", PAGE, re.DOTALL)
-    assert found, mark
-    return found.group(1)
 
 
 @pytest.fixture
@@ -228,3 +220,21 @@ def test_a_class_without_a_step_and_one_that_is_not_there(installed):
     ):
         with pytest.raises((ControlError, CrowdError), match=error):
             giveway.run({"crowd.model": name, "crowd.pedestrians": 3, **SHORT})
+
+
+def test_a_study_that_names_a_class_is_rerun_with_the_users_word(shy, study_of, tmp_path):
+    text = """
+name = "named"
+replications = 1
+[run]
+controller = "pid-tuned"
+time_limit = 0.5
+crowd = { pedestrians = 3 }
+[factors]
+"crowd.model" = ["shy_people:Shy", "vci"]
+"""
+    folder = StudyFolder.open(study_of(text, tmp_path / "study").path)
+    with pytest.raises(ConfigError, match="--trust shy_people:Shy"):
+        checked_run(folder, "c1-s1")
+    assert checked_run(folder, "c1-s1", trusted=["shy_people:Shy"])
+    assert checked_run(folder, "c2-s1")
