@@ -102,9 +102,10 @@ def main() -> int:
                 differing += 1
             if arguments.check:
                 continue
-            shutil.copyfile(picture, FIGURES / f"{name}.png")
+            kept = FIGURES / f"{name}{picture.suffix}"
+            shutil.copyfile(picture, kept)
             record["data"].update(data)
-            record["sha256"] = sha256(FIGURES / f"{name}.png")
+            record["sha256"] = sha256(kept)
             record["commit"] = commit()
             RECORDS.write_text(tomlkit.dumps(records), encoding="utf-8")
     return 1 if arguments.check and differing else 0

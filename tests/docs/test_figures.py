@@ -27,15 +27,21 @@ def shown() -> dict[str, Path]:
     }
 
 
+def picture(name: str) -> Path:
+    """The picture of a record."""
+    return FIGURES / f"{name}{Path(RECORDS[name]['made']).suffix}"
+
+
 def test_pages_and_folder_and_records_have_the_same_pictures() -> None:
-    recorded = sorted(f"docs/figures/{name}.png" for name in RECORDS)
+    recorded = sorted(f"docs/figures/{picture(name).name}" for name in RECORDS)
     assert sorted(shown()) == recorded
-    assert sorted(f"docs/figures/{file.name}" for file in FIGURES.glob("*.png")) == recorded
+    there = [file.name for file in FIGURES.iterdir() if file.suffix in {".png", ".gif"}]
+    assert sorted(f"docs/figures/{name}" for name in there) == recorded
 
 
 @pytest.mark.parametrize("name", RECORDS)
 def test_the_picture_is_the_recorded_one(name: str) -> None:
-    file = FIGURES / f"{name}.png"
+    file = picture(name)
     assert hashlib.sha256(file.read_bytes()).hexdigest() == RECORDS[name]["sha256"], (
         f"{file.name} differs from its record: python docs/make_figures.py {name}"
     )
@@ -46,7 +52,7 @@ def test_a_record_says_how_to_make_it_again(name: str) -> None:
     record = RECORDS[name]
     assert record["commands"]
     assert re.fullmatch(r"[0-9a-f]{7,10}", record["commit"])
-    assert record["made"].endswith(".png")
+    assert picture(name).suffix in {".png", ".gif"}
     for file, told in record["data"].items():
         assert re.fullmatch(r"[0-9a-f]{64}", told), file
 
