@@ -184,6 +184,10 @@ def _replay(
     out: Annotated[
         Path | None, typer.Option(help="Page to write (default RUN/replay.html).")
     ] = None,
+    beside: Annotated[
+        Path | None,
+        typer.Option(help="Results folder of another run, to be played beside it in step."),
+    ] = None,
     rerun: Annotated[
         bool, typer.Option(help="Make the run again for its predicted positions.")
     ] = True,
@@ -192,4 +196,4 @@ def _replay(
     """Write one HTML page that plays a run, in any browser, without a network."""
     from giveway.cli.replay import replay_command
 
-    raise typer.Exit(replay_command(run, out=out, rerun=rerun, show=show))
+    raise typer.Exit(replay_command(run, out=out, beside=beside, rerun=rerun, show=show))

@@ -2,13 +2,14 @@
 
 import json
 import math
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from jinja2 import Environment, StrictUndefined
+from jinja2 import Environment, StrictUndefined, Template
 from markupsafe import Markup
 from shapely import LineString
 
@@ -64,11 +65,44 @@ def write_replay(
     Raises:
         ResultsError: the folder holds no run, or the page cannot be written.
     """
+    return _written(target, _page(content_of(folder, predictions, remark)))
+
+
+def write_beside(contents: Sequence[dict[str, Any]], target: Path) -> Path:
+    """Make the page that plays two runs side by side, in step since their beginnings.
+
+    Args:
+        contents: of each, as :func:`content_of` gives it.
+        target: the HTML file to write; replaced if it exists.
+
+    Returns:
+        ``target``.
+
+    Raises:
+        ResultsError: the page cannot be written.
+    """
+    page = _template("beside.html.j2").render(
+        titles=[content["title"] for content in contents],
+        pages=[_page(content) for content in contents],
+        script=_text("beside.js"),
+    )
+    return _written(target, page)
+
+
+def content_of(folder: Path, predictions: Path | None = None, remark: str = "") -> dict[str, Any]:
+    """What a run's page is given; arguments as of :func:`write_replay`.
+
+    Raises:
+        ResultsError: the folder holds no run.
+    """
     run = RunFolder.read(folder)
     if predictions is None and (folder / PREDICTIONS).is_file():
         predictions = folder / PREDICTIONS
     table = None if predictions is None else read_predictions(predictions)
-    page = _page(_content(run, table, remark))
+    return _content(run, table, remark)
+
+
+def _written(target: Path, page: str) -> Path:
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(page, encoding="utf-8")
@@ -79,22 +113,27 @@ def write_replay(
     return target
 
 
+def _text(name: str) -> Markup:
+    """A file of the page, as it is."""
+    file = files("giveway.replays") / "page" / name
+    return Markup(file.read_text(encoding="utf-8"))
+
+
+def _template(name: str) -> Template:
+    environment = Environment(autoescape=True, undefined=StrictUndefined)
+    return environment.from_string(_text(name))
+
+
 def _page(content: dict[str, Any]) -> str:
     """The template with style, scripts and data in place."""
-    folder = files("giveway.replays") / "page"
-
-    def text(name: str) -> Markup:
-        return Markup((folder / name).read_text(encoding="utf-8"))
-
-    environment = Environment(autoescape=True, undefined=StrictUndefined)
-    template = environment.from_string((folder / "replay.html.j2").read_text(encoding="utf-8"))
+    template = _template("replay.html.j2")
     # No id in it, whatever it is called, can end the script element that holds the data.
     data = json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     data = data.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
     return template.render(
         title=content["title"],
-        style=text("replay.css"),
-        scripts=[text(name) for name in _SCRIPTS],
+        style=_text("replay.css"),
+        scripts=[_text(name) for name in _SCRIPTS],
         data=Markup(data),
     )
 

@@ -58,7 +58,7 @@ let written = "";
 let resting = false;
 
 function noteTime() {
-  if (resting || player.playing) return;
+  if (resting || player.playing || window.parent !== window) return; // an embedded page has none
   const address = `#t=${Number(player.time.toFixed(3))}${view.follow ? FOLLOW : ""}`;
   if (address === written) return;
   written = address;
@@ -284,6 +284,7 @@ window.replay = {
   get time() {
     return player.time;
   },
+  start: START,
   seek: (t) => player.seek(t),
   place: (x, y) => [toScreenX(x - RUN.origin[0]), toScreenY(y - RUN.origin[1])],
   get scale() {

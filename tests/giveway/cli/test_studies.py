@@ -41,6 +41,11 @@ def test_a_study_from_start_to_replay(type_here, small_study_text, tmp_path):
     done = type_here("replay", str(study / "reruns" / "c1-s2"), "--no-rerun")
     assert done.returncode == 0, done.stderr
     assert (study / "reruns" / "c1-s2" / "replay.html").stat().st_size > 50_000
+    other = str(study / "reruns" / "c1-s2")
+    both = tmp_path / "both.html"
+    done = type_here("replay", other, "--beside", other, "--out", str(both), "--no-rerun")
+    assert done.returncode == 0, done.stderr
+    assert both.read_text(encoding="utf-8").count("<iframe") == 2
 
     assert "a study is there" in one_line(type_here("study", "small.toml"), 2)
     done = type_here("study", "small.toml", "--resume", "--no-report")
