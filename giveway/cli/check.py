@@ -12,6 +12,10 @@ _Name = Annotated[str, typer.Argument(help="Declared name, or module:Class.")]
 _Set = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="One of its options.")
 ]
+_Step = Annotated[
+    float | None,
+    typer.Option("--time-step", metavar="S", help="Control step of the scenes [s]; none: 0.05."),
+]
 
 
 def build_check() -> Commands:
@@ -27,17 +31,17 @@ def _check() -> None:
     """Check code of other packages."""
 
 
-def _controller(name: _Name, set_: _Set = None) -> None:
+def _controller(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     """Does a controller keep to the rules? It is driven through made-up scenes, without SUMO."""
     from giveway.cli.check_command import check_command
     from giveway.plug_ins.sockets import CONTROLLER
 
-    raise typer.Exit(check_command(name, set_ or (), CONTROLLER))
+    raise typer.Exit(check_command(name, set_ or (), CONTROLLER, time_step=time_step))
 
 
-def _model(name: _Name, set_: _Set = None) -> None:
+def _model(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     """Does a pedestrian model? It moves people through made-up scenes, without SUMO."""
     from giveway.cli.check_command import check_command
     from giveway.plug_ins.sockets import MODEL
 
-    raise typer.Exit(check_command(name, set_ or (), MODEL))
+    raise typer.Exit(check_command(name, set_ or (), MODEL, time_step=time_step))

@@ -13,16 +13,22 @@ from giveway.cli.flags import set_options
 from giveway.config import RunConfig
 from giveway.config.foreign_code import foreign_code, require_code
 from giveway.config.layers import Layer, build_config
+from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
 from giveway.plug_ins.sockets import CONTROLLER, Socket
 
 LIMIT = 60.0  # [s] that a rule may take: most take a tenth of a second
 _START = 60.0  # [s] more for the first: kernels may have to be compiled
 _END = 5.0  # [s] in which a process that has closed its pipe is gone
-_STEP = 0.05  # [s] the control step
 
 
-def check_command(name: str, words: Sequence[str], socket: Socket, limit: float = LIMIT) -> int:
+def check_command(
+    name: str,
+    words: Sequence[str],
+    socket: Socket,
+    limit: float = LIMIT,
+    time_step: float | None = None,
+) -> int:
     """Print what was found; the exit code is 1 if a rule is broken.
 
     The battery runs in a process of its own, which may hang or end.
@@ -32,11 +38,12 @@ def check_command(name: str, words: Sequence[str], socket: Socket, limit: float 
         words: that set its options.
         socket: that it is for.
         limit: [s] for one rule.
+        time_step: [s] of the scenes; none: that of a run which sets none.
 
     Raises:
         GivewayError: it cannot be found, imported or given its options.
     """
-    config = _configured(name, words, socket)
+    config = _configured(name, words, socket, time_step)
     own = [one for one in foreign_code(config) if one.socket is socket]
     if not own:
         msg = f"{name}: is giveway's own; expected a {socket.what} of another package"
@@ -52,8 +59,12 @@ def check_command(name: str, words: Sequence[str], socket: Socket, limit: float 
     return 1 if broken else 0
 
 
-def _configured(name: str, words: Sequence[str], socket: Socket) -> RunConfig:
+def _configured(
+    name: str, words: Sequence[str], socket: Socket, time_step: float | None
+) -> RunConfig:
     settings: dict[str, Any] = {socket.options: set_options(words)}
+    if time_step is not None:
+        settings["time_step"] = time_step
     node = settings
     for table in socket.location[:-1]:
         node = node.setdefault(table, {})
@@ -91,19 +102,20 @@ def _in_a_process(config: RunConfig, socket: Socket, limit: float) -> list[tuple
 def _battery(connection: Connection, config: str, what: str) -> None:
     """In the process: the findings, and before each rule its name."""
     effective = RunConfig.model_validate_json(config)
+    step = effective.time_step or PAPER_STEP
     if what == CONTROLLER.what:
         from controller import check_controller
         from giveway.ego import plug_in
 
         (own,) = effective.each_ego()
         found = check_controller(
-            plug_in.maker(own), plug_in.setup_of(own, _STEP), begins=connection.send
+            plug_in.maker(own), plug_in.setup_of(own, step), begins=connection.send
         )
         connection.send([(finding.rule, finding.problem) for finding in found])
     else:
         from giveway.crowd import models
         from pedestrian_model import check_model
 
-        setup = models.setup_of(effective, _STEP)
+        setup = models.setup_of(effective, step)
         said = check_model(models.maker(effective), setup, begins=connection.send)
         connection.send([(finding.rule, finding.problem) for finding in said])

@@ -40,6 +40,8 @@ class Driver:
     Options = Fault
     def __init__(self, setup, options):
         self.kind, self.asked = options.kind, 0
+        if self.kind == "step":
+            raise ValueError(f"steps of {setup.time_step} s")
     def control(self, seen):
         self.asked += 1
         if self.asked <= 20:
@@ -327,3 +329,9 @@ def test_check_comes_back_from_a_controller_that_does_not(faulty, capsys, kind, 
     assert shown[:2] == ["kept    can be made", "broken  answers numbers"]
     assert shown[2].strip() == said
     assert shown[3] == "broken: 1 of 2 rules broken"
+
+
+@pytest.mark.parametrize("step", [None, 0.1])
+def test_check_is_in_steps_of_a_run(faulty, capsys, step):
+    assert check_command("broken", ["kind=step"], CONTROLLER, time_step=step) == 1
+    assert f"steps of {step or 0.05} s" in capsys.readouterr().out
