@@ -175,7 +175,8 @@ class Painter:
                 told += f"   {ego.speed[k]:.1f} m/s"
         _label(draw, (pad, pad), told, self._large)
         config = self._run.config
-        about = f"{Path(config.scenario).stem}, {config.driver}, seed {config.seed}"
+        driver = "no ego" if config.ego.none else config.driver
+        about = f"{Path(config.scenario).stem}, {driver}, seed {config.seed}"
         _label(draw, (pad, canvas.height - pad), about, self._small, low=True)
         metres = 10.0 if scale * 10.0 < canvas.width / 4 else 5.0
         right, low = canvas.width - pad, canvas.height - pad
