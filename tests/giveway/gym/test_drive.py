@@ -144,7 +144,7 @@ def test_several_at_once_in_processes_of_their_own(context):
 
 
 def test_the_printed_example_runs(capsys):
-    page = (Path(__file__).parents[2] / "docs" / "gym.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "gym.md").read_text(encoding="utf-8")
     (text,) = re.findall(r"<!-- example -->\n```python\n(.*?)```", page, re.DOTALL)
     exec(compile(text, "gym.md", "exec"), {})
     time, conflicts, total = map(float, capsys.readouterr().out.split())

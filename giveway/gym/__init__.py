@@ -1,0 +1,5 @@
+"""A run as a Gymnasium environment (extra ``gym``): docs/gym.md."""
+
+from giveway.gym.drive import DriveEnv, Seat
+
+__all__ = ["DriveEnv", "Seat"]
