@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from giveway.errors import ConfigError
@@ -51,13 +51,20 @@ def foreign_code(config: RunConfig) -> list[Named]:
     return named
 
 
-def code_hashes(config: RunConfig) -> dict[str, str]:
+def code_hashes(
+    config: RunConfig, sockets: Collection[Socket] = (CONTROLLER, MODEL)
+) -> dict[str, str]:
     """SHA-256 of the package of each plug-in, by :attr:`Named.key`.
+
+    Args:
+        config: of the run.
+        sockets: those that count.
 
     Raises:
         ControlError: one is not installed.
     """
-    return {one.key: find(one.name, one.socket).sha256 for one in foreign_code(config)}
+    code = [one for one in foreign_code(config) if one.socket in sockets]
+    return {one.key: find(one.name, one.socket).sha256 for one in code}
 
 
 def named_in(failure: str, config: RunConfig) -> str:

@@ -28,6 +28,7 @@ from giveway.cosimulation.replayed import ReplayedLoop
 from giveway.cosimulation.traffic_notes import TrafficNotes
 from giveway.crowd.models import model_of
 from giveway.crowd.roster import Roster, Walking
+from giveway.plug_ins.sockets import MODEL
 from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.walk_log import WalkLog
@@ -147,7 +148,7 @@ def _key(config: RunConfig, crowd: Crowd, names: tuple[str, ...], time_step: flo
         parameters_of(settings.preset),
         (
             settings.model,
-            sorted(code_hashes(config).items()),
+            sorted(code_hashes(config, (MODEL,)).items()),
             sorted(config.model_options.items()),
             config.seed if settings.plugged_in else None,
             settings.detour,

@@ -15,10 +15,11 @@ import giveway
 from giveway.config import RunConfig
 from giveway.config.layers import dump_toml, read_toml
 from giveway.config.loading import load
+from giveway.cosimulation import twin
 from giveway.errors import ConfigError, ControlError, CrowdError
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run
-from pedestrian_model import ModelSetup, check_model
+from pedestrian_model import Crowd, ModelSetup, check_model
 
 GROUP = "giveway.pedestrian_models"
 SHORT = {"controller": "pid-tuned", "time_limit": 2.0}
@@ -238,3 +239,20 @@ crowd = { pedestrians = 3 }
         checked_run(folder, "c1-s1")
     assert checked_run(folder, "c1-s1", trusted=["shy_people:Shy"])
     assert checked_run(folder, "c2-s1")
+
+
+def test_a_crowd_among_itself_depends_on_its_model_and_on_no_controller(shy, installed):
+    """Runs that one process makes with the same people share it."""
+    installed("idle_driver", "class Idle:\n    def control(self, seen):\n        return 0.0\n")
+    crowd = Crowd.create([[0.0, 0.0]], [[0.0, 0.0]], 1.3, [[[5.0, 0.0]]])
+
+    def key(**settings):
+        return twin._key(RunConfig.model_validate(settings), crowd, ("ped0",), 0.05)
+
+    assert key(controller="idle_driver:Idle") == key(controller="mpc")
+    theirs = {"crowd": {"model": "shy"}}
+    assert key(controller="idle_driver:Idle", **theirs) == key(**theirs) != key()
+    assert key(**theirs, model_options={"look": 3.0}) != key(**theirs)
+    before = key(**theirs)
+    shy.write_text(shy.read_text(encoding="utf-8") + "# other\n", encoding="utf-8")
+    assert key(**theirs) != before
