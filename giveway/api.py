@@ -231,7 +231,7 @@ def simulate(
         elapsed = perf_counter() - began
         result = _result(parts, checked.scenario, recorder, loop, ending, error, elapsed)
         if loop.followed is None or error is not None or ending is Ending.INTERRUPTED:
-            return result
+            return _judged(result)
         _tell(watcher, "People go on to where they want")
         gone_on, error = _guarded(lambda: loop.follow_up(ending, interrupt), checked.scenario)
         tracks = {ego.id: ego.track for ego in result.egos}
@@ -242,7 +242,7 @@ def simulate(
         _tell(watcher, f"Twin: the same again, nobody feels the ego (the run took {elapsed:.0f} s)")
         make = partial(twin_of, checked, loop.followed, driven, heartbeat, interrupt, native_log)
         twin, error = _guarded(make, checked.scenario)
-    return _with_twin(result, loop.followed, twin, error, began + elapsed)
+    return _judged(_with_twin(result, loop.followed, twin, error, began + elapsed))
 
 
 def _tell(watcher: Watcher | None, doing: str) -> None:
@@ -321,6 +321,16 @@ def _with_twin(
     )
 
 
+def _judged(result: RunResult) -> RunResult:
+    """The result with remarks on egos that did not keep to the law, a twin's evidence heard."""
+    judged = ((ego.id, ego.ledger) for ego in result.egos if ego.ledger is not None)
+    against = [
+        text for text in (law.remark(name, found.violations) for name, found in judged) if text
+    ]
+    remarks = (*result.remarks, *against)
+    return replace(result, remarks=remarks, facts=result.facts | {"remarks": list(remarks)})
+
+
 def _result(
     parts: Parts,
     scenario: Scenario,
@@ -335,9 +345,6 @@ def _result(
     egos = results_of_egos(parts.config, rows, ending, loop.endings)
     touched = [text for text in map(vehicle_contacts.remark, egos) if text]
     remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos), *touched)
-    judged = ((ego.id, ego.ledger) for ego in egos if ego.ledger is not None)
-    against = (law.remark(name, found.violations) for name, found in judged)
-    remarks = (*remarks, *(text for text in against if text))
     crowd_track = rows.crowd_track()
     remarks = (*remarks, *unreached(parts.config.measure, crowd_track))
     if recorder.journal.failure:

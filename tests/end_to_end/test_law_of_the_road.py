@@ -18,9 +18,10 @@ from giveway.results.run_result import RunResult
 LAW = ("ledger.csv", "people.csv", "signals.csv")
 
 
-def run(folder: Path, priority: str) -> RunResult:
+def run(folder: Path, priority: str, *, twin: bool = False) -> RunResult:
     settings = {
         "scenario": "junction",
+        "twin": twin,
         "seed": 2,
         "regulation": {"priority": priority},
         "ego": {
@@ -84,6 +85,17 @@ def test_a_journal_keeps_what_the_judgement_needs(made) -> None:
     assert rescued is not None
     assert rescued.summary["encounters"] == result.summary["encounters"]
     pd.testing.assert_frame_equal(rescued.ledger, result.ledger)
+
+
+def test_a_note_says_what_the_ledger_says_with_a_twin_too(tmp_path: Path) -> None:
+    result = run(tmp_path, "none", twin=True)
+    counts = result.ledger.loc[result.ledger["violation"], "kind"].value_counts()
+    (note,) = (text for text in result.remarks if "law of the road" in text)
+    assert len(counts)
+    assert all(f"{number} x {kind}" in note for kind, number in counts.items())
+    assert note.count(" x ") == len(counts)
+    told = json.loads((tmp_path / "results" / "manifest.json").read_text())["remarks"]
+    assert told == list(result.remarks)
 
 
 def test_where_the_law_has_no_say_the_files_are_the_same_as_ever(tmp_path: Path) -> None:
