@@ -35,7 +35,15 @@ def _study(
     vary: Annotated[
         list[str] | None,
         typer.Option(
-            help="Without a study: an option and its values, like crowd.pedestrians=10,20."
+            metavar="KEY=A,B,...",
+            help="Without a study: an option and its values, like crowd.pedestrians=10,20.",
+        ),
+    ] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="FACTOR=LEVEL",
+            help="Of the study this level of a factor alone, like controller=mpc; repeatable.",
         ),
     ] = None,
     config: Annotated[
@@ -108,6 +116,7 @@ def _study(
     request = StudyRequest(
         study,
         tuple(vary or ()),
+        tuple(only or ()),
         config,
         out,
         runs,

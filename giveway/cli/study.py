@@ -20,7 +20,7 @@ from giveway.studies.definition import changed, read_definition
 from giveway.studies.finding import find_study
 from giveway.studies.plan import plan
 from giveway.studies.study import StudyOptions, StudyProgress, estimate, processors, run_study
-from giveway.studies.varying import varied
+from giveway.studies.varying import chosen, varied
 
 _REFRESH = 0.2  # [s] of wall clock between two redraws
 _LINE = 30.0  # [s] between two lines where there is no terminal
@@ -32,6 +32,7 @@ class StudyRequest:
 
     study: str | None  # None: the variations are one
     vary: tuple[str, ...]
+    only: tuple[str, ...]
     config: Path | None
     out: Path | None
     runs: int | None
@@ -56,6 +57,8 @@ def study_command(request: StudyRequest, options: StudyOptions) -> int:
         origin, definition = request.study, read_definition(find_study(request.study))
     wanted = {"replications": request.runs, "first_seed": request.first_seed}
     changes: dict[str, Any] = {key: value for key, value in wanted.items() if value is not None}
+    if request.only:
+        changes["only"] = chosen(request.only)
     if request.twin is not None:
         changes["run"] = definition.run | {"twin": request.twin}
     definition = changed(definition, changes, origin)

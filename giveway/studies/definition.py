@@ -82,6 +82,10 @@ class StudyDefinition(Section):
     cells: tuple[dict[str, Any], ...] = Field(
         (), description="combinations of levels by name; none: all of them, a grid"
     )
+    only: dict[str, tuple[Any, ...]] = Field(
+        default_factory=dict,
+        description="of these factors these levels alone, by name; none: all of them",
+    )
     comparison: Comparison = Comparison()
     precision: Precision | None = None
 

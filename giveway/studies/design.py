@@ -2,7 +2,8 @@
 
 import difflib
 import itertools
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -138,6 +139,13 @@ def design(definition: StudyDefinition, origin: str) -> Design:
             _listed(entry, factors, f"{origin}: cells[{number}]")
             for number, entry in enumerate(definition.cells)
         ]
+    factors = _only(factors, definition.only, origin)
+    if definition.cells:
+        chosen = [
+            levels
+            for levels in chosen
+            if all(levels[factor.name] in factor.levels for factor in factors)
+        ]
     else:
         grid = itertools.product(*(factor.levels for factor in factors))
         names = [factor.name for factor in factors]
@@ -248,6 +256,32 @@ def _factor(name: str, levels: list[Level], place: str, unit: str | None = None)
         if labels.count(label) > 1:
             raise ConfigError(f"{place}: level '{label}' twice; drop one")
     return Factor(name, tuple(levels), unit)
+
+
+def _only(
+    factors: tuple[Factor, ...], wanted: Mapping[str, Sequence[Any]], origin: str
+) -> tuple[Factor, ...]:
+    """The factors with the wanted levels alone, in the study's order.
+
+    Raises:
+        ConfigError: there is no such factor or level.
+    """
+    for name, labels in wanted.items():
+        place = f"{origin}: only {name}"
+        factor = next((factor for factor in factors if factor.name == name), None)
+        if factor is None:
+            known = ", ".join(factor.name for factor in factors)
+            raise ConfigError(f"{place}: not a factor of this study; expected one of {known}")
+        for label in labels:
+            if factor.level(label) is None:
+                known = "; ".join(level.label for level in factor.levels)
+                raise ConfigError(f"{place} = {label_of(label)}: expected one of {known}")
+        kept = {label_of(label) for label in labels}
+        levels = tuple(level for level in factor.levels if level.label in kept)
+        factors = tuple(
+            replace(factor, levels=levels) if factor.name == name else factor for factor in factors
+        )
+    return factors
 
 
 def _listed(entry: dict[str, Any], factors: tuple[Factor, ...], place: str) -> dict[str, Level]:

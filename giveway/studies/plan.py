@@ -112,7 +112,9 @@ def _with_comparison(definition: StudyDefinition, designed: Design, origin: str)
         factor = designed.factor(wanted.factor if chosen else names[-1])
     except ConfigError as error:
         raise ConfigError(f"{origin}: [comparison] {error}") from None
-    baseline = factor.levels[-1] if wanted.baseline is None else factor.level(wanted.baseline)
+    baseline = None if wanted.baseline is None else factor.level(wanted.baseline)
+    if baseline is None and (wanted.baseline is None or factor.name in definition.only):
+        baseline = factor.levels[-1]  # that of the study may be left out
     if baseline is None:
         known = ", ".join(level.label for level in factor.levels)
         raise ConfigError(

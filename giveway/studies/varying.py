@@ -41,6 +41,24 @@ def varied(variations: Sequence[str], settings: Path | None = None) -> StudyDefi
     return make_definition(definition, "--vary")
 
 
+def chosen(choices: Sequence[str]) -> dict[str, list[Any]]:
+    """The levels, by factor, that texts like ``controller=mpc`` choose.
+
+    Raises:
+        ConfigError: a text chooses nothing.
+    """
+    levels: dict[str, list[Any]] = {}
+    for choice in choices:
+        name, equals, text = (part.strip() for part in choice.partition("="))
+        if not equals or not name or not text:
+            raise ConfigError(
+                f"--only {choice}: expected a factor of the study and one of its levels, like "
+                "controller=mpc; give it again for another level"
+            )
+        levels.setdefault(name, []).append(toml_value(text))
+    return levels
+
+
 def _parsed(variation: str) -> tuple[str, list[Any]]:
     name, equals, text = variation.partition("=")
     values = [toml_value(part.strip()) for part in text.split(",") if part.strip()]
