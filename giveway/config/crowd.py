@@ -95,8 +95,8 @@ class CrowdConfig(Section):
         None,
         "what moves people: vci; social-force (Helbing and Molnar 1995); gap-acceptance (they stop "
         "for vehicles that come too soon); orca (van den Berg et al. 2011); constant-velocity; or "
-        "somebody else's, by the name that a package declares or as module:Class. Controllers "
-        "predict by VCI anyway",
+        "somebody else's, by the name that a package declares or as module:Class. What controllers "
+        "believe in is [perception] model",
         flag="--crowd-model",
     )
     preset: Preset = option(

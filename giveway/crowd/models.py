@@ -1,11 +1,14 @@
-"""The model that moves a run's people, from the configuration."""
+"""The model that moves a run's people, and the one that is believed to, from the configuration."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import cast
 
-from giveway.config import RunConfig
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.presets import parameters_of
 from giveway.crowd.roster import Roster
 from giveway.errors import CrowdError
@@ -19,6 +22,7 @@ from pedestrian_model import (
     PlainName,
     PluggedInModel,
     PlugInError,
+    VciParameters,
 )
 
 
@@ -41,18 +45,47 @@ def model_of(
     crowd = config.crowd
     parameters = parameters_of(crowd.preset)
     if crowd.plugged_in:
-        make, setup = maker(config), setup_of(config, time_step)
-        try:
-            return PluggedInModel(
-                f"'{crowd.model}'", lambda: make(setup), setup, parameters, lambda: roster.keys
-            )
-        except PlugInError as error:
-            raise CrowdError(str(error)) from error
+        return _plugged_in(config, time_step, parameters, lambda: roster.keys)
     if crowd.model == "vci":
         return CrowdModel(
             parameters, time_step, detour=crowd.detour, creep=crowd.creep, threads=threads
         )
     return PlainModel(cast(PlainName, crowd.model), parameters, time_step)
+
+
+def believed_model(
+    config: EgoRunConfig, time_step: float, parameters: VciParameters
+) -> PedestrianModel:
+    """What an ego's controller takes to move the crowd, unless that is VCI; of its own.
+
+    Args:
+        config: of the ego.
+        time_step: of its prediction [s].
+        parameters: bodies and limits that people are believed to have.
+
+    Raises:
+        ConfigError: an option of somebody else's model cannot be used.
+        ControlError: it is not installed.
+        CrowdError: it cannot be made.
+    """
+    if config.perception.plugged_in:
+        return _plugged_in(config, time_step, parameters)
+    return PlainModel(cast(PlainName, config.perception.model), parameters, time_step)
+
+
+def _plugged_in(
+    config: RunConfig,
+    time_step: float,
+    parameters: VciParameters,
+    who: Callable[[], NDArray[np.int64]] | None = None,
+) -> PluggedInModel:
+    make, setup = maker(config), setup_of(config, time_step)
+    try:
+        return PluggedInModel(
+            f"'{config.crowd.model}'", lambda: make(setup), setup, parameters, who
+        )
+    except PlugInError as error:
+        raise CrowdError(str(error)) from error
 
 
 def maker(config: RunConfig) -> Callable[[ModelSetup], object]:
