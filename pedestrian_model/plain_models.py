@@ -202,7 +202,7 @@ def _advance(
             if stops:
                 pace *= left / math.sqrt(left * left + _ARRIVES * _ARRIVES)
             if kind == _GAPS:
-                pace = min(pace, _pace_before(x, y, e_x, e_y, pace, vehicles, radius, step * dt))
+                pace = min(pace, pace_before(x, y, e_x, e_y, pace, vehicles, radius, step * dt))
             a_x = (pace * e_x - velocity[i, 0]) / RELAXATION
             a_y = (pace * e_y - velocity[i, 1]) / RELAXATION
             fastest = min(FASTER * desired_speed[i], v_max)
@@ -245,7 +245,7 @@ def _advance(
 
 
 @inlined
-def _pace_before(
+def pace_before(
     x: float,
     y: float,
     e_x: float,
