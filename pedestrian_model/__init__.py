@@ -12,6 +12,7 @@ from pedestrian_model.errors import (
     VehicleError,
 )
 from pedestrian_model.influence import vehicle_influence
+from pedestrian_model.jupedsim_models import JUPEDSIM_MODELS, JuPedSimName, JuPedSimPeople
 from pedestrian_model.model import LONGEST_STEP, CrowdModel, arrived, require_steady
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
 from pedestrian_model.plain_models import PLAIN_MODELS, PlainModel, PlainName, unmoved
@@ -31,6 +32,7 @@ from pedestrian_model.targets import remaining_distance, targets
 from pedestrian_model.vehicles import Vehicles
 
 __all__ = [
+    "JUPEDSIM_MODELS",
     "LONGEST_STEP",
     "OPEN_GROUND",
     "PLAIN_MODELS",
@@ -44,6 +46,8 @@ __all__ = [
     "CrowdPredictor",
     "DivergenceError",
     "Finding",
+    "JuPedSimName",
+    "JuPedSimPeople",
     "ModelPlugIn",
     "ModelSetup",
     "ParameterError",

@@ -17,7 +17,6 @@ import math
 from typing import Any, Final, Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pedestrian_model._jit import kernel
 from pedestrian_model._social_force import RELAXATION
@@ -31,12 +30,13 @@ JUPEDSIM_MODELS: Final[tuple[JuPedSimName, ...]] = get_args(JuPedSimName)
 """Tordeux, Chraibi and Seyfried (arXiv 1512.05597); Helbing, Farkas and Vicsek (Nature 2000)."""
 
 _STEP = 0.01  # [s] of the forces at most, JuPedSim's own; speeds are set once in a step
-_ROOM = 10.0  # [m] of ground beyond the outermost: JuPedSim looks 4 m far
+_ROOM = 15.0  # [m] of ground beyond the outermost; JuPedSim looks 4 m far
 _TO = 5.0  # [m] the target lies ahead, on that ground
 _POINT = 1e-9  # [m] nobody may be placed within another's radius: it is given afterwards
 _ASIDE = 1e-3  # [m] that somebody is moved who stands where another one does
 _GOLDEN = 2.399963229728653  # [rad] from one direction to the next
 _HEAVY = 1e9  # [kg]
+_FASTEST = 10.0  # [m/s] that JuPedSim lets an agent want; where it is says more
 _THROWN = 10.0  # [m/s] of who overlaps with a body: where that leads to, no step of 0.01 s follows
 
 
@@ -48,15 +48,12 @@ class JuPedSimPeople:
         setup: of the run.
 
     Raises:
-        PlugInError: JuPedSim is not installed.
+        ImportError: JuPedSim is not installed.
     """
 
     def __init__(self, name: JuPedSimName, setup: ModelSetup) -> None:
-        try:
-            import jupedsim
-        except ImportError as error:
-            msg = f"model '{name}': JuPedSim is not installed; install it with: "
-            raise PlugInError(msg + "pip install 'giveway[jupedsim]'") from error
+        import jupedsim
+
         self._jupedsim: Any = jupedsim
         kind = name.partition(":")[2]
         self._model = getattr(jupedsim, kind)()
@@ -68,42 +65,58 @@ class JuPedSimPeople:
 
     def step(self, walkers: Walkers) -> Velocities:
         """How everybody moves from t_k to t_k+1."""
-        n = len(walkers.ids)
-        pace = np.hypot(walkers.preferred[:, 0], walkers.preferred[:, 1])
-        ahead = walkers.preferred / np.maximum(pace, _POINT)[:, None]
-        _stop_before(walkers.position, ahead, pace, walkers.vehicles, self._radius)
-        bodies = np.concatenate([_circles(v) for v in walkers.vehicles] or [np.empty((0, 7))])
-        places = np.concatenate([walkers.position, bodies[:, :2]])
+        low, high = walkers.position.min(axis=0) - _ROOM, walkers.position.max(axis=0) + _ROOM
         simulation = self._jupedsim.Simulation(
-            model=self._model, geometry=_ground(places), dt=self._step / self._times
+            model=self._model,
+            geometry=[tuple(low), (high[0], low[1]), tuple(high), (low[0], high[1])],
+            dt=self._step / self._times,
         )
         stage = simulation.add_direct_steering_stage()
         journey = simulation.add_journey(self._jupedsim.JourneyDescription([stage]))
-        order = np.argsort(walkers.ids, kind="stable")
-        ids, began = np.empty(n, dtype=np.int64), np.empty((n, 2))
-        for i in order:
-            own = {"velocity": tuple(walkers.velocity[i])} if self._forces else {}
-            wish = {"desired_speed": float(pace[i]), "journey_id": journey, "stage_id": stage}
-            agent = self._placed(simulation, walkers.position[i], int(walkers.ids[i]), own | wish)
-            agent.model.radius = self._radius
-            agent.target = tuple(walkers.position[i] + _TO * ahead[i])
-            ids[i], began[i] = agent.id, agent.position
-        for k, (x, y, radius, c, s, speed, _) in enumerate(bodies):
-            own = {"velocity": (speed * c, speed * s), "mass": _HEAVY} if self._forces else {}
-            wish = {"desired_speed": abs(speed), "journey_id": journey, "stage_id": stage}
-            agent = self._placed(simulation, np.array([x, y]), k, own | wish)
-            agent.model.radius = radius
-            agent.target = (x + math.copysign(_TO, speed) * c, y + math.copysign(_TO, speed) * s)
-        if not self._forces:
-            simulation.iterate()
-            places = np.array([simulation.agent(i).position for i in ids])
-            return Velocities(self._limited((places - began) / self._step, walkers))
+        steered = {"journey_id": journey, "stage_id": stage}
+        ids, began = self._people(simulation, walkers, steered)
+        bodies = _circles(walkers.vehicles)
+        near = (bodies[:, :2] > low + _TO) & (bodies[:, :2] < high - _TO)
+        self._bodies(simulation, bodies[near.all(axis=1)], steered)
         for _ in range(self._times):
             simulation.iterate()
-            velocity = np.array([simulation.agent(i).model.velocity for i in ids])
+            if self._forces:
+                velocity = np.array([simulation.agent(i).model.velocity for i in ids])
+            else:
+                places = np.array([simulation.agent(i).position for i in ids])
+                velocity = (places - began) / self._step
             if np.abs(velocity).max() > _THROWN:  # by friction deep in a body: ever faster
                 break
         return Velocities(self._limited(velocity, walkers))
+
+    def _people(
+        self, simulation: Any, walkers: Walkers, steered: dict[str, Any]
+    ) -> tuple[list[int], Array]:
+        """Everybody as an agent: their ids, and (n, 2) [m] where they are."""
+        pace = np.hypot(walkers.preferred[:, 0], walkers.preferred[:, 1])
+        ahead = walkers.preferred / np.maximum(pace, _POINT)[:, None]
+        _stop_before(walkers.position, ahead, pace, walkers.vehicles, self._radius)
+        ids, began = [0] * len(pace), np.empty((len(pace), 2))
+        for i in np.argsort(walkers.ids, kind="stable"):
+            place = walkers.position[i]
+            own = {"velocity": tuple(walkers.velocity[i])} if self._forces else {}
+            own |= steered | {"desired_speed": float(pace[i])}
+            agent = self._placed(simulation, place, int(walkers.ids[i]), own)
+            agent.model.radius = self._radius
+            agent.target = tuple(place + _TO * ahead[i])
+            ids[i], began[i] = agent.id, agent.position
+        return ids, began
+
+    def _bodies(self, simulation: Any, bodies: Array, steered: dict[str, Any]) -> None:
+        """The vehicles' circles as agents that drive on."""
+        for k, (x, y, radius, v_x, v_y) in enumerate(bodies):
+            speed = math.hypot(v_x, v_y)
+            own = {"velocity": (v_x, v_y), "mass": _HEAVY} if self._forces else {}
+            own |= steered | {"desired_speed": min(speed, _FASTEST)}
+            agent = self._placed(simulation, np.array([x, y]), k, own)
+            agent.model.radius = radius
+            to = _TO / max(speed, _POINT)
+            agent.target = (x + to * v_x, y + to * v_y)
 
     def _placed(self, simulation: Any, place: Array, number: int, settings: dict[str, Any]) -> Any:
         """A new agent, a millimetre aside if somebody is there already."""
@@ -126,29 +139,28 @@ class JuPedSimPeople:
         least = (self._radius - walkers.wall_distance) / RELAXATION
         towards = (velocity * normal).sum(axis=1)
         near = np.isfinite(walkers.wall_distance)
-        velocity = velocity + np.where(near, np.maximum(least - towards, 0.0), 0.0)[:, None] * normal
+        velocity = (
+            velocity + np.where(near, np.maximum(least - towards, 0.0), 0.0)[:, None] * normal
+        )
         speed = np.hypot(velocity[:, 0], velocity[:, 1])
         limited: Array = velocity * (self._fastest / np.maximum(speed, self._fastest))[:, None]
         return limited
 
 
-def _circles(vehicle: Array) -> Array:
-    """(k, 7) x, y, radius [m], direction, speed [m/s] of circles that cover a vehicle."""
-    count = max(1, math.ceil((vehicle[FRONT] + vehicle[REAR]) / (0.5 * vehicle[WIDTH])))
-    part = (vehicle[FRONT] + vehicle[REAR]) / count
-    ahead = (np.arange(count) + 0.5) * part - vehicle[REAR]
-    c, s = math.cos(vehicle[HEADING]), math.sin(vehicle[HEADING])
-    circles = np.zeros((count, 7))
-    circles[:, 0], circles[:, 1] = vehicle[X] + ahead * c, vehicle[Y] + ahead * s
-    circles[:, 2] = 0.5 * math.hypot(part, vehicle[WIDTH])
-    circles[:, 3:6] = c, s, vehicle[SPEED]
-    return circles
-
-
-def _ground(places: Array) -> list[tuple[float, float]]:
-    """A rectangle round all places [m]."""
-    (x_0, y_0), (x_1, y_1) = places.min(axis=0) - _ROOM, places.max(axis=0) + _ROOM
-    return [(x_0, y_0), (x_1, y_0), (x_1, y_1), (x_0, y_1)]
+def _circles(vehicles: Array) -> Array:
+    """(k, 5) x, y, radius [m], velocity [m/s] of circles that cover vehicles (m, 7)."""
+    circles = [np.empty((0, 5))]
+    for vehicle in vehicles:
+        length, width = vehicle[FRONT] + vehicle[REAR], vehicle[WIDTH]
+        count = max(1, math.ceil(2.0 * length / width))
+        part = length / count
+        way = np.array([math.cos(vehicle[HEADING]), math.sin(vehicle[HEADING])])
+        ahead = (np.arange(count) + 0.5) * part - vehicle[REAR]
+        row = np.empty((count, 5))
+        row[:, :2] = vehicle[[X, Y]] + ahead[:, None] * way
+        row[:, 2], row[:, 3:] = 0.5 * math.hypot(part, width), vehicle[SPEED] * way
+        circles.append(row)
+    return np.concatenate(circles)
 
 
 @kernel

@@ -7,6 +7,7 @@ from giveway.config import EgoRunConfig
 from giveway.crowd.models import believed_model
 from giveway.ego.foresight import plan_predictor, steps_at_once
 from pedestrian_model import (
+    JUPEDSIM_MODELS,
     CrowdPredictor,
     Predictor,
     StepwisePredictor,
@@ -44,7 +45,8 @@ def predictor_of(
         make = plan_predictor if controller.foresees else Predictor
         return make(parameters, time_step, horizon, **readings)
     # Ours divide a longer step themselves; somebody else's is asked at the step that it is for.
-    own = config.perception.plugged_in or not controller.foresees
+    hosted = config.perception.plugged_in or believed in JUPEDSIM_MODELS
+    own = hosted or not controller.foresees
     every = 1 if own else steps_at_once(time_step, horizon)
     return StepwisePredictor(
         believed_model(config, every * time_step, parameters), horizon // every

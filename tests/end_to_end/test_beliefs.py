@@ -83,7 +83,9 @@ def test_somebody_elses_model_is_believed_in_where_it_moves_people(shy, controll
 
 
 def test_what_cannot_be_believed_in_is_said_in_one_line(shy, type_here):
-    with pytest.raises(ConfigError, match=r"\[perception\] model = 'shy': the people walk by 'vci'"):
+    with pytest.raises(
+        ConfigError, match=r"\[perception\] model = 'shy': the people walk by 'vci'"
+    ):
         drive("vci", "shy")
     typed = type_here("run", "--perception-model", "orka", "-q")
     assert typed.returncode == 2

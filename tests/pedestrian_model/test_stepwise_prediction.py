@@ -65,7 +65,9 @@ def test_constant_velocity_is_vci_of_people_whom_nothing_moves(step, off):
     asked = StepwisePredictor(PlainModel("constant-velocity", SIM, step), horizon)
     one, other = compiled.predict(crowd, poses, WALLED), asked.predict(crowd, poses, WALLED)
     np.testing.assert_allclose(one, other, rtol=0.0, atol=off)
-    np.testing.assert_allclose(compiled.wishes(crowd, WALLED), asked.wishes(crowd, WALLED), atol=0.1)
+    np.testing.assert_allclose(
+        compiled.wishes(crowd, WALLED), asked.wishes(crowd, WALLED), atol=0.1
+    )
 
 
 class Counting:
