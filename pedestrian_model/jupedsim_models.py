@@ -119,7 +119,10 @@ class JuPedSimPeople:
             agent.target = (x + to * v_x, y + to * v_y)
 
     def _placed(self, simulation: Any, place: Array, number: int, settings: dict[str, Any]) -> Any:
-        """A new agent, a millimetre aside if somebody is there already."""
+        """A new agent, a millimetre aside if somebody is there already.
+
+        What is returned is good until the next one is added: JuPedSim moves its agents in memory.
+        """
         x, y = float(place[0]), float(place[1])
         parameters = self._agent(position=(x, y), radius=_POINT, **settings)
         for turn in range(1, 100):
