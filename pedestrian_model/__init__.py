@@ -12,9 +12,10 @@ from pedestrian_model.errors import (
     VehicleError,
 )
 from pedestrian_model.influence import vehicle_influence
+from pedestrian_model.jupedsim_models import JUPEDSIM_MODELS, JuPedSimName, JuPedSimPeople
 from pedestrian_model.model import LONGEST_STEP, CrowdModel, arrived, require_steady
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
-from pedestrian_model.plain_models import PLAIN_MODELS, PlainModel, PlainName
+from pedestrian_model.plain_models import PLAIN_MODELS, PlainModel, PlainName, unmoved
 from pedestrian_model.plug_in import (
     Accelerations,
     ModelPlugIn,
@@ -24,12 +25,14 @@ from pedestrian_model.plug_in import (
 )
 from pedestrian_model.plugged_in import PluggedInModel
 from pedestrian_model.prediction import Predictor, leap, start, wish
-from pedestrian_model.protocol import PedestrianModel
+from pedestrian_model.protocol import CrowdPredictor, PedestrianModel
+from pedestrian_model.stepwise_prediction import StepwisePredictor
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls
 from pedestrian_model.targets import remaining_distance, targets
 from pedestrian_model.vehicles import Vehicles
 
 __all__ = [
+    "JUPEDSIM_MODELS",
     "LONGEST_STEP",
     "OPEN_GROUND",
     "PLAIN_MODELS",
@@ -40,8 +43,11 @@ __all__ = [
     "Crowd",
     "CrowdError",
     "CrowdModel",
+    "CrowdPredictor",
     "DivergenceError",
     "Finding",
+    "JuPedSimName",
+    "JuPedSimPeople",
     "ModelPlugIn",
     "ModelSetup",
     "ParameterError",
@@ -52,6 +58,7 @@ __all__ = [
     "PlugInError",
     "PluggedInModel",
     "Predictor",
+    "StepwisePredictor",
     "Surroundings",
     "SurroundingsError",
     "VciParameters",
@@ -67,6 +74,7 @@ __all__ = [
     "require_steady",
     "start",
     "targets",
+    "unmoved",
     "vehicle_influence",
     "wish",
 ]

@@ -24,6 +24,7 @@ speed; they have no detour around cars, and no priority.
 """
 
 import math
+from dataclasses import replace
 from typing import Any, Final, Literal, get_args
 
 import numpy as np
@@ -63,6 +64,24 @@ _HALT = 4.0 * RELAXATION  # [s] v = room / T stops before a kerb and not beyond 
 _BESIDE = 0.3  # [m] between the vehicle's side and a body that waits (ours)
 _STANDS = 0.1  # [m/s] a slower vehicle stands
 _ARRIVES = 0.3  # [m] about a way-point at which somebody slows down (ours)
+
+
+def unmoved(parameters: VciParameters) -> VciParameters:
+    """VCI of people whom nothing moves: ``constant-velocity``, for what predicts by VCI alone.
+
+    Args:
+        parameters: whose bodies, limits and way-points hold.
+    """
+    return replace(
+        parameters,
+        repulsion_strength=0.0,
+        navigation_strength=0.0,
+        collision_stiffness=0.0,
+        vehicle_strength=0.0,
+        wall_strength=0.0,
+        destination_gain=parameters.mass / RELAXATION,
+        destination_smoothing=_ARRIVES,
+    )
 
 
 class PlainModel:
@@ -183,7 +202,7 @@ def _advance(
             if stops:
                 pace *= left / math.sqrt(left * left + _ARRIVES * _ARRIVES)
             if kind == _GAPS:
-                pace = min(pace, _pace_before(x, y, e_x, e_y, pace, vehicles, radius, step * dt))
+                pace = min(pace, pace_before(x, y, e_x, e_y, pace, vehicles, radius, step * dt))
             a_x = (pace * e_x - velocity[i, 0]) / RELAXATION
             a_y = (pace * e_y - velocity[i, 1]) / RELAXATION
             fastest = min(FASTER * desired_speed[i], v_max)
@@ -226,7 +245,7 @@ def _advance(
 
 
 @inlined
-def _pace_before(
+def pace_before(
     x: float,
     y: float,
     e_x: float,

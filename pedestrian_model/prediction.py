@@ -133,7 +133,7 @@ class Predictor:
     def wishes(self, crowd: Crowd, surroundings: Surroundings = OPEN_GROUND) -> NDArray[np.float64]:
         """(n, 3) what everybody wishes at the end of the latest prediction, see :func:`wish`."""
         wishes = np.empty((len(crowd), 3))
-        _fill_wishes(self.arrays(crowd, surroundings), wishes)
+        fill_wishes(self.arrays(crowd, surroundings), wishes)
         return wishes
 
     @staticmethod
@@ -243,7 +243,7 @@ def wish(x: float, y: float, target: int, i: int, scene: Scene) -> tuple[float, 
 
 
 @kernel
-def _fill_wishes(arrays: Arrays, wishes: NDArray[np.float64]) -> None:
+def fill_wishes(arrays: Arrays, wishes: NDArray[np.float64]) -> None:
     """Fill ``wishes`` (n, 3) with those at the end of the latest prediction."""
     scene = parts(arrays[:-4])[1]
     x, at = borrowed(arrays[-4]), borrowed(arrays[-2])

@@ -16,6 +16,7 @@ from giveway.config.layers import Layer, build_config
 from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
 from giveway.plug_ins.sockets import CONTROLLER, Socket
+from pedestrian_model import JUPEDSIM_MODELS
 
 LIMIT = 60.0  # [s] that a rule may take: most take a tenth of a second
 _START = 60.0  # [s] more for the first: kernels may have to be compiled
@@ -45,7 +46,7 @@ def check_command(
     """
     config = _configured(name, words, socket, time_step)
     own = [one for one in foreign_code(config) if one.socket is socket]
-    if not own:
+    if not own and name not in JUPEDSIM_MODELS:
         msg = f"{name}: is giveway's own; expected a {socket.what} of another package"
         raise ConfigError(msg)
     require_code(config)
@@ -117,5 +118,7 @@ def _battery(connection: Connection, config: str, what: str) -> None:
         from pedestrian_model import check_model
 
         setup = models.setup_of(effective, step)
-        said = check_model(models.maker(effective), setup, begins=connection.send)
+        said = check_model(
+            models.maker(effective.crowd.model, effective), setup, begins=connection.send
+        )
         connection.send([(finding.rule, finding.problem) for finding in said])

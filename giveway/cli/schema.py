@@ -51,8 +51,10 @@ def schemas() -> dict[str, dict[str, Any]]:
 
 def _run_schema() -> dict[str, Any]:
     schema = RunConfig.model_json_schema()
-    places = {CONTROLLER: schema["properties"], MODEL: schema["$defs"]["CrowdConfig"]["properties"]}
-    for socket, properties in places.items():
+    defined = schema["$defs"]
+    places = [(CONTROLLER, schema["properties"])]
+    places += [(MODEL, defined[name]["properties"]) for name in ("CrowdConfig", "PerceptionConfig")]
+    for socket, properties in places:
         declared = [{"enum": names}] if (names := declared_names(socket)) else []
         properties[socket.location[-1]]["anyOf"] += declared
     own = {name: schema["properties"][name] for name in EGO_TABLES}

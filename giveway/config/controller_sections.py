@@ -1,8 +1,8 @@
-"""The tables of the configuration about who drives: controllers, safety, perception."""
+"""The tables of the configuration about who drives: controllers, safety."""
 
 from typing import Literal
 
-from giveway.config.option import Preset, Section, option
+from giveway.config.option import Section, option
 from giveway.config.reasons import BUFFER, FORCE, GAP, MILLIMETRE, TYRES
 
 
@@ -311,35 +311,3 @@ class SafetyConfig(Section):
         because="a vehicle that answers later cannot be driven",
     )
     rate_limited: bool = option(False, None, "the layer's braking keeps to du_max too")
-
-
-class PerceptionConfig(Section):
-    """What the controllers know of the pedestrians, as far as it is not the truth."""
-
-    position_noise: float = option(
-        0.0,
-        "m",
-        "people are seen this far off (standard deviation per axis, cut off at twice that)",
-        ge=0,
-        le=5,
-        because="whom one looks for a lane off is not seen",
-    )
-    tracker: bool | None = option(
-        None,
-        None,
-        "positions are filtered, and bounded for the safety layer. Left out: yes, but not for the "
-        "paper's controllers",
-        flag="--tracker",
-    )
-    desired_speeds: Literal["known", "typical"] = option(
-        "known", None, "of each person, or [crowd] desired_speed_mean for everybody"
-    )
-    goals: Literal["known", "heading"] = option(
-        "known",
-        None,
-        "where each person goes, or no more than that everybody walks on as now: heading",
-        flag="--goals",
-    )
-    preset: Preset = option(
-        "", None, "parameters the pedestrians are predicted with, as [crowd] preset; none: the same"
-    )

@@ -94,9 +94,9 @@ class CrowdConfig(Section):
         "vci",
         None,
         "what moves people: vci; social-force (Helbing and Molnar 1995); gap-acceptance (they stop "
-        "for vehicles that come too soon); orca (van den Berg et al. 2011); constant-velocity; or "
-        "somebody else's, by the name that a package declares or as module:Class. Controllers "
-        "predict by VCI anyway",
+        "for vehicles that come too soon); orca (van den Berg et al. 2011); constant-velocity; two "
+        "of JuPedSim's, jupedsim:...; or somebody else's, by the name that a package declares or "
+        "as module:Class. What controllers believe in is [perception] model",
         flag="--crowd-model",
     )
     preset: Preset = option(

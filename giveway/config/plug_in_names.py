@@ -11,7 +11,16 @@ from giveway.plug_ins.finding import declared_names, is_reference
 from giveway.plug_ins.sockets import CONTROLLER, MODEL, Socket
 
 BundledController = Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"]
-BundledModel = Literal["vci", "social-force", "gap-acceptance", "constant-velocity", "orca"]
+BundledModel = Literal[
+    "vci",
+    "social-force",
+    "gap-acceptance",
+    "constant-velocity",
+    "orca",
+    "jupedsim:CollisionFreeSpeedModel",
+    "jupedsim:SocialForceModel",
+]
+_JUPEDSIM = "jupedsim:"
 BUNDLED: frozenset[str] = frozenset(get_args(BundledController))
 BUNDLED_MODELS: frozenset[str] = frozenset(get_args(BundledModel))
 
@@ -27,7 +36,8 @@ def _model(value: Any) -> Any:
 
 def _known(name: Any, bundled: tuple[str, ...], socket: Socket) -> Any:
     """A name that there is."""
-    if isinstance(name, str) and (name in bundled or is_reference(name)):
+    ours = isinstance(name, str) and name.startswith(_JUPEDSIM)  # no module of somebody's
+    if isinstance(name, str) and (name in bundled or (is_reference(name) and not ours)):
         return name
     declared = declared_names(socket)
     if name in declared:

@@ -18,7 +18,6 @@ from pydantic.fields import FieldInfo
 
 from giveway.config.controller_sections import (
     MpcConfig,
-    PerceptionConfig,
     PidConfig,
     PlannerConfig,
     SafetyConfig,
@@ -27,7 +26,8 @@ from giveway.config.controller_sections import (
 from giveway.config.crowd import CrowdConfig
 from giveway.config.measures import MeasureConfig, read_measures
 from giveway.config.option import Section, expectation, option
-from giveway.config.plug_in_names import BUNDLED, ControllerName
+from giveway.config.perception import PerceptionConfig
+from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
 from giveway.config.regulation import RegulationConfig
 from giveway.config.sections import (
     EgoConfig,
@@ -228,6 +228,7 @@ class EgoRunConfig(RunConfig):
         """
         self.require_speeds_in_reach()
         self.require_rolling()
+        self.require_known_belief()
         if self.controller_options and not self.plugged_in:
             key = next(iter(self.controller_options))
             raise ValueError(
@@ -282,6 +283,21 @@ class EgoRunConfig(RunConfig):
                 msg = f"{key} = {speed:g}: expected within [mpc] speed_min and speed_max"
                 msg += f", {low:g} to {high:g} [m/s]"
                 raise ValueError(msg)
+
+    def require_known_belief(self) -> None:
+        """Make sure that somebody else's model is believed in only where it moves people.
+
+        Its options, and the leave to import it, are those of the crowd.
+
+        Raises:
+            ValueError: it does not move them.
+        """
+        believed, moving = self.perception.model, self.crowd.model
+        if self.perception.plugged_in and believed != moving:
+            raise ValueError(
+                f"[perception] model = '{believed}': the people walk by '{moving}'; expected "
+                f"{', '.join(sorted(BUNDLED_MODELS))}, or the same as [crowd] model"
+            )
 
     def require_rolling(self) -> None:
         """Make sure that friction slows the vehicle down and does not reverse it within a step.

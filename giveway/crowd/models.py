@@ -1,24 +1,31 @@
-"""The model that moves a run's people, from the configuration."""
+"""The model that moves a run's people, and the one that is believed to, from the configuration."""
 
 from __future__ import annotations
 
+import importlib.util
 from collections.abc import Callable
 from typing import cast
 
-from giveway.config import RunConfig
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.presets import parameters_of
 from giveway.crowd.roster import Roster
 from giveway.errors import CrowdError
 from giveway.plug_ins.finding import load_class
 from giveway.plug_ins.sockets import MODEL
 from pedestrian_model import (
+    JUPEDSIM_MODELS,
     CrowdModel,
+    JuPedSimPeople,
     ModelSetup,
     PedestrianModel,
     PlainModel,
     PlainName,
     PluggedInModel,
     PlugInError,
+    VciParameters,
 )
 
 
@@ -40,14 +47,8 @@ def model_of(
     """
     crowd = config.crowd
     parameters = parameters_of(crowd.preset)
-    if crowd.plugged_in:
-        make, setup = maker(config), setup_of(config, time_step)
-        try:
-            return PluggedInModel(
-                f"'{crowd.model}'", lambda: make(setup), setup, parameters, lambda: roster.keys
-            )
-        except PlugInError as error:
-            raise CrowdError(str(error)) from error
+    if crowd.plugged_in or crowd.model in JUPEDSIM_MODELS:
+        return _hosted(crowd.model, config, time_step, parameters, lambda: roster.keys)
     if crowd.model == "vci":
         return CrowdModel(
             parameters, time_step, detour=crowd.detour, creep=crowd.creep, threads=threads
@@ -55,15 +56,71 @@ def model_of(
     return PlainModel(cast(PlainName, crowd.model), parameters, time_step)
 
 
-def maker(config: RunConfig) -> Callable[[ModelSetup], object]:
-    """What makes somebody else's model, with its options.
+def believed_model(
+    config: EgoRunConfig, time_step: float, parameters: VciParameters
+) -> PedestrianModel:
+    """What an ego's controller takes to move the crowd, unless that is VCI; of its own.
+
+    Args:
+        config: of the ego.
+        time_step: of its prediction [s].
+        parameters: bodies and limits that people are believed to have.
+
+    Raises:
+        ConfigError: an option of somebody else's model cannot be used.
+        ControlError: it is not installed.
+        CrowdError: it cannot be made.
+    """
+    believed = config.perception.model
+    if config.perception.plugged_in or believed in JUPEDSIM_MODELS:
+        return _hosted(believed, config, time_step, parameters)
+    return PlainModel(cast(PlainName, believed), parameters, time_step)
+
+
+def _hosted(
+    name: str,
+    config: RunConfig,
+    time_step: float,
+    parameters: VciParameters,
+    who: Callable[[], NDArray[np.int64]] | None = None,
+) -> PluggedInModel:
+    make, setup = maker(name, config), setup_of(config, time_step)
+    try:
+        return PluggedInModel(f"'{name}'", lambda: make(setup), setup, parameters, who)
+    except PlugInError as error:
+        raise CrowdError(str(error)) from error
+
+
+def maker(name: str, config: RunConfig) -> Callable[[ModelSetup], object]:
+    """What makes somebody else's model, with its options, or one of JuPedSim's.
+
+    Args:
+        name: of the model.
+        config: of the run.
 
     Raises:
         ConfigError: its options cannot be used.
         ControlError: it is not installed, or cannot be imported.
+        CrowdError: JuPedSim is not installed.
     """
-    kind, options = load_class(config.crowd.model, MODEL, config.model_options)
+    if name in JUPEDSIM_MODELS:
+        require_jupedsim(name)
+        return lambda setup: JuPedSimPeople(name, setup)
+    kind, options = load_class(name, MODEL, config.model_options)
     return lambda setup: kind(setup) if options is None else kind(setup, options)
+
+
+def require_jupedsim(name: str) -> None:
+    """Make sure that JuPedSim can be imported, for one of its models.
+
+    Raises:
+        CrowdError: it is not installed.
+    """
+    if importlib.util.find_spec("jupedsim") is None:
+        raise CrowdError(
+            f"model '{name}': JuPedSim is not installed; install it with: "
+            "pip install 'giveway[jupedsim]'"
+        )
 
 
 def setup_of(config: RunConfig, time_step: float) -> ModelSetup:

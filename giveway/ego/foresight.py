@@ -17,6 +17,7 @@ from giveway.metrics.conflicts import CRITICAL_TTC
 from pedestrian_model import (
     LONGEST_STEP,
     Crowd,
+    CrowdPredictor,
     ParameterError,
     Predictor,
     Surroundings,
@@ -25,6 +26,11 @@ from pedestrian_model import (
 )
 
 _STEP = 0.1  # [s] of the crowd under a manoeuvre, at most: twice the one in which it is simulated
+
+
+def steps_at_once(time_step: float, horizon: int) -> int:
+    """How many steps of a manoeuvre make one of the crowd under it."""
+    return min(max(1, int(_STEP / time_step + 1e-9)), horizon)
 
 
 def plan_predictor(
@@ -41,7 +47,7 @@ def plan_predictor(
         horizon: N of them.
         readings: options of :class:`pedestrian_model.Predictor`.
     """
-    every = min(max(1, int(_STEP / time_step + 1e-9)), horizon)
+    every = steps_at_once(time_step, horizon)
     step, longest = every * time_step, _STEP
     try:
         require_steady(parameters, step, longest)
@@ -71,7 +77,7 @@ class CrowdForesight:
 
     def __init__(
         self,
-        predictor: Predictor,
+        predictor: CrowdPredictor,
         path: EgoPath,
         shape: VehicleShape,
         *,
@@ -115,8 +121,10 @@ class CrowdForesight:
         self._copied, self._stale, self._preferred = False, True, False
         self._winner: Array | None = None
         self._lanes: Lanes | None = None
-        # Under one speed for all there is one prediction for all: there is nothing to save.
-        self.race = self._race if planned_speed else None
+        # Under one speed for all there is one prediction for all: there is nothing to save. Other
+        # models than VCI are no part of the compiled race: manoeuvres are judged one by one.
+        self._vci = predictor if isinstance(predictor, Predictor) else None
+        self.race = self._race if planned_speed and self._vci is not None else None
 
     def look(
         self,
@@ -213,6 +221,8 @@ class CrowdForesight:
         Raises:
             DivergenceError: a predicted state is not finite.
         """
+        vci = self._vci
+        assert vci is not None  # else there is no race
         if not self._copied:
             self._copy()
         path, n = self._path, len(self._pedestrians)
@@ -221,8 +231,8 @@ class CrowdForesight:
             lanes = self._lanes = Lanes(len(trials.handicap), len(allowed), len(self._poses), n)
         best, clear, tried = run_race(
             (path.vertices, path.stations, path.headings),
-            self._predictor.arrays(self._pedestrians, self._surroundings),
-            self._predictor.law,
+            vci.arrays(self._pedestrians, self._surroundings),
+            vci.law,
             self._poses,
             self._row,
             self._front,
@@ -237,7 +247,7 @@ class CrowdForesight:
             weights,
         )
         if lanes.bad >= 0:
-            raise self._predictor.divergence(self._pedestrians, lanes.bad)
+            raise vci.divergence(self._pedestrians, lanes.bad)
         if best >= 0:
             self._winner = lanes.positions(best, n)
         return lanes.verdict(best, clear, tried)

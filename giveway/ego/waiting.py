@@ -8,13 +8,13 @@ from controller import Controller, SafetyParameters, WorstMotion
 from fmus import FmuError, Vehicle
 from giveway.config import EgoRunConfig
 from giveway.config.presets import parameters_of
-from giveway.ego.foresight import plan_predictor
+from giveway.ego.predictors import predictor_of
 from giveway.ego.recorded import NoController, RecordedVehicle
 from giveway.ego.vehicle import identified_reaction_time, model_margin, open_for
 from giveway.ego.worst_motion import people_at_worst
 from giveway.errors import VehicleError
 from giveway.records.tracks import EgoTrack
-from pedestrian_model import Predictor
+from pedestrian_model import CrowdPredictor
 
 _WITHIN = 2.0 * sqrt(2.0)  # standard deviations: the noise is cut off at two of them in x and in y
 
@@ -35,7 +35,7 @@ class WaitingEgo:
     vehicle: Vehicle
     description: dict[str, object]
     controller: Controller
-    predictor: Predictor | None
+    predictor: CrowdPredictor | None
     walking_speed_limit: float  # [m/s]
     safety: SafetyParameters | None  # None: nothing watches over the controller
 
@@ -112,10 +112,7 @@ def make_waiting_ego(
         vehicle, description = open_for(config, time_step, stack)
     except FmuError as error:
         raise VehicleError(str(error)) from error
-    ahead = controller.horizon
-    readings = {"detour": config.crowd.detour, "creep": config.crowd.creep}
-    make = plan_predictor if controller.foresees else Predictor
-    predictor = make(expected, time_step, ahead, **readings) if ahead else None
+    predictor = predictor_of(config, controller, time_step, expected)
     fastest = max(crowd.max_speed, expected.max_speed)
     safety = safety_parameters(config, time_step) if config.safety_layer else None
     return WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety)
