@@ -15,6 +15,7 @@ import numpy as np
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
+    Anticipation,
     Critical,
     pedestrian_metrics,
     post_encroachment_time,
@@ -95,7 +96,13 @@ def main() -> None:
             lambda judged=judged: post_encroachment_time(*judged),
             lambda judged=judged: pedestrian_metrics(*judged),
             lambda ego=ego, table=table: summarise(
-                ego, table, Critical(0, 0.0), goal=40.0, safe_distance=8.0, controller="mpc-paper"
+                ego,
+                table,
+                Critical(0, 0.0),
+                Anticipation(),
+                goal=40.0,
+                safe_distance=8.0,
+                controller="mpc-paper",
             ),
         )
         times = " ".join(f"{milliseconds(call, repetitions):8.3f}" for call in calls)

@@ -1,5 +1,6 @@
 """What happened between ego and pedestrians, in the numbers that traffic engineers use."""
 
+from giveway.metrics.anticipation import Anticipation, anticipation
 from giveway.metrics.conflicts import CRITICAL_TTC, Critical, Proximity, conflicts, proximity
 from giveway.metrics.contacts import FRONTAL, NO_CONTACT, SIDE, contacts
 from giveway.metrics.delays import (
@@ -21,12 +22,8 @@ from giveway.metrics.pedestrians import (
     walks_without_ego,
 )
 from giveway.metrics.severity import SEVERITIES, SEVERITY_FIELDS, severities
-from giveway.metrics.summary import (
-    SUMMARY_FIELDS,
-    Summary,
-    summarise,
-    waiting_times,
-)
+from giveway.metrics.standing import stops, waiting_times
+from giveway.metrics.summary import SUMMARY_FIELDS, Summary, summarise
 from giveway.metrics.vehicles import VehicleContact, vehicle_contacts
 from giveway.records.rows import STOP_SPEED
 
@@ -44,6 +41,7 @@ __all__ = [
     "STOP_SPEED",
     "SUMMARY_FIELDS",
     "WALK_SUMMARY_FIELDS",
+    "Anticipation",
     "Critical",
     "DelaySummary",
     "Delays",
@@ -51,6 +49,7 @@ __all__ = [
     "Summary",
     "VehicleContact",
     "WalkSummary",
+    "anticipation",
     "conflicts",
     "contacts",
     "delays",
@@ -60,6 +59,7 @@ __all__ = [
     "post_encroachment_time",
     "proximity",
     "severities",
+    "stops",
     "summarise",
     "summarise_delays",
     "summarise_walks",

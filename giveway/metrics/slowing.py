@@ -7,6 +7,8 @@ from giveway.records.tracks import EgoTrack
 
 SLOWED = 0.8
 """Of the free speed: an ego below it is slowed."""
+SLOWING = 0.95
+"""Of the free speed: an ego that gets below it, and then is slowed, begins to slow there."""
 _RISE = 0.5  # [m/s^2] with which the free speed rises from the start, or from where it was held up
 _HELD = 30.0  # [m] nearer to a stop or a vehicle in front, these may hold it up, whoever walks
 _STANDING = 0.1  # [m/s] a free speed below it says nothing
@@ -24,19 +26,52 @@ def slowed(ego: EgoTrack, reference: float | None) -> bool:
         reference: v_r [m/s]; None where the lanes say how fast: then what the controller aimed
             at while nobody was in front, interpolated over the way.
     """
+    return _first_slowed(ego, free_speed(ego, reference)) is not None
+
+
+def slowing_begins(ego: EgoTrack, reference: float | None) -> int | None:
+    """The instant at which an ego that is ever :func:`slowed` begins to slow; None: it never is.
+
+    The last instant before it is, for the first time, at which it was not below 0.95 times its
+    speed with nobody about; if it was always below, since the start or since it was held up, the
+    first one of these.
+
+    Args:
+        ego: its track.
+        reference: as :func:`slowed` takes it.
+    """
+    free = free_speed(ego, reference)
+    at = _first_slowed(ego, free)
+    if at is None:
+        return None
+    for k in range(at - 1, -1, -1):
+        if np.isnan(free[k]):
+            return k + 1
+        if ego.speed[k] >= SLOWING * free[k]:
+            return k
+    return 0
+
+
+def free_speed(ego: EgoTrack, reference: float | None) -> NDArray[np.float64]:
+    """(T,) [m/s] what the ego drives with nobody about; nan where a stop or a vehicle is near."""
     top = _reference(ego, reference)
     held = (ego.vehicle_gap < _HELD) | (ego.stop_gap < _HELD)
     square = float(ego.speed[0]) ** 2
     way = np.diff(ego.position, prepend=ego.position[0])
+    free = np.full(len(ego.time), np.nan)
     for k in range(len(ego.time)):
         if held[k]:
             square = float(ego.speed[k]) ** 2
             continue
         square = min(square + 2.0 * _RISE * max(float(way[k]), 0.0), float(top[k]) ** 2)
-        free = np.sqrt(square)
-        if free > _STANDING and ego.speed[k] < SLOWED * free:
-            return True
-    return False
+        free[k] = np.sqrt(square)
+    return free
+
+
+def _first_slowed(ego: EgoTrack, free: NDArray[np.float64]) -> int | None:
+    """The first instant at which the ego is slowed."""
+    slow = np.flatnonzero((free > _STANDING) & (ego.speed < SLOWED * free))
+    return int(slow[0]) if slow.size else None
 
 
 def _reference(ego: EgoTrack, reference: float | None) -> NDArray[np.float64]:

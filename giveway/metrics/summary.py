@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller import WorstMotion
+from giveway.metrics.anticipation import Anticipation
 from giveway.metrics.conflicts import Critical
 from giveway.metrics.contacts import FRONTAL, SIDE
 from giveway.metrics.slowing import slowed
+from giveway.metrics.standing import waiting_times
 from giveway.metrics.vehicles import VehicleContact
 from giveway.records.columns import Quantity, columns_of
 from giveway.records.rows import STOP_SPEED
@@ -105,6 +107,15 @@ class Summary:
     contacts_beyond: Annotated[
         float, Quantity(None, "of these, those that the ego moved into; empty: no safety layer")
     ]
+    ttc_at_slowing: Annotated[
+        float,
+        Quantity(
+            "s", "to the first person as it began to slow, had it kept its speed; empty: none"
+        ),
+    ]
+    time_among_people: Annotated[
+        float, Quantity("s", "that it stood while people passed in front of and behind it")
+    ]
 
     def as_dict(self) -> dict[str, bool | int | float]:
         """Names and values, in the order of ``SUMMARY_FIELDS``."""
@@ -118,6 +129,7 @@ def summarise(
     ego: EgoTrack,
     per_pedestrian: "pd.DataFrame",
     critical: Critical,
+    met: Anticipation,
     *,
     goal: float,
     safe_distance: float,
@@ -137,6 +149,7 @@ def summarise(
         ego: the ego's track, at least one instant.
         per_pedestrian: the table of ``pedestrian_metrics``.
         critical: the drive's ``conflicts``.
+        met: the drive's ``anticipation``.
         goal: the position that ends the run [m]; the time at which it is reached is interpolated
             between control instants.
         safe_distance: d_safe [m].
@@ -196,6 +209,8 @@ def summarise(
         slowed=slowed(ego, reference_speed),
         beyond_assumption=float(np.count_nonzero(beyond)) if people else np.nan,
         contacts_beyond=float(np.count_nonzero(beyond & frontal)) if people else np.nan,
+        ttc_at_slowing=met.ttc_at_slowing,
+        time_among_people=met.time_among_people,
     )
 
 
@@ -218,15 +233,6 @@ def _time_at(ego: EgoTrack, goal: float) -> float:
     before, after = ego.position[k - 1], ego.position[k]
     share = (goal - before) / (after - before)
     return float(ego.time[k - 1] - ego.time[0] + share * (ego.time[k] - ego.time[k - 1]))
-
-
-def waiting_times(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.float64]:
-    """Duration [s] of every stop in the order of time; see ``summarise`` for what a stop is."""
-    standing = np.concatenate(([False], ego.speed < stop_speed, [False]))
-    edges = np.diff(standing.astype(np.int8))
-    starts = np.flatnonzero(edges == 1)
-    ends = np.minimum(np.flatnonzero(edges == -1), ego.time.size - 1)
-    return np.asarray(ego.time[ends] - ego.time[starts], dtype=np.float64)
 
 
 def hard_brakes(ego: EgoTrack) -> NDArray[np.int64]:

@@ -34,6 +34,8 @@ _MEANINGS = (*SUMMARY_FIELDS, *LAW_FIELDS, *DELAY_SUMMARY_FIELDS)
 REPORT = "report.html"
 FIGURES = "figures"
 _FORMATS = (".png", ".svg")
+_EXAMPLES = 4  # pairs, at most
+_WORST = 5  # runs for each reason, at most
 _NAMES = ("differences", "forest", "distributions", "tradeoff", "fronts", "example")
 
 
@@ -54,18 +56,32 @@ class Drawn:
     links: Sequence[tuple[str, str]] = ()
 
 
-def shown_runs(study: StudyFolder, *, examples: int = 4, worst: int = 5) -> list[str]:
+def shown_runs(
+    study: StudyFolder, *, examples: int | None = None, worst: int | None = None
+) -> list[str]:
     """The ids of the runs that a report of the same arguments names, each once."""
+    examples, worst = _as_many(study, examples, worst)
     ids = [run for pair in example_pairs(study, examples) for run in (pair.run, pair.run_baseline)]
     ids += [run for row in worst_runs(study, worst) for run in (row.run, row.partner) if run]
     return list(dict.fromkeys(ids))
 
 
+def _as_many(study: StudyFolder, examples: int | None, worst: int | None) -> tuple[int, int]:
+    """How many pairs and runs a report shows: its runs are made again, the study's were made once.
+
+    A study of 150 runs or more has the most.
+    """
+    runs = len(study.runs)
+    if examples is None:
+        examples = min(_EXAMPLES, 1 + runs // 50)
+    return examples, min(_WORST, max(1, runs // 30)) if worst is None else worst
+
+
 def write_report(
     study: StudyFolder,
     *,
-    examples: int = 4,
-    worst: int = 5,
+    examples: int | None = None,
+    worst: int | None = None,
     drives: Callable[[str], Sequence[Drive]] | None = None,
     replay: Callable[[str], Path | None] | None = None,
     target: Path | None = None,
@@ -74,8 +90,9 @@ def write_report(
 
     Args:
         study: its folder, read.
-        examples: pairs of which speed, gap and force are drawn, at most; 0: none.
-        worst: runs that are listed, for each reason.
+        examples: pairs of which speed, gap and force are drawn, at most; None: as befits the
+            study's size.
+        worst: runs that are listed, for each reason; None: as befits the study's size.
         drives: gives those of a run, by its id, for the examples; None: there are no examples.
         replay: gives the page that plays a run, by its id, or None; None: no links.
         target: the file to write; None: ``report.html`` in the study's folder. Figures go to
@@ -89,14 +106,15 @@ def write_report(
     """
     target = study.path / REPORT if target is None else target
     folder = study.path / FIGURES
-    pairs = example_pairs(study, examples)
-    extremes = worst_runs(study, worst)
-    replays = _replays(shown_runs(study, examples=examples, worst=worst), replay, target)
+    shown = shown_runs(study, examples=examples, worst=worst)
+    replays = _replays(shown, replay, target)
+    examples, worst = _as_many(study, examples, worst)
+    pairs, extremes = example_pairs(study, examples), worst_runs(study, worst)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         _clear(folder)
         pictures = [_drawn(picture, folder) for picture in study_pictures(study)]
-        shown, missing = _examples(folder, pairs, drives, replays)
+        drawn, missing = _examples(folder, pairs, drives, replays)
         content = _content(study, extremes, replays)
         by_section = {
             name: [drawn for drawn in pictures if drawn.picture.section == name]
@@ -105,7 +123,7 @@ def write_report(
         html = (
             _environment()
             .get_template("report.html.j2")
-            .render(**content, pictures=by_section, examples=shown, missing=missing)
+            .render(**content, pictures=by_section, examples=drawn, missing=missing)
         )
         target.write_text(html, encoding="utf-8", newline="\n")
     except OSError as error:

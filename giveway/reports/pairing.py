@@ -1,5 +1,7 @@
 """The statistics' pairs as one table with the ids of the runs, as a report needs them."""
 
+from functools import lru_cache
+
 import numpy as np
 import pandas as pd
 
@@ -16,10 +18,12 @@ DIFFERENCE = "_difference"
 _HEAD = ("context", "ego", "treatment", "baseline", "seed", "run", "run_baseline", "situation")
 
 
+@lru_cache(maxsize=1)
 def paired(study: StudyFolder) -> pd.DataFrame:
     """One row per pair of runs that differ in nothing but the level that is compared.
 
-    Pairs stand in the order of contexts, treatments, egos and seeds.
+    Pairs stand in the order of contexts, treatments, egos and seeds. A report asks for them ten
+    times: those of one study are remembered.
 
     Returns:
         A frame with ``context`` (label), ``ego``, ``treatment``, ``baseline`` (labels), ``seed``,

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy import stats
+from scipy.special import stdtrit  # all of scipy.stats takes a second to load
 
 from giveway.figures.study_differences import DifferenceColumn, Differences, differences_figure
 from giveway.figures.study_distributions import DistributionColumn, distributions_figure
@@ -34,6 +34,8 @@ from giveway.studies.statistics import SITUATIONS, metric
 
 ROWS_PER_PICTURE = 8
 PANELS_PER_PICTURE = 16
+FEWEST_SPREAD = 10
+"""Runs of a cell, fewer of which have no 5th and 95th percentile to speak of."""
 FOREST = ("completion_time", "longest_wait", "rms_jerk", "minimum_clearance")
 SPREADS = {
     "time and comfort": ("completion_time", "longest_wait", "rms_jerk"),
@@ -220,7 +222,7 @@ def _spreads(study: StudyFolder) -> Iterator[Picture]:
         rows = [Row(context.short or label) for context, label, _ in cells]
     for place, (what, names) in enumerate(SPREADS.items()):
         columns = [_spread(study, name, [cell for _, _, cell in cells]) for name in names]
-        columns = [c for c in columns if any(np.isfinite(v).any() for v in c.values)]
+        columns = [c for c in columns if max(len(v) for v in c.values) >= FEWEST_SPREAD]
         if not columns:
             continue
         yield Picture(
@@ -361,6 +363,6 @@ def mean_interval(values: NDArray[np.float64], confidence: float) -> tuple[float
     mean = float(values.mean())
     if values.size < 2:
         return mean, mean
-    half = float(stats.t.ppf((1.0 + confidence) / 2.0, values.size - 1))
+    half = float(stdtrit(values.size - 1, (1.0 + confidence) / 2.0))
     half *= float(values.std(ddof=1)) / math.sqrt(values.size)
     return mean - half, mean + half

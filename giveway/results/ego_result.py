@@ -16,6 +16,7 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
     DELAY_FIELDS,
     VehicleContact,
+    anticipation,
     conflicts,
     pedestrian_metrics,
     severities,
@@ -145,14 +146,22 @@ class EgoResult:
         """The drive in one row."""
         config = self.config
         body = self.shape, self.body_radius
-        reference = config.regulation.reference_speed
+        set_speed = config.regulation.reference_speed
+        reference = None if set_speed == LANE else float(set_speed)
         figures = summarise(
             self.track,
             self.pedestrians,
             conflicts(self.track, self.crowd, *body, config.record.stop_speed),
+            anticipation(
+                self.track,
+                self.crowd,
+                *body,
+                reference_speed=reference,
+                stop_speed=config.record.stop_speed,
+            ),
             goal=self.goal,
             safe_distance=config.regulation.safe_distance,
-            reference_speed=None if reference == LANE else float(reference),
+            reference_speed=reference,
             stop_speed=config.record.stop_speed,
             controller=config.controller,
             people=self.people_at_worst,

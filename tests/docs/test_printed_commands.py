@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import importlib.util
 import random
 import re
 import shlex
+import sys
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,40 +23,28 @@ if TYPE_CHECKING:
     from subprocess import CompletedProcess
 
 ROOT = Path(__file__).parents[2]
-PAGES = [
-    ROOT / "README.md",
-    ROOT / "CONTRIBUTING.md",
-    *sorted((ROOT / "docs").rglob("*.md")),
-    ROOT / "fmus" / "README.md",
-    ROOT / "sumo_scenarios" / "README.md",
-]
+SPEC = importlib.util.spec_from_file_location("run_printed", ROOT / "docs" / "run_printed.py")
+assert SPEC is not None
+assert SPEC.loader is not None
+runner: Any = importlib.util.module_from_spec(SPEC)
+sys.modules["run_printed"] = runner
+SPEC.loader.exec_module(runner)
+PAGES: list[Path] = runner.PAGES
 RUN = 2  # of those that need nothing, drawn by a seed
-ENDS = {"&&", "||", ";", "|", ">", ">>", "2>"}
-BLOCK = re.compile(r"^( *)```(sh|bash|)\n(.*?)^\1```", re.DOTALL | re.MULTILINE)
 
 
 def commands_in(text: str) -> list[list[str]]:
     """The words behind each ``giveway`` in shell lines."""
-    found = []
-    for line in text.replace("\\\n", " ").splitlines():
-        if not re.match(r"\s*(\$ )?(\S*/)?(giveway)\s", line):
-            continue
-        lexer = shlex.shlex(line, posix=True, punctuation_chars=";|&>")
-        lexer.whitespace_split = True
-        words = list(lexer)
-        words = words[words.index(next(w for w in words if w.endswith("giveway"))) + 1 :]
-        end = next((at for at, word in enumerate(words) if word in ENDS), len(words))
-        found.append(words[:end])
-    return found
+    return [words for words, _ in runner.commands_in(text)]
 
 
 def printed() -> dict[str, list[str]]:
     """Every printed command, by its page and its words."""
     found = {}
     for page in PAGES:
-        for block in BLOCK.finditer(page.read_text(encoding="utf-8")):
-            for words in commands_in(block[3]):
-                found[f"{page.relative_to(ROOT)}: {' '.join(words)}"] = words
+        for command in runner.printed_on(page):
+            words = list(command.words)
+            found[f"{page.relative_to(ROOT)}: {' '.join(words)}"] = words
     records = tomllib.loads((ROOT / "docs" / "figures" / "records.toml").read_text("utf-8"))
     for name, record in records.items():
         for words in commands_in("\n".join(record["commands"])):
@@ -82,7 +72,7 @@ def parse(words: list[str]) -> None:
 
 
 def test_the_pages_print_many() -> None:
-    assert len(PRINTED) > 60
+    assert len(PRINTED) > 100
 
 
 @pytest.mark.parametrize("name", PRINTED)

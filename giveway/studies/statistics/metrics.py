@@ -64,6 +64,8 @@ METRICS = (
     _higher("minimum_pet", "minimum post-encroachment time"),
     _lower("maximum_drac", "maximum deceleration to avoid a crash"),
     _higher("minimum_ttc_moving", "minimum time to collision while moving"),
+    _higher("ttc_at_slowing", "time to collision as slowing begins"),
+    _lower("time_among_people", "time standing among people"),
     _higher("yielding_rate", "yielding rate"),
     _lower("failures_to_yield", "failures to yield"),
     _lower("red_lights_run", "red lights run"),

@@ -15,6 +15,7 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.metrics import (
     PEDESTRIAN_FIELDS,
     SUMMARY_FIELDS,
+    Anticipation,
     Critical,
     Summary,
     pedestrian_metrics,
@@ -112,7 +113,7 @@ def test_one_uninterrupted_stop_is_one_waiting_time(ego, case, speed, expected):
 
 def summary_of(track, table=NOBODY, critical=Critical(0, 0.0), **arguments):  # noqa: B008
     arguments = {"goal": 4.0, "safe_distance": 8.0, "controller": "mpc"} | arguments
-    return summarise(track, table, critical, **arguments)
+    return summarise(track, table, critical, Anticipation(), **arguments)
 
 
 @pytest.mark.parametrize(
@@ -184,6 +185,7 @@ def test_what_never_occurred_is_empty(ego):
         "minimum_ttc_moving",
         "minimum_pet",
         "maximum_drac",
+        "ttc_at_slowing",
     }
     assert (summary.overlaps, summary.overlap_time) == (0, 0.0)
 

@@ -1,0 +1,149 @@
+"""How early an ego slowed for people, and how long it stood in their midst.
+
+An attentive driver slows while the first person is still far off in time, and stops before a stream
+of people or flows through it. Lengths in m, times in s.
+"""
+
+from dataclasses import fields, replace
+from math import nan
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.geometry.bodies import VehicleShape
+from giveway.metrics.conflicts import centre_poses, check_records, proximity
+from giveway.metrics.groups import PedestrianGroups
+from giveway.metrics.slowing import slowing_begins
+from giveway.metrics.standing import stops
+from giveway.records.tracks import CrowdTrack, EgoTrack
+
+PASSING = 5.0
+"""[m] from the front or the rear bumper: who crosses its line there walks round the car."""
+
+
+class Anticipation(NamedTuple):
+    """How an ego met people.
+
+    Attributes:
+        ttc_at_slowing: [s] as it began to slow, the time to the first person, had it kept its
+            speed; nan: it never slowed, or would have reached nobody.
+        time_among_people: [s] that it stood while people passed in front of and behind it.
+    """
+
+    ttc_at_slowing: float = nan
+    time_among_people: float = 0.0
+
+
+def anticipation(
+    ego: EgoTrack,
+    crowd: CrowdTrack,
+    shape: VehicleShape,
+    body_radius: float,
+    *,
+    reference_speed: float | None,
+    stop_speed: float,
+) -> Anticipation:
+    """How early an ego slowed for people, and how long it stood in their midst.
+
+    Args:
+        ego: the ego's track, T instants.
+        crowd: the crowd's track, R records of n pedestrians in time order.
+        shape: the ego's rectangle.
+        body_radius: radius of a pedestrian [m].
+        reference_speed: v_r [m/s]; None: the lanes say how fast.
+        stop_speed: the ego stands below it [m/s].
+
+    Raises:
+        ValueError: a record points outside the ego's track.
+    """
+    check_records(ego, crowd)
+    begin = slowing_begins(ego, reference_speed)
+    ahead = nan
+    if begin is not None and ego.speed[begin] >= stop_speed:
+        ahead = _time_to_contact(ego, crowd, shape, body_radius, begin)
+    return Anticipation(ahead, _among(ego, crowd, shape, stop_speed))
+
+
+def _time_to_contact(
+    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float, begin: int
+) -> float:
+    """[s] from an instant until the ego would touch somebody, had it kept its speed from then on.
+
+    The time to collision as the brakes go on (van der Horst 1990), with the way that the ego
+    drove and people who walk as they did, instead of straight lines.
+    """
+    time, way = ego.time[begin:], np.maximum.accumulate(ego.position)
+    station = way[begin] + ego.speed[begin] * (time - time[0])
+    count = int(np.searchsorted(station, way[-1], side="right"))  # beyond it nobody was recorded
+
+    def there(column: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(np.interp(station[:count], way, column), dtype=np.float64)
+
+    taken = {each.name: getattr(ego, each.name)[begin : begin + count] for each in fields(ego)}
+    kept = replace(
+        EgoTrack(**taken),
+        front_x=there(ego.front_x),
+        front_y=there(ego.front_y),
+        heading=there(np.unwrap(ego.heading)),
+    )
+    people = crowd.during(begin, count)
+    apart = proximity(kept, people, shape, body_radius).clearance
+    touching = np.flatnonzero(apart < 0.0)
+    if not touching.size:
+        return nan
+    instant = people.step[touching[0]]
+    if instant == 0:
+        return 0.0
+    now = touching[people.step[touching] == instant]
+    return float(min(_contact(people, apart, r, time) for r in now) - time[0])
+
+
+def _contact(
+    people: CrowdTrack, apart: NDArray[np.float64], r: int, time: NDArray[np.float64]
+) -> float:
+    """[s] when the distance became 0 before record ``r``, which it had become by then."""
+    k = people.step[r]
+    before = (people.step == k - 1) & (people.pedestrian == people.pedestrian[r])
+    if not before.any():  # first seen where the ego would be
+        return float(time[k])
+    distance = float(apart[before][0])
+    share = distance / (distance - float(apart[r]))
+    return float(time[k - 1] + share * (time[k] - time[k - 1]))
+
+
+def _among(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, stop_speed: float) -> float:
+    """[s] that the ego stood while people passed in front of and behind it, all stops added up."""
+    stands = stops(ego, stop_speed)
+    if not len(stands):
+        return 0.0
+    time, place = _passages(ego, crowd, shape)
+    total = 0.0
+    for first, last in stands:
+        during = (time >= ego.time[first]) & (time <= ego.time[last])
+        if (place[during] > 0.0).any() and (place[during] < 0.0).any():
+            total += float(np.ptp(time[during]))
+    return total
+
+
+def _passages(
+    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """When [s] and where [m] people cross the ego's line of travel close to its bumpers.
+
+    Places count from the ego's centre, positive in front.
+    """
+    groups = PedestrianGroups(crowd)
+    order = groups.order
+    step, poses = crowd.step[order], centre_poses(ego, shape)[crowd.step[order]]
+    d_x, d_y = crowd.x[order] - poses[:, 0], crowd.y[order] - poses[:, 1]
+    along = d_x * poses[:, 2] + d_y * poses[:, 3]
+    aside = d_y * poses[:, 2] - d_x * poses[:, 3]
+    follows = (np.diff(groups.pedestrian) == 0) & (np.diff(step) == 1)
+    crossed = np.flatnonzero(follows & ((aside[:-1] < 0.0) != (aside[1:] < 0.0)))
+    share = aside[crossed] / (aside[crossed] - aside[crossed + 1])
+    place = along[crossed] + share * (along[crossed + 1] - along[crossed])
+    begin, end = ego.time[step[crossed]], ego.time[step[crossed + 1]]
+    beyond = np.abs(place) - shape.length / 2.0
+    near = (beyond >= 0.0) & (beyond <= PASSING)
+    return (begin + share * (end - begin))[near], place[near]

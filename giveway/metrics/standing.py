@@ -1,0 +1,25 @@
+"""When an ego stands."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.records.rows import STOP_SPEED
+from giveway.records.tracks import EgoTrack
+
+
+def stops(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.int64]:
+    """(n, 2) the instants at which each stop begins and ends, in the order of time.
+
+    An instant stands for the time until the next one, so a stop lasts from the first instant below
+    ``stop_speed`` [m/s] to the first one that is not, or to the end of the track.
+    """
+    standing = np.concatenate(([False], ego.speed < stop_speed, [False]))
+    edges = np.diff(standing.astype(np.int8))
+    begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
+    return np.column_stack([begins, np.minimum(ends, ego.time.size - 1)]).astype(np.int64)
+
+
+def waiting_times(ego: EgoTrack, stop_speed: float = STOP_SPEED) -> NDArray[np.float64]:
+    """Duration [s] of every stop in the order of time."""
+    begins, ends = stops(ego, stop_speed).T
+    return np.asarray(ego.time[ends] - ego.time[begins], dtype=np.float64)
