@@ -37,7 +37,6 @@ class Vehicle(ABC):
         self.position = self.speed = self.acceleration = self.time = 0.0
         self.record: tuple[Recorded, ...] = ()
         self.recorded: Sequence[float] = ()
-        self._failed = False  # at the last start or step
         self._refusal = ""  # why no step can be done; empty while the vehicle is running
         self._refuse("has not been started; call start() first")
 
@@ -80,13 +79,11 @@ class Vehicle(ABC):
 
     def _refuse(self, reason: str) -> None:
         """Have all steps refused for this reason until the next start."""
-        self._failed = False
         self._refusal = f"{self.path}: the vehicle {reason}"
 
     def _fail(self) -> None:
         """Have all steps refused because the last start or step has failed."""
         self._refuse(f"failed at {self.time:.10g} s; start it again")
-        self._failed = True
 
 
 class Drivable(Vehicle):

@@ -23,7 +23,8 @@ from fmus import (
 )
 from fmus.checking import convergence, goes_the_wrong_way, opener_of, remedy
 from fmus.profile.advice import gain_line
-from fmus.profile.vehicle_profile import Axis, FittedModel
+from fmus.profile.tables import Axis
+from fmus.profile.vehicle_profile import FittedModel
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.sections import BUNDLED_VEHICLES, DEFAULT_SPEED, VehicleConfig
 from giveway.errors import VehicleError
