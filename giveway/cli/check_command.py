@@ -28,6 +28,7 @@ def check_command(
     socket: Socket,
     limit: float = LIMIT,
     time_step: float | None = None,
+    profile: str = "",
 ) -> int:
     """Print what was found; the exit code is 1 if a rule is broken.
 
@@ -39,16 +40,17 @@ def check_command(
         socket: that it is for.
         limit: [s] for one rule.
         time_step: [s] of the scenes; none: that of a run which sets none.
+        profile: of a controller FMU.
 
     Raises:
         GivewayError: it cannot be found, imported or given its options.
     """
-    config = _configured(name, words, socket, time_step)
+    config = _configured(name, words, socket, time_step, profile)
     own = [one for one in foreign_code(config) if one.socket is socket]
     if not own:
         msg = f"{name}: is giveway's own; expected a {socket.what} of another package"
         raise ConfigError(msg)
-    require_code(config)
+    require_code(config, time_step or PAPER_STEP)
     findings = _in_a_process(config, socket, limit)
     for rule, problem in findings:
         typer.echo(f"{'broken' if problem else 'kept':7} {rule}")
@@ -60,11 +62,13 @@ def check_command(
 
 
 def _configured(
-    name: str, words: Sequence[str], socket: Socket, time_step: float | None
+    name: str, words: Sequence[str], socket: Socket, time_step: float | None, profile: str
 ) -> RunConfig:
     settings: dict[str, Any] = {socket.options: set_options(words)}
     if time_step is not None:
         settings["time_step"] = time_step
+    if profile:
+        settings["controller_profile"] = profile
     node = settings
     for table in socket.location[:-1]:
         node = node.setdefault(table, {})
