@@ -24,6 +24,7 @@ class Vehicle(ABC):
         acceleration: [m/s2] as of the last step.
         time: [s] the number of steps times the step size, never a running sum.
         step_size: of the controller [s].
+        knows_grades: whether it has an input for the road's grade.
         record: what the profile wants to have recorded.
         recorded: values of the profile's ``record`` as of the last step, in the FMU's own units.
         warnings: what the user should know of this FMU, since its last start.
@@ -31,6 +32,7 @@ class Vehicle(ABC):
 
     step_size: float
     warnings: list[str]
+    knows_grades = False
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -45,8 +47,11 @@ class Vehicle(ABC):
         """Begin (again) at time 0, at a position [m] and a speed [m/s]."""
 
     @abstractmethod
-    def step(self, force: float) -> None:
-        """Hold ``force`` [N] for one step; the results are in the attributes."""
+    def step(self, force: float, grade: float = 0.0) -> None:
+        """Hold ``force`` [N] for one step on a ``grade`` [rad]; the results are in the attributes.
+
+        A grade is uphill if it is positive; an FMU without an input for it drives as on the level.
+        """
 
     @abstractmethod
     def close(self) -> None:

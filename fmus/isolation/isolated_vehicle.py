@@ -53,6 +53,7 @@ class IsolatedVehicle(Vehicle):
         self._step_timeout = prepared.profile.fmu.step_timeout
         self._stretch = prepared.pace.stretch
         self.record = prepared.wiring.record
+        self.knows_grades = prepared.wiring.grade is not None
         self._steps, self._force = 0, 0.0
         self._process = FmuProcess(VehicleRider, prepared)
 
@@ -80,8 +81,8 @@ class IsolatedVehicle(Vehicle):
         self._exchange(START, (position, speed), self._start_timeout)
         self._refusal = ""
 
-    def step(self, force: float) -> None:
-        """Hold ``force`` [N] for one step; the results are in the attributes.
+    def step(self, force: float, grade: float = 0.0) -> None:
+        """Hold ``force`` [N] for one step on a ``grade`` [rad]; the results are in the attributes.
 
         Raises:
             FmuStepError: the force is not a finite number, or the FMU does not do the step.
@@ -91,7 +92,7 @@ class IsolatedVehicle(Vehicle):
         """
         self._require_step(force)
         self._force = force
-        self._exchange(STEP, (processor.current(), force), self._step_timeout)
+        self._exchange(STEP, (processor.current(), force, grade), self._step_timeout)
         self._steps += 1
         self.time = self._steps * self.step_size
 

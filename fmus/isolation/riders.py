@@ -79,8 +79,8 @@ class VehicleRider:
         self._vehicle.start(position=numbers[0], speed=numbers[1])
 
     def step(self, numbers: Sequence[float]) -> None:
-        """Under a force."""
-        self._vehicle.step(numbers[1])
+        """Under a force, on a grade."""
+        self._vehicle.step(numbers[1], numbers[2])
 
     def state(self) -> Sequence[float]:
         """Position, speed, acceleration and what is recorded."""

@@ -39,6 +39,7 @@ class Inputs(Table):
     throttle: Pedal | None = None
     brake: Pedal | None = None
     speed_setpoint: SpeedSetpoint | None = None  # [m/s]
+    grade: Axis | None = None  # [rad] of the road, uphill positive; or its tangent, as % or 1
     block_reverse: bool = True  # at a standstill no braking force or acceleration is passed on
 
     @model_validator(mode="after")

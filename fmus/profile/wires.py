@@ -25,6 +25,8 @@ _QUANTITIES = {  # dimension and the unit to suggest, by role
     "throttle": (units.NONE, "1"),
     "brake": (units.NONE, "1"),
     "speed_setpoint": (units.SPEED, "m/s"),
+    "grade": (units.ANGLE, "rad"),
+    "slope": (units.NONE, "1"),  # the tangent of the grade
     "speed": (units.SPEED, "m/s"),
     "position": (units.LENGTH, "m"),
     "last_force": (units.FORCE, "N"),

@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import tan
 from typing import NamedTuple
 
+from fmus.description import units
 from fmus.description.channels import find_channel, known_names, start_channels
-from fmus.description.model import NUMERIC_TYPES, REAL_TYPES, Channel, Interface, Model, Value
+from fmus.description.model import NUMERIC_TYPES, REAL_TYPES, Channel, Interface, Model, Unit, Value
 from fmus.errors import FmuVariableError
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import Inputs, VehicleProfile
@@ -19,6 +21,7 @@ _INPUTS = (
     "throttle",
     "brake",
     "speed_setpoint",
+    "grade",
 )
 _OUTPUTS = ("speed", "position", "acceleration")
 
@@ -55,6 +58,17 @@ class Wiring:
             Recorded(channel.name, channel.variable.unit, channel.variable.description)
             for channel in self.recorded
         )
+
+    @property
+    def grade(self) -> int | None:
+        """The index of the road's grade among the inputs; None: the FMU is not told."""
+        last = len(self.inputs) - 1
+        return last if self.inputs[last].role in {"grade", "slope"} else None
+
+    def grade_to_raw(self, grade: float) -> float:
+        """A grade [rad] as the FMU wants it: the last of the inputs."""
+        wire = self.inputs[-1]
+        return wire.to_raw(tan(grade) if wire.role == "slope" else grade)
 
     def output(self, role: str) -> int | None:
         """The index of a role among the outputs; None: the profile does not name it."""
@@ -118,7 +132,9 @@ def _input_wires(model: Model, inputs: Inputs) -> tuple[Wire, ...]:
         axis = getattr(inputs, role)
         if axis is None:
             continue
-        found = make_wire(model, "inputs", role, axis)
+        found = (
+            _grade_wire(model, axis) if role == "grade" else make_wire(model, "inputs", role, axis)
+        )
         if found.channel in wires:
             raise FmuVariableError(
                 f"{model.path}: [inputs.{role}] variable '{found.channel.name}' is that of "
@@ -126,6 +142,15 @@ def _input_wires(model: Model, inputs: Inputs) -> tuple[Wire, ...]:
             )
         wires[found.channel] = found
     return tuple(wires.values())
+
+
+def _grade_wire(model: Model, axis: Axis) -> Wire:
+    """The road's grade: an angle, or its tangent where the unit is 1 or per cent."""
+    variable = find_channel(model, "[inputs.grade]", axis.variable).variable
+    name = axis.unit or variable.unit
+    unit = units.to_si(model.units.get(name) or Unit(name)) if name else None
+    tangent = unit is not None and unit.dimension == units.NONE and axis.gain is None
+    return make_wire(model, "inputs", "slope" if tangent else "grade", axis)
 
 
 def _initial(model: Model, role: str, axis: Axis | None) -> Wire | None:

@@ -93,6 +93,10 @@ class Zoo:
         """The controller of python/fmi2_controller.py or python/fmi3_controller.py."""
         return self._python(fmi, "controller")
 
+    def hill_car(self) -> Path:
+        """The car of python/fmi3_hill_car.py, which feels the road's grade."""
+        return self._python("3.0", "hill_car")
+
     def _python(self, fmi: str, what: str) -> Path:
         key = f"python {what} {fmi}"
         if key not in self._built:
