@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
-from typing import Final, NoReturn
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
 
 from fmus.description.model import Model, Variable
 from fmus.errors import FmuProfileError
@@ -14,7 +17,8 @@ from fmus.profile.controller_profile import (
     ControllerProfile,
     make_controller_profile,
 )
-from fmus.text import listed
+from fmus.profile.draft import toml_value
+from fmus.text import listed, printable
 
 _NAMES: Final = {  # of variables, in small letters and without separators and brackets
     "speed": "speed egospeed velocity egovelocity v vego vx",
@@ -38,41 +42,88 @@ _ANSWERS: Final = {
 _NUMBER = re.compile(r"\[\d+\]$")
 
 
-def draft_controller(model: Model) -> ControllerProfile:
-    """The profile of a controller whose names say what its variables are.
+@dataclass(frozen=True)
+class ControllerDraft:
+    """What names say of a controller's variables, and what they leave open.
 
-    Raises:
-        FmuProfileError: there is doubt; the message says which lines to write.
+    Attributes:
+        path: of the FMU.
+        inputs: variables by role.
+        answers: the same of its outputs.
+        open: variables that a role is to be found for, with what is asked.
     """
-    inputs: dict[str, dict[str, str]] = {}
+
+    path: Path
+    inputs: Mapping[str, Variable]
+    answers: Mapping[str, Variable]
+    open: tuple[tuple[str, str], ...]
+
+    def profile(self) -> ControllerProfile:
+        """The profile, if nothing is open.
+
+        Raises:
+            FmuProfileError: something is; the message says which lines to write.
+        """
+        if self.open:
+            raise FmuProfileError(
+                f"{self.path}: needs a controller profile (--controller-profile FILE.toml): "
+                f"{self.open[0][1]}; 'giveway fmu inspect {self.path} --controller --draft "
+                f"FILE.toml' writes the rest, {GUIDE} explains it"
+            )
+        tables = {
+            table: {role: {"variable": _base(variable.name)} for role, variable in found.items()}
+            for table, found in (("inputs", self.inputs), ("outputs", self.answers))
+        }
+        return make_controller_profile(tables, f"{self.path}: drafted profile")
+
+    @property
+    def toml(self) -> str:
+        """The draft as a file; what is open stands in comments."""
+        blocks = [f"# Controller profile of {printable(self.path.name, 100)}, drafted from names."]
+        for table, found in (("inputs", self.inputs), ("outputs", self.answers)):
+            for role, variable in found.items():
+                unit = "" if variable.unit else '\n# unit = "..."'
+                name = toml_value(_base(variable.name))
+                blocks.append(f"[{table}.{role}]\nvariable = {name}{unit}")
+        for name, doubt in self.open:
+            lines = [f"# ? {printable(doubt, 400)}"]
+            if name:
+                lines += ["# ? [inputs.ROLE]", f"# ? variable = {toml_value(name)}"]
+            blocks.append("\n".join(lines))
+        return "\n\n".join(blocks) + "\n"
+
+
+def draft_controller(model: Model) -> ControllerDraft:
+    """The profile of a controller as far as names say what its variables are."""
+    inputs: dict[str, Variable] = {}
+    doubts: dict[str, str] = {}
     for variable in model.variables.values():
         if variable.causality != "input":
             continue
-        base = _NUMBER.sub("", variable.name)
+        base = _base(variable.name)
         roles = _roles_of(base, _NAMES)
         if not roles or (_is_series(variable) != (roles[0] in SERIES)):
-            _doubt(
-                model,
-                f"what is its input '{variable.name}' to be told? Write [inputs.ROLE] with "
-                f'variable = "{variable.name}", ROLE one of {", ".join(TOLD)}',
+            doubts[base] = (
+                f"what is its input '{base}' to be told? Write [inputs.ROLE] with variable = "
+                f'"{base}", ROLE one of {", ".join(TOLD)}'
             )
-        if inputs.setdefault(roles[0], {"variable": base})["variable"] != base:
-            _doubt(model, f"'{base}' and '{inputs[roles[0]]['variable']}' are both {roles[0]}")
-    answers = {
-        role: {"variable": variable.name}
-        for variable in model.variables.values()
-        if variable.causality == "output"
-        for role in _roles_of(variable.name, _ANSWERS)
-    }
+        elif _base(inputs.setdefault(roles[0], variable).name) != base:
+            doubts[base] = f"'{base}' and '{_base(inputs[roles[0]].name)}' are both {roles[0]}"
+    outputs = [v for v in model.variables.values() if v.causality == "output"]
+    answers = {role: v for v in outputs for role in _roles_of(v.name, _ANSWERS)}
     if len(answers) != 1:
-        outputs = listed([v.name for v in model.variables.values() if v.causality == "output"], 8)
-        _doubt(
-            model,
-            f"which of its outputs ({outputs or 'it has none'}) is the answer? Write one of "
-            "[outputs.force], [outputs.acceleration], [outputs.speed] with variable = ...",
+        known = listed([v.name for v in outputs], 8) or "it has none"
+        doubts[""] = (
+            f"which of its outputs ({known}) is the answer? Write one of [outputs.force], "
+            "[outputs.acceleration], [outputs.speed] with variable = ..."
         )
-    tables = {"inputs": inputs, "outputs": answers}
-    return make_controller_profile(tables, f"{model.path}: drafted profile")
+        answers = {}
+    return ControllerDraft(model.path, inputs, answers, tuple(doubts.items()))
+
+
+def _base(name: str) -> str:
+    """The name of a series' variable without its number."""
+    return _NUMBER.sub("", name)
 
 
 def _roles_of(name: str, known: dict[str, str]) -> list[str]:
@@ -82,10 +133,3 @@ def _roles_of(name: str, known: dict[str, str]) -> list[str]:
 
 def _is_series(variable: Variable) -> bool:
     return bool(variable.shape) or _NUMBER.search(variable.name) is not None
-
-
-def _doubt(model: Model, doubt: str) -> NoReturn:
-    raise FmuProfileError(
-        f"{model.path}: needs a controller profile (--controller-profile FILE.toml): {doubt}; "
-        f"{GUIDE} shows one"
-    )

@@ -72,7 +72,7 @@ def prepare_controller(
         FmuProfileError: the profile does not fit, or there is none where one is needed.
     """
     model = read_model(path)
-    profile = profile or draft_controller(model)
+    profile = profile or draft_controller(model).profile()
     wiring = wire_controller(model, profile, setup, start_values or {})
     interface = wiring.interface
     return PreparedController(
@@ -93,4 +93,4 @@ def choose_controller_profile(path: Path, profile: ControllerProfile | None) -> 
         FmuFileError: the file is missing, or no readable FMU.
         FmuProfileError: there is doubt; the message says which lines to add.
     """
-    return profile or draft_controller(read_model(path))
+    return profile or draft_controller(read_model(path)).profile()
