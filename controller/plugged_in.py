@@ -89,6 +89,18 @@ class PluggedIn:
             with self._blamed("in applied"):
                 applied(force)
 
+    def close(self) -> None:
+        """Nobody asks any more."""
+        close = getattr(self._plug_in, "close", None)
+        if close is not None:
+            with self._blamed("in close"):
+                close()
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the user should know of the plug-in."""
+        return list(getattr(self._plug_in, "warnings", ()))
+
     def _force_of(self, answer: object, speed: float) -> tuple[float, str]:
         """The force [N] that an answer means, and its reason."""
         setup = self._setup
@@ -131,6 +143,8 @@ class PluggedIn:
             raise self._blame(error, f" {when}") from error
 
     def _blame(self, error: BaseException, when: str) -> PlugInError:
+        if isinstance(error, PlugInError):
+            return PlugInError(f"{self._name}: {error}")
         return PlugInError(f"{self._name} raised {described(error)}{when}")
 
 

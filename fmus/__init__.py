@@ -20,8 +20,18 @@ from fmus.errors import (
     FmuVariableError,
 )
 from fmus.interfaces.vehicle import Vehicle
-from fmus.isolation import IsolatedVehicle, open_vehicle
+from fmus.isolation import IsolatedController, IsolatedVehicle, open_vehicle
 from fmus.profile.bundled import bundled_fmu, is_bundled
+from fmus.profile.controller_preparation import (
+    PreparedController,
+    choose_controller_profile,
+    prepare_controller,
+)
+from fmus.profile.controller_profile import (
+    ControllerProfile,
+    make_controller_profile,
+    read_controller_profile,
+)
 from fmus.profile.preparation import choose_profile, prepare
 from fmus.profile.vehicle_profile import VehicleProfile, make_profile, read_profile
 from fmus.sources.export import bundled_controller, export_controller
@@ -29,6 +39,7 @@ from fmus.sources.parameters import ControllerParameters
 
 __all__ = [
     "ControllerParameters",
+    "ControllerProfile",
     "FmuArchiveError",
     "FmuBuildError",
     "FmuCrashError",
@@ -44,18 +55,24 @@ __all__ = [
     "FmuStateError",
     "FmuStepError",
     "FmuVariableError",
+    "IsolatedController",
     "IsolatedVehicle",
+    "PreparedController",
     "Vehicle",
     "VehicleFmu",
     "VehicleProfile",
     "bundled_controller",
     "bundled_fmu",
+    "choose_controller_profile",
     "choose_profile",
     "describe",
     "export_controller",
     "is_bundled",
+    "make_controller_profile",
     "make_profile",
     "open_vehicle",
     "prepare",
+    "prepare_controller",
+    "read_controller_profile",
     "read_profile",
 ]

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from fmus.checking.scale import KnownMass
-from fmus.profile.vehicle_profile import Axis, FittedModel, VehicleProfile
+from fmus.profile.tables import Axis
+from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,8 @@ from fmus.checking.saturation import force_limits
 from fmus.checking.sides import Sides, fit_apart, side_remarks
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
 from fmus.profile.advice import gain_line
-from fmus.profile.vehicle_profile import Axis, FittedModel, VehicleProfile
+from fmus.profile.tables import Axis
+from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
 LEVELS = (0.1, 0.25, 0.5, 1.0)  # of the largest force of the tests
 SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] at the start of the tests

@@ -15,6 +15,8 @@ def start_values(prepared: Prepared, position: float, speed: float) -> dict[Chan
     wiring = prepared.wiring
     at_rest = memoryview(bytearray(8 * len(wiring.inputs))).cast("d")
     prepared.command.apply(0.0, speed, at_rest)
+    if wiring.grade is not None:
+        at_rest[wiring.grade] = wiring.grade_to_raw(0.0)
     Motion(prepared).keep_bounds(at_rest)
     values: dict[Channel, Value] = {}
     for wire, value in zip(wiring.inputs, at_rest, strict=True):

@@ -71,6 +71,8 @@ class VehicleFmu(Drivable):
         self.step_size = prepared.step_size
         self._pace = prepared.pace
         self._command = prepared.command
+        self._grade = prepared.wiring.grade
+        self.knows_grades = self._grade is not None
         self._motion = Motion(prepared)
         self.warnings = self._motion.warnings
         self._ends = ((0.0, 0.0), (0.0, 0.0))  # position, speed at both ends of a longer FMU step
@@ -160,8 +162,8 @@ class VehicleFmu(Drivable):
 
     # --- steps ---------------------------------------------------------------------------------
 
-    def step(self, force: float) -> None:
-        """Hold ``force`` [N] for one step; the results are in the attributes.
+    def step(self, force: float, grade: float = 0.0) -> None:
+        """Hold ``force`` [N] for one step on a ``grade`` [rad]; the results are in the attributes.
 
         Raises:
             FmuStepError: the force is not a finite number, or the FMU does not do the step.
@@ -172,7 +174,7 @@ class VehicleFmu(Drivable):
             self._require_step(force)
         motion, done, stretch = self._motion, self._earlier + self._steps, self._pace.stretch
         if stretch == 1 or done % stretch == 0:
-            self._drive(force, done)
+            self._drive(force, grade, done)
         self._steps += 1
         self.time = self._steps * self.step_size
         self.acceleration = motion.acceleration
@@ -182,10 +184,12 @@ class VehicleFmu(Drivable):
             share = (done % stretch + 1) / stretch
             self.position, self.speed = between(*self._ends, self._pace.step, share)
 
-    def _drive(self, force: float, done: int) -> None:
+    def _drive(self, force: float, grade: float, done: int) -> None:
         """Do the FMU's steps of one control step, or the FMU's one step if that is longer."""
         pace, motion, tick = self._pace, self._motion, self._tick
         self._command.apply(force, motion.speed, self._inputs)
+        if self._grade is not None:
+            self._inputs[self._grade] = self.prepared.wiring.grade_to_raw(grade)
         if self.prepared.bounds:
             motion.keep_bounds(self._inputs)
         h, substeps = pace.step, pace.substeps

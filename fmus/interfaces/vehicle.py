@@ -24,6 +24,7 @@ class Vehicle(ABC):
         acceleration: [m/s2] as of the last step.
         time: [s] the number of steps times the step size, never a running sum.
         step_size: of the controller [s].
+        knows_grades: whether it has an input for the road's grade.
         record: what the profile wants to have recorded.
         recorded: values of the profile's ``record`` as of the last step, in the FMU's own units.
         warnings: what the user should know of this FMU, since its last start.
@@ -31,13 +32,13 @@ class Vehicle(ABC):
 
     step_size: float
     warnings: list[str]
+    knows_grades = False
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.position = self.speed = self.acceleration = self.time = 0.0
         self.record: tuple[Recorded, ...] = ()
         self.recorded: Sequence[float] = ()
-        self._failed = False  # at the last start or step
         self._refusal = ""  # why no step can be done; empty while the vehicle is running
         self._refuse("has not been started; call start() first")
 
@@ -46,8 +47,11 @@ class Vehicle(ABC):
         """Begin (again) at time 0, at a position [m] and a speed [m/s]."""
 
     @abstractmethod
-    def step(self, force: float) -> None:
-        """Hold ``force`` [N] for one step; the results are in the attributes."""
+    def step(self, force: float, grade: float = 0.0) -> None:
+        """Hold ``force`` [N] for one step on a ``grade`` [rad]; the results are in the attributes.
+
+        A grade is uphill if it is positive; an FMU without an input for it drives as on the level.
+        """
 
     @abstractmethod
     def close(self) -> None:
@@ -80,13 +84,11 @@ class Vehicle(ABC):
 
     def _refuse(self, reason: str) -> None:
         """Have all steps refused for this reason until the next start."""
-        self._failed = False
         self._refusal = f"{self.path}: the vehicle {reason}"
 
     def _fail(self) -> None:
         """Have all steps refused because the last start or step has failed."""
         self._refuse(f"failed at {self.time:.10g} s; start it again")
-        self._failed = True
 
 
 class Drivable(Vehicle):

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fmus.driving.vehicle import VehicleFmu
+from fmus.isolation.isolated_controller import IsolatedController
 from fmus.isolation.isolated_vehicle import IsolatedVehicle
 from fmus.profile.bundled import is_bundled
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from fmus.interfaces.vehicle import Vehicle
     from fmus.profile.vehicle_profile import VehicleProfile
 
-__all__ = ["IsolatedVehicle", "open_vehicle"]
+__all__ = ["IsolatedController", "IsolatedVehicle", "open_vehicle"]
 
 
 def open_vehicle(

@@ -1,4 +1,4 @@
-"""Starting and ending the FMU's processes, as seen from the vehicle."""
+"""Starting and ending the FMU's processes, as seen from who wants them."""
 
 import pickle
 import socket
@@ -11,7 +11,6 @@ from fmus.isolation.exit_report import ExitReport
 from fmus.isolation.linux_host import LinuxHost
 from fmus.isolation.portable_host import PortableHost
 from fmus.isolation.worker import Order
-from fmus.profile.preparation import Prepared
 
 
 class ProcessHost(Protocol):
@@ -35,15 +34,14 @@ class ProcessHost(Protocol):
         """End everything and wait until it has ended."""
 
 
-def make_process_host(prepared: Prepared, folder: Path) -> ProcessHost:
+def make_process_host(order: Order, folder: Path) -> ProcessHost:
     """The process host for this platform.
 
     Args:
-        prepared: the vehicle.
+        order: what shall run in its processes.
         folder: temporary, for the host to write to; by the time that a process starts, the
-            unpacked FMU is in its folder ``fmu``.
+            unpacked FMU is in the order's folder.
     """
-    order = Order(prepared, folder / "fmu")
     (folder / "order").write_bytes(pickle.dumps(order))
     scratch_of(folder).mkdir()
-    return (LinuxHost if sys.platform == "linux" else PortableHost)(prepared.path, folder)
+    return (LinuxHost if sys.platform == "linux" else PortableHost)(order.prepared.path, folder)

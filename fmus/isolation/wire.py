@@ -1,6 +1,7 @@
-"""The messages between the vehicle and its FMU's process.
+"""The messages between a vehicle or controller and its FMU's process.
 
-Requests and replies have a fixed head, so that a step costs one write and one read on each side.
+Requests and replies have a fixed head, so that a step costs one write and one read on each side;
+how many numbers it holds is agreed on from the beginning.
 Replies of the FMU's process are not trusted, because an FMU can write into any open file: nothing
 is unpickled, every head must carry the number of its request, and the text that follows it is JSON
 of bounded size.
@@ -16,14 +17,12 @@ from collections.abc import Sequence
 from time import monotonic
 from typing import Any, Final
 
-LOAD: Final = b"load"  # 0, 0
-START: Final = b"strt"  # position [m], speed [m/s]
-STEP: Final = b"step"  # force [N], processor that the vehicle runs on
-QUIT: Final = b"quit"  # 0, 0
-DONE: Final = b"done"  # position [m], speed [m/s], acceleration [m/s2]
-FAILED: Final = b"fail"  # the same values; the text is the error
-REQUEST: Final = struct.Struct("<4sIdd")  # what, number, two values
-REPLY: Final = "<4sIIddd"  # what, number of the request, size of the text, values
+LOAD: Final = b"load"  # no numbers
+START: Final = b"strt"  # of a vehicle: position [m], speed [m/s]
+STEP: Final = b"step"  # the processor that its client runs on; then what the FMU is to be told
+QUIT: Final = b"quit"  # no numbers
+DONE: Final = b"done"  # the state: of a vehicle position [m], speed [m/s], acceleration [m/s2], ...
+FAILED: Final = b"fail"  # the same numbers; the text is the error
 TEXT_LIMIT: Final = 1 << 16  # [bytes]
 START_WORKER: Final = b"fork"  # to the watchdog, with the worker's end of the connection
 END_WORKER: Final = b"end"  # with a patience [ms], before it is killed; answered by its report
@@ -33,8 +32,8 @@ CONNECTION_LOST: Final = 113  # exit status of a process whose connection has be
 _TURNS = 50  # some 50 us if nobody else wants the processor
 
 Text = dict[str, Any]
-Reply = tuple[bool, float, float, float, Text]
-"""Whether the request was done, three values, the text."""
+Reply = tuple[bool, Sequence[float], Text]
+"""Whether the request was done, the numbers, the text."""
 
 
 class GarbledError(Exception):
@@ -42,19 +41,18 @@ class GarbledError(Exception):
 
 
 class Client:
-    """The vehicle's end of the connection.
+    """The vehicle's or controller's end of the connection.
 
     Args:
         connection: a stream socket, owned by the client from now on.
-        recorded: how many values each reply has besides its three.
-
-    Attributes:
-        recorded: those of the last reply.
+        asked: how many numbers each request has.
+        answered: how many each reply has.
     """
 
-    def __init__(self, connection: socket.socket, recorded: int = 0) -> None:
-        self._layout = reply_layout(recorded)
-        self.recorded: Sequence[float] = (0.0,) * recorded
+    def __init__(self, connection: socket.socket, asked: int, answered: int) -> None:
+        self._request = request_layout(asked)
+        self._layout = reply_layout(answered)
+        self._asked = asked
         self._connection = connection
         self._prompt = connection.dup()  # the same one, for calls that do not wait
         self._prompt.settimeout(None)  # saves a system call in each of them
@@ -63,8 +61,13 @@ class Client:
         self._timeout: float | None = None
         self._head = bytearray(self._layout.size)
 
-    def ask(self, what: bytes, first: float, second: float, timeout: float) -> Reply:
-        """Send one request and return its reply, which must come within ``timeout`` [s].
+    def ask(self, what: bytes, numbers: Sequence[float], timeout: float) -> Reply:
+        """Send one request and return its reply.
+
+        Args:
+            what: is to be done.
+            numbers: as many as were agreed on, or fewer: 0 from there on.
+            timeout: in which the reply must come [s].
 
         Raises:
             TimeoutError: no reply came.
@@ -76,15 +79,17 @@ class Client:
             self._timeout = timeout
         self._number = number = (self._number + 1) & 0xFFFFFFFF
         try:
-            self._prompt.send(REQUEST.pack(what, number, first, second))
+            missing = self._asked - len(numbers)
+            if missing:
+                numbers = (*numbers, *missing * (0.0,))
+            self._prompt.send(self._request.pack(what, number, *numbers))
             size = self._receive_head()
             if size != self._layout.size:
                 self._fill(self._head, size, timeout)
-            kind, echo, length, x, v, a, *recorded = self._layout.unpack(self._head)
-            self.recorded = recorded
+            kind, echo, length, *state = self._layout.unpack(self._head)
             if echo != number or length > TEXT_LIMIT or (kind != DONE and kind != FAILED):
                 raise GarbledError
-            return kind == DONE, x, v, a, self._text(length, timeout) if length else {}
+            return kind == DONE, state, self._text(length, timeout) if length else {}
         except TimeoutError:
             raise
         except OSError as error:
@@ -133,15 +138,25 @@ def _close(*connections: socket.socket) -> None:
         connection.close()
 
 
-def reply_layout(recorded: int) -> struct.Struct:
-    """The fixed head of replies with so many values besides the three."""
-    return struct.Struct(f"{REPLY}{recorded}d")
+def request_layout(numbers: int) -> struct.Struct:
+    """The head of requests: what, their number, and so many numbers."""
+    return struct.Struct(f"<4sI{numbers}d")
 
 
-def receive(connection: socket.socket) -> tuple[bytes, int, float, float] | None:
+def reply_layout(numbers: int) -> struct.Struct:
+    """The head of replies: how it went, the request's number, the text's size, so many numbers."""
+    return struct.Struct(f"<4sII{numbers}d")
+
+
+def receive(
+    connection: socket.socket, layout: struct.Struct
+) -> tuple[bytes, int, Sequence[float]] | None:
     """The next request, received in the FMU's process; None: the connection has been closed."""
-    head = connection.recv(REQUEST.size, socket.MSG_WAITALL)
-    return REQUEST.unpack(head) if len(head) == REQUEST.size else None
+    head = connection.recv(layout.size, socket.MSG_WAITALL)
+    if len(head) != layout.size:
+        return None
+    what, number, *numbers = layout.unpack(head)
+    return what, number, numbers
 
 
 def reply(

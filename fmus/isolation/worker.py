@@ -1,4 +1,4 @@
-"""The FMU's own process: it runs one vehicle for one episode, as requested through a socket."""
+"""The FMU's own process: it runs one FMU for one episode, as requested through a socket."""
 
 import ctypes
 import os
@@ -7,6 +7,7 @@ import signal
 import socket
 import sys
 import threading
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,9 +15,9 @@ from time import sleep
 from typing import Any, NoReturn
 
 from fmus.description.model import Kind
-from fmus.driving.vehicle import VehicleFmu
 from fmus.errors import FmuError
 from fmus.isolation.processor import Follower
+from fmus.isolation.riders import Rider
 from fmus.isolation.wire import (
     CONNECTION_LOST,
     DONE,
@@ -29,8 +30,8 @@ from fmus.isolation.wire import (
     receive,
     reply,
     reply_layout,
+    request_layout,
 )
-from fmus.profile.preparation import Prepared
 from fmus.text import printable
 
 _WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: JSON stays below its limit
@@ -38,17 +39,18 @@ _WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: JSON stays 
 
 @dataclass(frozen=True)
 class Order:
-    """What the process shall run: a vehicle, and the folder that holds its unpacked FMU."""
+    """What the process shall run: an FMU, as what, and the folder that holds it unpacked."""
 
-    prepared: Prepared
+    rider: type[Rider]
+    prepared: Any
     folder: Path
 
-    def vehicle(self) -> VehicleFmu:
-        """The vehicle, its FMU loaded into this process."""
-        return VehicleFmu.unpacked(self.prepared, self.folder)
+    def load(self) -> Rider:
+        """The FMU, loaded into this process."""
+        return self.rider(self.prepared, self.folder)
 
     def import_ahead(self) -> None:
-        """Import what the vehicle will need, so that forked workers need not import it again."""
+        """Import what the FMU will need, so that forked workers need not import it again."""
         if self.prepared.wiring.interface.kind is Kind.MODEL_EXCHANGE:
             from fmus.fmi import cvode
 
@@ -56,19 +58,19 @@ class Order:
 
 
 def read_order(folder: str) -> Order:
-    """The order that the vehicle's process has left in its temporary folder."""
+    """The order that its client has left in its temporary folder."""
     order = pickle.loads(Path(folder, "order").read_bytes())
     assert isinstance(order, Order)
     return order
 
 
 def main(port: int, token: str, folder: str) -> NoReturn:
-    """Run as a worker without a watchdog; connect back to the vehicle's process.
+    """Run as a worker without a watchdog; connect back to the process that wants the FMU.
 
     Args:
         port: on this machine.
-        token: proves to the vehicle that this is its worker.
-        folder: the vehicle's temporary folder.
+        token: proves that this is the worker that is waited for.
+        folder: the temporary folder.
     """
     parent = os.getppid()
 
@@ -96,7 +98,7 @@ def serve(order: Order, connection: socket.socket) -> NoReturn:
 
 def _protect() -> None:
     """Have the FMU's output flushed line by line, and no core file written at a crash."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by the vehicle's process
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by our client
     if sys.platform != "win32":
         import resource
 
@@ -112,17 +114,18 @@ class _Worker:
     def __init__(self, order: Order, connection: socket.socket) -> None:
         self._order = order
         self._connection = connection
-        self._vehicle: VehicleFmu | None = None
+        self._rider: Rider | None = None
         self._warned = 0
         self._follower = Follower()
-        self._recorded = len(order.prepared.wiring.recorded)
-        self._layout = reply_layout(self._recorded)
+        asked, answered = order.rider.numbers(order.prepared)
+        self._requests = request_layout(asked)
+        self._layout, self._answered = reply_layout(answered), answered
 
     def run(self) -> None:
-        while (request := receive(self._connection)) is not None:
-            what, number, first, second = request
+        while (request := receive(self._connection, self._requests)) is not None:
+            what, number, numbers = request
             try:
-                text = self._do(what, first, second)
+                text = self._do(what, numbers)
             except FmuError as error:
                 self._refuse(number, type(error).__name__, str(error))
             except Exception as error:  # a fault of giveway, or an FMU that tampers with Python
@@ -132,40 +135,34 @@ class _Worker:
                 if what == QUIT:
                     return
 
-    def _do(self, what: bytes, first: float, second: float) -> Text | None:
-        vehicle = self._vehicle
-        if what == STEP and vehicle is not None:
-            self._follower.follow(int(second))
-            vehicle.step(first)
+    def _do(self, what: bytes, numbers: Sequence[float]) -> Text | None:
+        rider = self._rider
+        if what == STEP and rider is not None:
+            self._follower.follow(int(numbers[0]))
+            rider.step(numbers)
         elif what == LOAD:
-            self._vehicle = self._order.vehicle()
-        elif what == START and vehicle is not None:
-            vehicle.start(position=first, speed=second)
-        elif what == QUIT and vehicle is not None:
-            vehicle.close()
+            self._rider = self._order.load()
+        elif what == START and rider is not None:
+            rider.start(numbers)
+        elif what == QUIT and rider is not None:
+            rider.close()
         return self._new_warnings()
 
     def _new_warnings(self) -> Text | None:
         """Warnings that have not been sent yet."""
-        warnings = self._vehicle.warnings if self._vehicle is not None else []
+        warnings = self._rider.warnings if self._rider is not None else []
         if len(warnings) == self._warned:
             return None
         new = warnings[self._warned :][:_WARNINGS]
         self._warned = len(warnings)
         return {"warnings": [printable(w, _WARNING) for w in new]}
 
-    def _state(self) -> tuple[float, ...]:
-        vehicle, count = self._vehicle, self._recorded
-        if vehicle is None:
-            return (0.0,) * (3 + count)
-        state = vehicle.position, vehicle.speed, vehicle.acceleration
-        if not count:
-            return state
-        recorded = vehicle.recorded
-        return (*state, *(recorded if len(recorded) == count else (0.0,) * count))
+    def _state(self) -> Sequence[float]:
+        state = () if self._rider is None else self._rider.state()
+        return state if len(state) == self._answered else (0.0,) * self._answered
 
     def _refuse(self, number: int, kind: str, message: str) -> None:
         text: dict[str, Any] = {"error": kind, "message": printable(message, _MESSAGE)}
-        text["time"] = 0.0 if self._vehicle is None else self._vehicle.time
+        text["time"] = 0.0 if self._rider is None else self._rider.time
         text |= self._new_warnings() or {}
         reply(self._connection, FAILED, number, self._state(), self._layout, text)

@@ -1,6 +1,7 @@
 """Lines to write into a profile, given what stands there already."""
 
-from fmus.profile.vehicle_profile import Axis, VehicleProfile
+from fmus.profile.tables import Axis
+from fmus.profile.vehicle_profile import VehicleProfile
 
 
 def gain_line(

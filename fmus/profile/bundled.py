@@ -5,7 +5,8 @@ from functools import cache
 from pathlib import Path
 from typing import Final, Literal
 
-from fmus.profile.vehicle_profile import Axis, Fmu, Initial, Inputs, Limits, Outputs, VehicleProfile
+from fmus.profile.tables import Axis
+from fmus.profile.vehicle_profile import Fmu, Initial, Inputs, Limits, Outputs, VehicleProfile
 
 FmiVersion = Literal["2.0", "3.0"]
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from fmus.profile.vehicle_profile import VehicleProfile
-from fmus.profile.wiring import Wire
+from fmus.profile.wires import Wire
 
 
 class Command(ABC):

@@ -1,7 +1,9 @@
 """How the controller's steps and an FMU's own steps fit together."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
+from fmus.description.model import Interface, Kind
 from fmus.errors import FmuProfileError
 
 _FIT = 1e-9  # relative error of a whole number of steps
@@ -48,6 +50,50 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
         f"expected a whole part or multiple of it: add step = {near:.6g} to [fmu], or change "
         "--time-step"
     )
+
+
+def pace_of(
+    path: Path,
+    wanted: float | None,
+    interface: Interface,
+    default: float | None,
+    step_size: float,
+) -> Pace:
+    """The pace of the profile's step, else of the one that the FMU can do.
+
+    Args:
+        path: of the FMU, for messages.
+        wanted: the step that the profile names [s].
+        interface: of the FMU.
+        default: the step of its default experiment [s].
+        step_size: of the controller [s].
+
+    Raises:
+        FmuProfileError: they do not fit each other.
+    """
+    fixed = interface.fixed_internal_step
+    if wanted is None and fixed is not None and not divides(fixed, step_size):
+        wanted = fixed
+        if not divides(step_size, fixed):
+            raise FmuProfileError(
+                f"{path}: the FMU has a fixed step of {fixed:g} s, which does not fit the control "
+                f"step of {step_size:g} s; expected a whole part or multiple of it: change "
+                "--time-step, or export the model with another step"
+            )
+    one_length = interface.kind is Kind.CO_SIMULATION and not interface.variable_step
+    if wanted is None and fixed is None and one_length and default is not None:
+        wanted = default
+        if not (divides(default, step_size) or divides(step_size, default)):
+            raise FmuProfileError(
+                f"{path}: the FMU does steps of one length only, and that of its default "
+                f"experiment, {default:g} s, does not fit the control step of {step_size:g} s; "
+                f"expected a whole part or multiple of it: run with --time-step {default:g}, or "
+                "write the length that it does as step in [fmu] of the profile"
+            )
+    try:
+        return make_pace(step_size, wanted)
+    except FmuProfileError as error:
+        raise FmuProfileError(f"{path}: {error}") from None
 
 
 def divides(part: float, whole: float) -> bool:

@@ -5,21 +5,23 @@ handed to another process.
 """
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite, isnan
 from pathlib import Path
+from typing import Protocol
 
 from fmus.archive.gate import extract, open_archive
 from fmus.description.binaries import binary_of
-from fmus.description.model import Interface, Kind, Model, Value
+from fmus.description.model import Model, Value
 from fmus.description.reading import read_model
-from fmus.errors import FmuProfileError, FmuVariableError
+from fmus.errors import FmuVariableError
 from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
 from fmus.profile.commands import Command, make_command
 from fmus.profile.draft_profile import draft_profile, require_confident
-from fmus.profile.pace import Pace, divides, make_pace
+from fmus.profile.pace import Pace, pace_of
 from fmus.profile.vehicle_profile import VehicleProfile
+from fmus.profile.wires import Wire
 from fmus.profile.wiring import Wiring, wire
 
 
@@ -98,8 +100,8 @@ def prepare(
         profile=profile,
         wiring=wiring,
         command=make_command(profile, wiring.inputs, step_size),
-        pace=_pace(path, profile.fmu.step, wiring.interface, model.default_step, step_size),
-        bounds=_bounds(wiring),
+        pace=pace_of(path, profile.fmu.step, wiring.interface, model.default_step, step_size),
+        bounds=bounds_of(wiring.inputs),
         step_size=step_size,
         binary=binary_of(model, wiring.interface),
         ours=profile is BUNDLED_PROFILE,
@@ -124,7 +126,19 @@ def _chosen(model: Model, profile: VehicleProfile | None) -> VehicleProfile:
     return require_confident(draft_profile(model), model.path)
 
 
-def unpack(prepared: Prepared, folder: Path) -> None:
+class Loadable(Protocol):
+    """An FMU of which is known what this platform needs."""
+
+    @property
+    def path(self) -> Path:
+        """Of the FMU."""
+
+    @property
+    def binary(self) -> str:
+        """This platform's, in the archive."""
+
+
+def unpack(prepared: Loadable, folder: Path) -> None:
     """Unpack what this platform needs of the FMU into ``folder``.
 
     Raises:
@@ -136,47 +150,15 @@ def unpack(prepared: Prepared, folder: Path) -> None:
     (folder / "resources").mkdir(exist_ok=True)  # its path is given to the FMU even if it is empty
 
 
-def _pace(
-    path: Path,
-    wanted: float | None,
-    interface: Interface,
-    default: float | None,
-    step_size: float,
-) -> Pace:
-    """The pace of the profile's step, else of the one that the FMU can do."""
-    fixed = interface.fixed_internal_step
-    if wanted is None and fixed is not None and not divides(fixed, step_size):
-        wanted = fixed
-        if not divides(step_size, fixed):
-            raise FmuProfileError(
-                f"{path}: the FMU has a fixed step of {fixed:g} s, which does not fit the control "
-                f"step of {step_size:g} s; expected a whole part or multiple of it: change "
-                "--time-step, or export the model with another step"
-            )
-    one_length = interface.kind is Kind.CO_SIMULATION and not interface.variable_step
-    if wanted is None and fixed is None and one_length and default is not None:
-        wanted = default
-        if not (divides(default, step_size) or divides(step_size, default)):
-            raise FmuProfileError(
-                f"{path}: the FMU does steps of one length only, and that of its default "
-                f"experiment, {default:g} s, does not fit the control step of {step_size:g} s; "
-                f"expected a whole part or multiple of it: run with --time-step {default:g}, or "
-                "write the length that it does as step in [fmu] of the profile"
-            )
-    try:
-        return make_pace(step_size, wanted)
-    except FmuProfileError as error:
-        raise FmuProfileError(f"{path}: {error}") from None
-
-
-def _bounds(wiring: Wiring) -> tuple[Bound, ...]:
+def bounds_of(inputs: Sequence[Wire]) -> tuple[Bound, ...]:
+    """The ranges that an FMU declares for its inputs, as far as it does."""
     return tuple(
         Bound(
             index,
             -inf if low is None or isnan(low) else low,
             inf if high is None or isnan(high) else high,
         )
-        for index, wired in enumerate(wiring.inputs)
+        for index, wired in enumerate(inputs)
         for variable in (wired.channel.variable,)
         for low, high in ((variable.minimum, variable.maximum),)
         if (low is not None or high is not None) and (low is None or high is None or low <= high)

@@ -7,41 +7,12 @@ fits an FMU is checked by :mod:`fmus.profile.wiring`.
 
 from __future__ import annotations
 
-import tomllib
-from math import isfinite
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
-from fmus.description.model import Value  # pydantic reads it at run time
-from fmus.errors import FmuProfileError
-from fmus.text import printable
-
-
-class Table(BaseModel):
-    """A table of a profile: frozen, finite numbers only, unknown keys refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class Axis(Table):
-    """One quantity: SI = gain * (factor * raw + unit_offset) + offset.
-
-    ``factor`` and ``unit_offset`` belong to the unit. ``variable`` may be one element of an FMI 3
-    array, ``x[2]``, counted from 1.
-    """
-
-    variable: str = Field(min_length=1)
-    unit: str | None = None  # where the FMU declares none, or a wrong one
-    gain: float | None = None  # None: 1, and the unit must be of the right dimension
-    offset: float = 0.0
-
-    @model_validator(mode="after")
-    def _invertible(self) -> Axis:
-        if self.gain == 0.0:
-            raise ValueError("gain = 0: expected a number that is not 0")
-        return self
+from fmus.profile.tables import Axis, Parameters, Stepping, Table, read_tables, validated
 
 
 class Pedal(Axis):
@@ -68,6 +39,7 @@ class Inputs(Table):
     throttle: Pedal | None = None
     brake: Pedal | None = None
     speed_setpoint: SpeedSetpoint | None = None  # [m/s]
+    grade: Axis | None = None  # [rad] of the road, uphill positive; or its tangent, as % or 1
     block_reverse: bool = True  # at a standstill no braking force or acceleration is passed on
 
     @model_validator(mode="after")
@@ -112,17 +84,10 @@ class Initial(Table):
     run_up: bool = True  # without a parameter for the speed: drive up to it before the start
 
 
-class Fmu(Table):
-    """How the FMU is stepped."""
+class Fmu(Stepping):
+    """How a vehicle's FMU is stepped."""
 
-    kind: Literal["co-simulation", "model-exchange"] | None = None  # None: the former if it can
-    step: float | None = Field(None, gt=0, le=10)  # [s] the FMU's own; None: the control step
-    stop_time: float | None = Field(None, gt=0, le=1e9)  # [s] told to the FMU; None: no stop time
-    solver: Literal["cvode", "rk4"] | None = None  # of Model Exchange; None: cvode where it runs
-    tolerance: float | None = Field(None, gt=0, le=0.1)  # relative, of Model Exchange
     self_check: bool = True  # compare one step with two half steps before the run
-    start_timeout: float = Field(60.0, gt=0, le=3600)  # [s] wall clock
-    step_timeout: float = Field(10.0, gt=0, le=3600)  # [s] wall clock
 
 
 class Limits(Table):
@@ -162,7 +127,7 @@ class VehicleProfile(Table):
     inputs: Inputs
     outputs: Outputs
     initial: Initial = Initial()
-    parameters: dict[str, Value] = {}  # start values by variable name, in the FMU's own units
+    parameters: Parameters = Field(default_factory=dict)
     limits: Limits = Limits()
     inverse_map: InverseMap = InverseMap()
     model: FittedModel | None = None
@@ -175,64 +140,19 @@ class VehicleProfile(Table):
                 raise ValueError(f"record: '{name}' stands twice; keep one")
         return names
 
-    @field_validator("parameters", mode="before")
-    @classmethod
-    def _flat(cls, values: Any) -> Any:
-        """An unquoted ``vehicle.mass = 1`` is a table in TOML; here it is the variable's name."""
-        if not isinstance(values, dict):
-            return values
-        flat: dict[str, Any] = {}
-        tables = [("", values)]
-        while tables:
-            prefix, table = tables.pop()
-            for key, value in table.items():
-                name = f"{prefix}{key}"
-                if isinstance(value, dict):
-                    tables.append((f"{name}.", value))
-                elif not _is_value(value):
-                    expected = "a finite number, true, false, text, or a list of finite numbers"
-                    raise ValueError(f"{name} = {str(value)[:60]}: expected {expected}")
-                else:
-                    flat[name] = value
-        return flat
-
-
-def _is_value(value: object) -> bool:
-    if isinstance(value, list):
-        return all(_is_number(item) for item in value)
-    return isinstance(value, bool | str) or _is_number(value)
-
-
-def _is_number(value: object) -> bool:
-    if isinstance(value, int):
-        return not isinstance(value, bool) and abs(value) < 1 << 64
-    return isinstance(value, float) and isfinite(value)
-
 
 def read_profile(path: Path) -> VehicleProfile:
-    """The profile in a TOML file.
+    """The vehicle profile in a TOML file.
 
     Raises:
         FmuProfileError: the file is missing, not TOML, or a key or value cannot be used.
     """
-    try:
-        values = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError:
-        raise FmuProfileError(
-            f"{path}: no such file; 'giveway fmu inspect FMU' prints a draft of a profile"
-        ) from None
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
-        raise FmuProfileError(
-            f"{path}: cannot be read ({reason}); expected a vehicle profile (TOML)"
-        ) from None
-    except (ValueError, RecursionError) as error:  # not TOML's own: a number of thousands of digits
-        raise FmuProfileError(f"{path}: not valid TOML: {error}; mend the line named") from None
-    return make_profile(values, str(path))
+    draft = "'giveway fmu inspect FMU' prints a draft of a profile"
+    return make_profile(read_tables(path, "a vehicle profile", draft), str(path))
 
 
 def make_profile(values: dict[str, Any], origin: str) -> VehicleProfile:
-    """The profile in nested dictionaries.
+    """The vehicle profile in nested dictionaries.
 
     Args:
         values: with the keys of the TOML file.
@@ -241,22 +161,4 @@ def make_profile(values: dict[str, Any], origin: str) -> VehicleProfile:
     Raises:
         FmuProfileError: a key or value cannot be used.
     """
-    try:
-        return VehicleProfile.model_validate(values)
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        raise FmuProfileError(f"{origin}: {_explained(first)}") from None
-
-
-def _explained(error: Any) -> str:
-    *tables, key = (str(part) for part in error["loc"]) if error["loc"] else ("",)
-    place = f"[{'.'.join(tables)}] {key}" if tables else f"[{key}]" if key else "profile"
-    if error["type"] == "extra_forbidden":
-        return f"{place}: unknown key; docs/vehicles.md lists the keys"
-    if error["type"] == "missing":
-        return f"{place}: missing; add it (docs/vehicles.md)"
-    if error["type"] == "value_error":
-        table = ".".join((*tables, key))
-        return f"[{table}]: {error['ctx']['error']}" if table else str(error["ctx"]["error"])
-    given = printable(repr(error["input"]), 60)
-    return f"{place} = {given}: {str(error['msg']).removeprefix('Input ')}"
+    return validated(VehicleProfile, values, origin, "docs/vehicles.md")

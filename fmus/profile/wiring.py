@@ -2,36 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import tan
 from typing import NamedTuple
 
 from fmus.description import units
 from fmus.description.channels import find_channel, known_names, start_channels
-from fmus.description.model import (
-    NUMERIC_TYPES,
-    REAL_TYPES,
-    Channel,
-    Dimension,
-    Interface,
-    Kind,
-    Model,
-    Unit,
-    Value,
-    Variable,
-)
-from fmus.errors import FmuInterfaceError, FmuProfileError, FmuVariableError
-from fmus.profile.vehicle_profile import Axis, Inputs, VehicleProfile
+from fmus.description.model import NUMERIC_TYPES, REAL_TYPES, Channel, Interface, Model, Unit, Value
+from fmus.errors import FmuVariableError
+from fmus.profile.tables import Axis
+from fmus.profile.vehicle_profile import Inputs, VehicleProfile
+from fmus.profile.wires import Wire, interface_of, is_output, make_wire
 
-_QUANTITIES = {  # dimension and the unit to suggest, by role
-    "force": (units.FORCE, "N"),
-    "drive_force": (units.FORCE, "N"),
-    "brake_force": (units.FORCE, "N"),
-    "acceleration": (units.ACCELERATION, "m/s2"),
-    "throttle": (units.NONE, "1"),
-    "brake": (units.NONE, "1"),
-    "speed_setpoint": (units.SPEED, "m/s"),
-    "speed": (units.SPEED, "m/s"),
-    "position": (units.LENGTH, "m"),
-}
 _INPUTS = (
     "force",
     "drive_force",
@@ -40,28 +21,9 @@ _INPUTS = (
     "throttle",
     "brake",
     "speed_setpoint",
+    "grade",
 )
 _OUTPUTS = ("speed", "position", "acceleration")
-_LARGEST = 1e12  # SI per raw unit, or its inverse, or an offset: beyond it a number is mistyped
-
-
-@dataclass(frozen=True)
-class Wire:
-    """A role of the vehicle and the FMU's variable that plays it: SI = scale * raw + shift."""
-
-    role: str
-    channel: Channel
-    scale: float
-    shift: float
-    unit: str  # as shown to the user; empty if it has none
-
-    def to_si(self, raw: float) -> float:
-        """The quantity in SI units."""
-        return self.scale * raw + self.shift
-
-    def to_raw(self, value: float) -> float:
-        """The quantity as the FMU wants it."""
-        return (value - self.shift) / self.scale
 
 
 class Recorded(NamedTuple):
@@ -97,6 +59,17 @@ class Wiring:
             for channel in self.recorded
         )
 
+    @property
+    def grade(self) -> int | None:
+        """The index of the road's grade among the inputs; None: the FMU is not told."""
+        last = len(self.inputs) - 1
+        return last if self.inputs[last].role in {"grade", "slope"} else None
+
+    def grade_to_raw(self, grade: float) -> float:
+        """A grade [rad] as the FMU wants it: the last of the inputs."""
+        wire = self.inputs[-1]
+        return wire.to_raw(tan(grade) if wire.role == "slope" else grade)
+
     def output(self, role: str) -> int | None:
         """The index of a role among the outputs; None: the profile does not name it."""
         return next((i for i, wire in enumerate(self.outputs) if wire.role == role), None)
@@ -119,10 +92,10 @@ def wire(
     """
     outputs, initial = profile.outputs, profile.initial
     return Wiring(
-        interface=_interface(model, profile.fmu.kind),
+        interface=interface_of(model, profile.fmu.kind),
         inputs=_input_wires(model, profile.inputs),
         outputs=tuple(
-            _wire(model, "outputs", role, axis)
+            make_wire(model, "outputs", role, axis)
             for role in _OUTPUTS
             if (axis := getattr(outputs, role)) is not None
         ),
@@ -141,7 +114,7 @@ def _recorded(model: Model, name: str) -> Channel:
     """
     channel = find_channel(model, "record:", name)
     variable = channel.variable
-    if variable.kind in NUMERIC_TYPES and _is_output(variable):
+    if variable.kind in NUMERIC_TYPES and is_output(variable):
         return channel
     fitting = known_names(
         v.name for v in model.variables.values() if v.causality == "output" and v.kind in REAL_TYPES
@@ -159,7 +132,9 @@ def _input_wires(model: Model, inputs: Inputs) -> tuple[Wire, ...]:
         axis = getattr(inputs, role)
         if axis is None:
             continue
-        found = _wire(model, "inputs", role, axis)
+        found = (
+            _grade_wire(model, axis) if role == "grade" else make_wire(model, "inputs", role, axis)
+        )
         if found.channel in wires:
             raise FmuVariableError(
                 f"{model.path}: [inputs.{role}] variable '{found.channel.name}' is that of "
@@ -169,90 +144,14 @@ def _input_wires(model: Model, inputs: Inputs) -> tuple[Wire, ...]:
     return tuple(wires.values())
 
 
-def _initial(model: Model, role: str, axis: Axis | None) -> Wire | None:
-    return None if axis is None else _wire(model, "initial", role, axis)
-
-
-def _interface(model: Model, wanted: str | None) -> Interface:
-    if wanted is None:
-        first = Kind.CO_SIMULATION if Kind.CO_SIMULATION in model.interfaces else None
-        return model.interfaces[first or next(iter(model.interfaces))]
-    kind = Kind(wanted)
-    if kind not in model.interfaces:
-        raise FmuInterfaceError(
-            f"{model.path}: [fmu] kind = '{wanted}': the FMU has {', '.join(model.interfaces)} "
-            "only; change the line, or export the model again"
-        )
-    return model.interfaces[kind]
-
-
-def _wire(model: Model, table: str, role: str, axis: Axis) -> Wire:
-    channel = find_channel(model, f"[{table}.{role}]", axis.variable)
-    variable = channel.variable
-    problem = ""
-    if variable.kind not in NUMERIC_TYPES:
-        problem = f"is {variable.kind}; expected a number"
-    elif table == "inputs" and not _is_input(variable):
-        fitting = known_names(v.name for v in model.variables.values() if v.causality == "input")
-        problem = f"is {variable.causality}; expected an input: {fitting}"
-    elif table == "outputs" and not _is_output(variable):
-        fitting = known_names(v.name for v in model.variables.values() if v.causality == "output")
-        problem = f"is {variable.causality}; expected an output: {fitting}"
-    elif table == "initial" and not variable.settable:
-        problem = f"is {variable.causality} and cannot be set before the start; leave it out"
-    if problem:
-        raise FmuVariableError(
-            f"{model.path}: [{table}.{role}] variable '{channel.name}' {problem}"
-        )
-    return _converted(model, table, role, axis, channel)
-
-
-def _is_input(variable: Variable) -> bool:
-    return variable.causality == "input" or variable.variability == "tunable"
-
-
-def _is_output(variable: Variable) -> bool:
-    changes = variable.variability not in {"constant", "fixed"}
-    return changes and variable.causality in {"output", "local", "internal"}
-
-
-def _converted(model: Model, table: str, role: str, axis: Axis, channel: Channel) -> Wire:
-    """The wire with the unit's factor and offset, and the profile's gain and offset."""
-    declared = channel.variable.unit
-    name = declared if axis.unit is None else axis.unit
-    dimension, usual = _QUANTITIES[role]
+def _grade_wire(model: Model, axis: Axis) -> Wire:
+    """The road's grade: an angle, or its tangent where the unit is 1 or per cent."""
+    variable = find_channel(model, "[inputs.grade]", axis.variable).variable
+    name = axis.unit or variable.unit
     unit = units.to_si(model.units.get(name) or Unit(name)) if name else None
-    problem = _unit_problem(unit, axis, dimension, usual)
-    if problem:
-        here = f"{model.path}: [{table}.{role}] variable '{channel.name}'"
-        raise FmuProfileError(f"{here} {problem}, to [{table}.{role}]")
-    gain = 1.0 if axis.gain is None else axis.gain
-    factor, offset = (unit.factor, unit.offset) if unit is not None else (1.0, 0.0)
-    scale, shift = gain * factor, gain * offset + axis.offset
-    if not (1.0 / _LARGEST <= abs(scale) <= _LARGEST and abs(shift) <= _LARGEST):
-        raise FmuProfileError(
-            f"{model.path}: [{table}.{role}] variable '{channel.name}' = 1 would be {scale:g} "
-            f"{usual} with an offset of {shift:g}; check unit, gain and offset of [{table}.{role}]"
-        )
-    return Wire(role, channel, scale, shift, name)
+    tangent = unit is not None and unit.dimension == units.NONE and axis.gain is None
+    return make_wire(model, "inputs", "slope" if tangent else "grade", axis)
 
 
-def _unit_problem(unit: Unit | None, axis: Axis, dimension: Dimension, usual: str) -> str:
-    """Why a unit does not say how to convert to SI, and the line to add; empty if it does."""
-    if axis.gain is not None:
-        return ""
-    if unit is None:
-        if dimension == units.NONE:
-            return ""
-        return f'has no unit; add the line unit = "{usual}", or what it is'
-    if unit.dimension is None:
-        return (
-            f"is in '{unit.name}', an unknown unit; add the line unit = \"{usual}\" or gain = ..."
-        )
-    if unit.dimension == dimension:
-        return ""
-    wanted, found = units.quantity(dimension), units.quantity(unit.dimension)
-    return (
-        f"is in '{unit.name}', {found}, and not {wanted}; name another variable, or add the line "
-        f"gain = ... ({usual} per SI unit of {found})"
-    )
+def _initial(model: Model, role: str, axis: Axis | None) -> Wire | None:
+    return None if axis is None else make_wire(model, "initial", role, axis)

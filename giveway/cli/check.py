@@ -9,6 +9,13 @@ import typer
 from giveway.cli.help import Commands
 
 _Name = Annotated[str, typer.Argument(help="Declared name, or module:Class.")]
+_Controller = Annotated[
+    str, typer.Argument(help="Declared name, module:Class, or a controller FMU.")
+]
+_Profile = Annotated[
+    str,
+    typer.Option("--controller-profile", metavar="FILE", help="Of an FMU; none: drafted."),
+]
 _Set = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="One of its options.")
 ]
@@ -31,12 +38,19 @@ def _check() -> None:
     """Check code of other packages."""
 
 
-def _controller(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
+def _controller(
+    name: _Controller,
+    controller_profile: _Profile = "",
+    set_: _Set = None,
+    time_step: _Step = None,
+) -> None:
     """Does a controller keep to the rules? It is driven through made-up scenes, without SUMO."""
     from giveway.cli.check_command import check_command
     from giveway.plug_ins.sockets import CONTROLLER
 
-    raise typer.Exit(check_command(name, set_ or (), CONTROLLER, time_step=time_step))
+    raise typer.Exit(
+        check_command(name, set_ or (), CONTROLLER, time_step=time_step, profile=controller_profile)
+    )
 
 
 def _model(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:

@@ -29,6 +29,7 @@ def check_command(
     socket: Socket,
     limit: float = LIMIT,
     time_step: float | None = None,
+    profile: str = "",
 ) -> int:
     """Print what was found; the exit code is 1 if a rule is broken.
 
@@ -40,16 +41,17 @@ def check_command(
         socket: that it is for.
         limit: [s] for one rule.
         time_step: [s] of the scenes; none: that of a run which sets none.
+        profile: of a controller FMU.
 
     Raises:
         GivewayError: it cannot be found, imported or given its options.
     """
-    config = _configured(name, words, socket, time_step)
+    config = _configured(name, words, socket, time_step, profile)
     own = [one for one in foreign_code(config) if one.socket is socket]
     if not own and name not in JUPEDSIM_MODELS:
         msg = f"{name}: is giveway's own; expected a {socket.what} of another package"
         raise ConfigError(msg)
-    require_code(config)
+    require_code(config, time_step or PAPER_STEP)
     findings = _in_a_process(config, socket, limit)
     for rule, problem in findings:
         typer.echo(f"{'broken' if problem else 'kept':7} {rule}")
@@ -61,11 +63,13 @@ def check_command(
 
 
 def _configured(
-    name: str, words: Sequence[str], socket: Socket, time_step: float | None
+    name: str, words: Sequence[str], socket: Socket, time_step: float | None, profile: str
 ) -> RunConfig:
     settings: dict[str, Any] = {socket.options: set_options(words)}
     if time_step is not None:
         settings["time_step"] = time_step
+    if profile:
+        settings["controller_profile"] = profile
     node = settings
     for table in socket.location[:-1]:
         node = node.setdefault(table, {})
@@ -106,12 +110,11 @@ def _battery(connection: Connection, config: str, what: str) -> None:
     step = effective.time_step or PAPER_STEP
     if what == CONTROLLER.what:
         from controller import check_controller
+        from giveway.config.controller_fmu import setup_of
         from giveway.ego import plug_in
 
         (own,) = effective.each_ego()
-        found = check_controller(
-            plug_in.maker(own), plug_in.setup_of(own, step), begins=connection.send
-        )
+        found = check_controller(plug_in.maker(own), setup_of(own, step), begins=connection.send)
         connection.send([(finding.rule, finding.problem) for finding in found])
     else:
         from giveway.crowd import models

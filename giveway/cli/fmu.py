@@ -83,11 +83,14 @@ def _inspect(
         Path | None, typer.Option(help="File to write the drafted profile to.")
     ] = None,
     everything: Annotated[bool, typer.Option("--all", help="All variables.")] = False,
+    controller: Annotated[
+        bool, typer.Option("--controller", help="It is a controller, and no vehicle.")
+    ] = False,
 ) -> None:
     """Tell what an FMU is, without loading it, and draft its profile."""
     from giveway.cli.fmu_inspect import inspect_command
 
-    raise typer.Exit(inspect_command(fmu, draft, everything=everything))
+    raise typer.Exit(inspect_command(fmu, draft, everything=everything, controller=controller))
 
 
 def _check(

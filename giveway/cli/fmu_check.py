@@ -12,7 +12,8 @@ from fmus.checking.scale import CLASS_MASSES
 from fmus.checking.self_check import plain
 from fmus.profile.bundled import is_bundled
 from fmus.profile.preparation import choose_profile, prepare
-from fmus.profile.vehicle_profile import Axis, VehicleProfile
+from fmus.profile.tables import Axis
+from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.text import printable
 from giveway.cli.fmu_files import profile_in, require_fmu, require_number, save_picture
 from giveway.cli.printing import findings_table, print_json, print_place

@@ -11,6 +11,7 @@ from typing import Any
 from giveway.config.layers import Layer, merge, read_toml
 from giveway.config.sections import BUNDLED_VEHICLES
 from giveway.errors import VehicleError
+from giveway.plug_ins.finding import is_fmu
 
 
 def require_archives(config: Path | None, settings: Mapping[str, Any]) -> None:
@@ -48,3 +49,6 @@ def _named(settings: Mapping[str, Any]) -> Iterator[Path]:
         fmu = vehicle.get("fmu") if isinstance(vehicle, Mapping) else None
         if isinstance(fmu, str) and fmu not in BUNDLED_VEHICLES and "\0" not in fmu:
             yield Path(fmu)
+        controller = table.get("controller") if isinstance(table, Mapping) else None
+        if isinstance(controller, str) and is_fmu(controller) and "\0" not in controller:
+            yield Path(controller)

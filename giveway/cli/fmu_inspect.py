@@ -19,6 +19,7 @@ from fmus.description.reading import model_of
 from fmus.description.units import quantity, to_si
 from fmus.errors import FmuPlatformError
 from fmus.fmi.validation import findings
+from fmus.profile.controller_draft import ControllerDraft, draft_controller
 from fmus.profile.draft import Draft
 from fmus.profile.draft_profile import draft_profile
 from fmus.text import printable
@@ -36,13 +37,16 @@ GROUPS: Final = (
 )
 
 
-def inspect_command(path: Path, draft: Path | None = None, *, everything: bool = False) -> int:
+def inspect_command(
+    path: Path, draft: Path | None = None, *, everything: bool = False, controller: bool = False
+) -> int:
     """Print what an FMU is and a drafted profile.
 
     Args:
         path: the FMU.
         draft: file for the drafted profile; it must not exist.
         everything: whole lists instead of their beginnings.
+        controller: it is a controller, and no vehicle.
 
     Returns:
         0; 2 for an FMU that is refused, or a file that is there already.
@@ -52,16 +56,18 @@ def inspect_command(path: Path, draft: Path | None = None, *, everything: bool =
         model = model_of(archive)
     except FmuError as error:
         return fail(str(error), REFUSED)
-    drafted = draft_profile(model)
+    drafted: Draft | ControllerDraft
+    drafted = draft_controller(model) if controller else draft_profile(model)
+    text = drafted.toml if controller else with_schema(drafted.toml, PROFILE)
     console = Console()
     for part in _parts(model, archive.sha256, everything=everything):
         console.print(part)
         console.print()
-    console.print(_profile(drafted), soft_wrap=True)
+    console.print(_profile(text), soft_wrap=True)
     if draft is not None:
         try:
             with draft.open("x", encoding="utf-8") as file:
-                file.write(with_schema(drafted.toml, PROFILE))
+                file.write(text)
         except FileExistsError:
             return fail(f"{draft}: exists already; remove it, or name another file", REFUSED)
         except OSError as error:
@@ -226,9 +232,9 @@ def _list(title: str, count: int, shown: int) -> Table:
 # ---- the draft ----
 
 
-def _profile(drafted: Draft) -> Text:
+def _profile(toml: str) -> Text:
     text = Text()
-    for line in with_schema(drafted.toml, PROFILE).splitlines():
+    for line in toml.splitlines():
         code, mark, comment = line.partition("  # ")
         if line.startswith("# ?"):
             text.append(line, style="yellow")
@@ -241,11 +247,14 @@ def _profile(drafted: Draft) -> Text:
     return text
 
 
-def _verdict(drafted: Draft, draft: Path | None) -> Text:
-    doubts = drafted.doubts
+def _verdict(drafted: Draft | ControllerDraft, draft: Path | None) -> Text:
+    if isinstance(drafted, Draft):
+        doubts, open_lines = list(drafted.doubts), bool(drafted.open_lines)
+    else:
+        doubts, open_lines = [doubt for _, doubt in drafted.open], False
     where = f"Draft written to {draft}" if draft is not None else "Draft above"
     if not doubts:
-        rest = "; what is marked '# ?' may stay so" if drafted.open_lines else ""
+        rest = "; what is marked '# ?' may stay so" if open_lines else ""
         return Text(f"{where}: complete, every guess is sure{rest}.", style="green")
     text = Text(f"{where}: {len(doubts)} open question{'s' * (len(doubts) > 1)}:", style="yellow")
     for doubt in doubts:

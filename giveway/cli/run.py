@@ -122,7 +122,7 @@ def default_folder(config: RunConfig, scenario: str) -> Path:
     over the whole configuration follow, so that different runs have different folders.
     """
     egos = config.each_ego()
-    controllers = _safe("_".join(dict.fromkeys(ego.controller for ego in egos))) or "no_ego"
+    controllers = _safe("_".join(dict.fromkeys(ego.controller_name for ego in egos))) or "no_ego"
     taken = "".join(f"_{name}" for ego in egos for name in ego.ego.take_over)
     safe = _safe(taken)
     pedestrians = f"{config.crowd.pedestrians}ped"

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from giveway.config.controller_fmu import fmu_described, fmu_hash, prepared
+from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
-from giveway.plug_ins.finding import find, load_class
+from giveway.plug_ins.finding import find, is_fmu, load_class, shown
 from giveway.plug_ins.options import plain
 from giveway.plug_ins.sockets import CONTROLLER, MODEL, Socket
 
 if TYPE_CHECKING:
-    from giveway.config.run_config import RunConfig
+    from giveway.config.run_config import EgoRunConfig, RunConfig
 
 
 class Named(NamedTuple):
@@ -20,19 +22,32 @@ class Named(NamedTuple):
     Attributes:
         socket: that it is for.
         whose: the ego's id, or "the crowd".
-        name: as the user wrote it.
+        name: as the user wrote it; perhaps a path to an FMU.
         options: as the user has set them.
+        ego: whose controller it is; None: it is none.
     """
 
     socket: Socket
     whose: str
     name: str
     options: Mapping[str, Any]
+    ego: EgoRunConfig | None = None
 
     @property
     def key(self) -> str:
-        """By which the inputs of a study's cell know it."""
-        return f"{self.socket.what} of {self.whose}: {self.name}"
+        """By which the inputs of a study's cell know it, wherever a file lies."""
+        return f"{self.socket.what} of {self.whose}: {shown(self.name)}"
+
+    @property
+    def sha256(self) -> str:
+        """Of its package, or of its file.
+
+        Raises:
+            ControlError: it is not there.
+        """
+        if is_fmu(self.name):
+            return fmu_hash(self.name)
+        return find(self.name, self.socket).sha256
 
 
 _PLACES = ((CONTROLLER, "in the controller at"), (MODEL, "in the crowd's step from"))
@@ -42,7 +57,7 @@ _PLACES = ((CONTROLLER, "in the controller at"), (MODEL, "in the crowd's step fr
 def foreign_code(config: RunConfig) -> list[Named]:
     """All plug-ins of a run: of its egos, and of its crowd."""
     named = [
-        Named(CONTROLLER, ego.ego_id, ego.controller, ego.controller_options)
+        Named(CONTROLLER, ego.ego_id, ego.controller, ego.controller_options, ego)
         for ego in config.each_ego()
         if ego.plugged_in
     ]
@@ -64,7 +79,7 @@ def code_hashes(
         ControlError: one is not installed.
     """
     code = [one for one in foreign_code(config) if one.socket in sockets]
-    return {one.key: find(one.name, one.socket).sha256 for one in code}
+    return {one.key: one.sha256 for one in code}
 
 
 def named_in(failure: str, config: RunConfig) -> str:
@@ -76,30 +91,40 @@ def named_in(failure: str, config: RunConfig) -> str:
     """
     code = foreign_code(config)
     for socket, place in _PLACES:
-        names = dict.fromkeys(one.name for one in code if one.socket is socket)
+        names = dict.fromkeys(shown(one.name) for one in code if one.socket is socket)
         if names:
             shown = " or ".join(f"'{name}'" for name in names)
             failure = failure.replace(place, f"in the {socket.what} {shown} at")
     return failure
 
 
-def require_code(config: RunConfig) -> None:
+def require_code(config: RunConfig, time_step: float = PAPER_STEP) -> None:
     """Make sure, before anything runs, that every plug-in is there and takes its options.
+
+    Args:
+        config: of the run.
+        time_step: of the co-simulation [s].
 
     Raises:
         ConfigError: one has no such option.
-        ControlError: one is not installed, or cannot be imported.
+        ControlError: one is not installed, or cannot be imported or read.
     """
     for one in foreign_code(config):
-        _loaded(one)
+        if one.ego is not None and is_fmu(one.name):
+            prepared(one.ego, time_step)
+        else:
+            _loaded(one)
 
 
 def provenance(config: RunConfig) -> dict[str, dict[str, dict[str, Any]]]:
     """For the manifest: distribution, version, hash and all options of each plug-in."""
     told: dict[str, dict[str, dict[str, Any]]] = {}
     for one in foreign_code(config):
-        _, options = _loaded(one)
-        described = find(one.name, one.socket).described() | {"options": plain(options)}
+        if one.ego is not None and is_fmu(one.name):
+            described = fmu_described(one.ego)
+        else:
+            _, options = _loaded(one)
+            described = find(one.name, one.socket).described() | {"options": plain(options)}
         told.setdefault(one.socket.manifest, {})[one.whose] = described
     return told
 

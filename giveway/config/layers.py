@@ -17,7 +17,8 @@ from giveway.config.run_config import RunConfig
 from giveway.config.schema_names import RUN, with_schema
 from giveway.config.toml import read_toml_file
 from giveway.errors import ConfigError
-from giveway.plug_ins.sockets import SOCKETS
+from giveway.plug_ins.finding import same_name
+from giveway.plug_ins.sockets import CONTROLLER, SOCKETS
 
 Location = tuple[str, ...]
 
@@ -127,6 +128,7 @@ def anchored(values: dict[str, Any], folder: Path) -> dict[str, Any]:
     if isinstance(values.get("egos"), list):
         tables += [ego for ego in values["egos"] if isinstance(ego, dict)]
     places: list[tuple[Any, str]] = [(values, "scenario"), (values.get("crowd"), "preset")]
+    places += [(table, key) for table in tables for key in ("controller", "controller_profile")]
     places += [(table.get("perception"), "preset") for table in tables]
     places += [(table.get("vehicle"), key) for table in tables for key in ("fmu", "profile")]
     for table, key in places:
@@ -143,9 +145,12 @@ def merge(layers: Sequence[Layer]) -> dict[str, Any]:
     merged: dict[str, Any] = {}
     for layer in layers:
         for table, socket in PLUGGED.items():
-            before = _at(merged, socket.location)
-            if before is not None and _at(layer.values, socket.location) not in {None, before}:
+            before = same_name(_at(merged, socket.location))
+            named = same_name(_at(layer.values, socket.location))
+            if before is not None and named not in {None, before}:
                 merged.pop(table, None)  # they are those of another one
+                if socket is CONTROLLER:
+                    merged.pop("controller_profile", None)
         _merge_into(merged, layer.values)
     return merged
 

@@ -14,7 +14,8 @@ from giveway.errors import ConfigError, ScenarioError, VehicleError
 from sumo_scenarios import Scenario, available, find
 from sumo_scenarios import ScenarioError as UnknownScenario
 
-_FILES = ("fmu", "profile", "preset")  # keys that may name a file
+_FILES = ("fmu", "profile", "preset")  # keys of tables that may name a file
+_OWN_FILES = ("controller", "controller_profile")  # of a run and of its egos
 _WITH_FILES = ("vehicle", "crowd", "perception")  # tables that have such keys
 _KINDS_OF_EGO = ("take_over", "route", "none")
 
@@ -141,8 +142,11 @@ def _placed(config: RunConfig, scenario: Scenario) -> RunConfig:
         for name, section in config
         if name in _WITH_FILES
     }
+    placed |= _absolute(dict(config), _OWN_FILES)
     placed["egos"] = tuple(
-        {name: _table_placed(name, table) for name, table in ego.items()} for ego in config.egos
+        {name: _table_placed(name, table) for name, table in ego.items()}
+        | _absolute(ego, _OWN_FILES)
+        for ego in config.egos
     )
     return _presets_read(config.model_copy(update=placed))
 
@@ -152,9 +156,9 @@ def _table_placed(name: str, table: Any) -> Any:
     return {**table, **_absolute(table)} if is_table else table
 
 
-def _absolute(table: Mapping[str, Any]) -> dict[str, str]:
+def _absolute(table: Mapping[str, Any], keys: Sequence[str] = _FILES) -> dict[str, str]:
     """The files that a table's settings name, as far as there are such files."""
-    named = {key: Path(str(table[key])) for key in _FILES if table.get(key)}
+    named = {key: Path(str(table[key])) for key in keys if table.get(key)}
     return {
         key: str(path.absolute())
         for key, path in named.items()

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import BeforeValidator, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
-from giveway.plug_ins.finding import declared_names, is_reference
+from giveway.plug_ins.finding import declared_names, is_fmu, is_reference
 from giveway.plug_ins.sockets import CONTROLLER, MODEL, Socket
 
 BundledController = Literal["mpc", "pid-tuned", "mpc-paper", "pid-paper"]
@@ -27,6 +27,8 @@ BUNDLED_MODELS: frozenset[str] = frozenset(get_args(BundledModel))
 
 def _controller(value: Any) -> Any:
     """``pid`` was the paper's before there was another one."""
+    if isinstance(value, str) and is_fmu(value):
+        return value
     return _known("pid-paper" if value == "pid" else value, get_args(BundledController), CONTROLLER)
 
 
@@ -43,10 +45,12 @@ def _known(name: Any, bundled: tuple[str, ...], socket: Socket) -> Any:
     if name in declared:
         return name
     known = ", ".join(f"'{one}'" for one in [*bundled, *declared])
-    msg = f"expected {known}, or module:Class of an installed package"
+    fmu = " or a controller FMU" if socket is CONTROLLER else ""
+    msg = f"expected {known}, or module:Class of an installed package{fmu}"
     raise PydanticCustomError("plug_in", "{expected}", {"expected": msg})
 
 
 _Other = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"^[\w.]+:[\w.]+$"})]
-ControllerName = Annotated[BundledController | _Other, BeforeValidator(_controller)]
+_Fmu = Annotated[str, WithJsonSchema({"type": "string", "pattern": r"\.[Ff][Mm][Uu]$"})]
+ControllerName = Annotated[BundledController | _Other | _Fmu, BeforeValidator(_controller)]
 ModelName = Annotated[BundledModel | _Other, BeforeValidator(_model)]

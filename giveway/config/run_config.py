@@ -36,12 +36,14 @@ from giveway.config.sections import (
     TrafficConfig,
     VehicleConfig,
 )
+from giveway.plug_ins.finding import is_fmu, shown
 
 PAPER_STEP = 0.05
 """[s] The control step where none is set (Yang & Özgüner 2019, table 1)."""
 
 EGO_TABLES = (
     "controller",
+    "controller_profile",
     "controller_options",
     "ego",
     "vehicle",
@@ -84,7 +86,12 @@ class RunConfig(Section):
         "mpc",
         None,
         "who drives: mpc (plans ahead), pid-tuned, the paper's: mpc-paper, pid-paper; or somebody "
-        "else's, by the name that a package declares or as module:Class",
+        "else's, by the name that a package declares, as module:Class, or a path to an FMU",
+    )
+    controller_profile: str = option(
+        "",
+        None,
+        "controller profile (TOML) of a controller FMU; none: drafted from its names",
     )
     time_step: float | None = option(
         None,
@@ -171,7 +178,7 @@ class RunConfig(Section):
             )
         values = self.model_dump(exclude={"egos"})
         if entry.get("controller", self.controller) != self.controller:
-            values["controller_options"] = {}  # those of another one
+            values["controller_options"], values["controller_profile"] = {}, ""  # of another one
         for key, value in entry.items():
             values[key] = {**values[key], **value} if isinstance(value, dict) else value
         try:
@@ -198,7 +205,13 @@ class RunConfig(Section):
     @property
     def driver(self) -> str:
         """The controller as titles name it: "MPC", and somebody else's as it is written."""
-        return self.controller.upper() if self.controller in BUNDLED else self.controller
+        name = self.controller_name
+        return name.upper() if name in BUNDLED else name
+
+    @property
+    def controller_name(self) -> str:
+        """The controller as tables name it: of an FMU the file's name."""
+        return shown(self.controller)
 
     def _one_per_vehicle(self) -> list[EgoRunConfig]:
         """One for each vehicle that is taken over, or the one of an inserted ego."""
@@ -235,6 +248,12 @@ class EgoRunConfig(RunConfig):
                 f"[controller_options] {key}: '{self.controller}' has no options there; its own "
                 "tables are in docs/options.md, and a study gives those of another controller in a "
                 "named level beside its name"
+            )
+
+        if self.controller_profile and not is_fmu(self.controller):
+            raise ValueError(
+                f"controller_profile = '{self.controller_profile}': '{self.controller}' is no "
+                "controller FMU; leave it out, or name the FMU as controller"
             )
 
     @property

@@ -16,7 +16,7 @@ from giveway.config.foreign_code import Named, foreign_code
 from giveway.config.layers import Layer
 from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError
-from giveway.plug_ins.finding import find, is_reference
+from giveway.plug_ins.finding import find, is_fmu, is_reference, same_name, shown
 from giveway.plug_ins.sockets import Socket
 
 
@@ -35,14 +35,15 @@ def require_trusted(
         ControlError: something is not installed.
     """
     for code in sorted(foreign_code(config), key=lambda code: code.key):
-        socket, name = code.socket, code.name
+        socket, name = code.socket, same_name(code.name)
         naming = [layer for layer in layers if name in _named_in(layer.values, socket)]
-        if name in trusted or any(layer.results is None for layer in naming):
+        said = name in {same_name(one) for one in trusted}
+        said |= any(layer.results is None for layer in naming)
+        told = [(layer.origin, layer.results) for layer in naming if layer.results is not None]
+        if not told or (said and not is_fmu(name)):
             continue
-        origin, folder = next(
-            (layer.origin, layer.results) for layer in naming if layer.results is not None
-        )
-        if is_reference(name):
+        origin, folder = told[0]
+        if not said and (is_reference(name) or is_fmu(name)):
             raise ConfigError(
                 f"{origin}: {socket.setting} = '{name}': a results folder names code, which is "
                 f"imported only if you say so: run it with {socket.flag} {name}, rerun and report "
@@ -53,13 +54,20 @@ def require_trusted(
 
 def _require_same(code: Named, origin: str, folder: Path) -> None:
     socket, name = code.socket, code.name
-    found = find(name, socket)
+    now = code.sha256
     for known in hashes_in(folder, name, socket):
-        if known != found.sha256:
+        if known != now and is_fmu(name):
+            raise ConfigError(
+                f"{origin}: {socket.setting} = '{name}': the results were made with another "
+                f"content of this file (SHA-256 {known[:12]}, now {now[:12]}); put that one back, "
+                "or give the new one a name of its own"
+            )
+        if known != now:
+            found = find(name, socket)
             raise ConfigError(
                 f"{origin}: {socket.setting} = '{name}': the results were made with another "
                 f"content of {found.distribution} (SHA-256 {known[:12]}, installed is "
-                f"{found.version}, {found.sha256[:12]}); install that one, or name it yourself "
+                f"{found.version}, {now[:12]}); install that one, or name it yourself "
                 f"with {socket.flag} {name} (of studies --trust {name})"
             )
 
@@ -70,11 +78,11 @@ def hashes_in(folder: Path, name: str, socket: Socket) -> set[str]:
         manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
         told = manifest.get(socket.manifest, {}).values()  # of a run
         inputs = [cell["inputs"] for cell in manifest.get("cells", ())]  # of a study
-        return {str(one["sha256"]) for one in told if one["name"] == name} | {
+        return {str(one["sha256"]) for one in told if same_name(one["name"]) == same_name(name)} | {
             str(hash_)
             for files in inputs
             for key, hash_ in files.items()
-            if key.startswith(f"{socket.what} of ") and key.endswith(f": {name}")
+            if key.startswith(f"{socket.what} of ") and key.endswith(f": {shown(name)}")
         }
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return set()
@@ -88,5 +96,5 @@ def _named_in(values: Mapping[str, Any], socket: Socket) -> set[str]:
         for key in socket.location:
             node = node.get(key) if isinstance(node, Mapping) else None
         if isinstance(node, str):
-            named.add(node)
+            named.add(same_name(node))
     return named

@@ -81,7 +81,7 @@ class Parts:
         remarks = list(self.departures.remarks)
         identified = [model_remark(ego.config, self.time_step) for ego in self.egos]
         remarks += [text for text in identified if text]
-        remarks += [f"ego '{ego.id}': {text}" for ego in self.egos for text in ego.vehicle.warnings]
+        remarks += [f"ego '{ego.id}': {text}" for ego in self.egos for text in ego.warnings]
         unconnected = 0 if self.exchange is None else self.exchange.unconnected
         if unconnected:
             remarks.append(

@@ -25,6 +25,7 @@ from giveway.ego.way_ahead import WayAhead
 from giveway.errors import ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.path import EgoPath
+from giveway.geometry.slope import Slope
 from giveway.records.way import EgoWay
 from giveway.sumo.lane_path import LanePath
 from giveway.sumo.session import SumoSession
@@ -32,6 +33,7 @@ from giveway.sumo.vehicles import VehicleState
 
 _BEHIND = 0.5  # [m] more than it keeps is left behind a vehicle that stands
 _LEAST_GAP = 1.0  # [m] behind it
+_STEEP = 0.01  # [rad] less is not worth a word
 _ON_THE_LINE = 0.01  # [m]
 _MERGE = 20.0  # [m] along which a vehicle beside its lane's centre line joins it
 
@@ -166,6 +168,9 @@ class Entrance:
             self._right_of_way(config, junctions, shape, profile),
             self._merges(config, path, lane_path, shape, departure),
         )
+        slope = Slope.through(lane_path.heights)
+        if slope is not None and not ego.recorded:
+            self._remark_on_slope(ego, slope)
         return Ego(
             ego,
             path,
@@ -175,7 +180,17 @@ class Entrance:
             path.length - departure if goal is None else goal,
             self._time_step,
             profile,
+            slope,
         )
+
+    def _remark_on_slope(self, ego: WaitingEgo, slope: Slope) -> None:
+        """Say so where the road is steep and the vehicle does not feel it."""
+        if slope.steepest >= _STEEP and not ego.vehicle.knows_grades:
+            percent = 100.0 * math.tan(slope.steepest)
+            self.remarks.append(
+                f"ego '{ego.id}': its road is up to {percent:.1f} % steep, and its FMU drives as "
+                "on the level: no profile names an input of it for the grade (docs/vehicles.md)"
+            )
 
     def _lights(self, config: EgoRunConfig, lane_path: LanePath, hardest: float) -> Lights | None:
         """The traffic lights that the ego heeds; None: there are none."""
@@ -296,6 +311,10 @@ def _joined(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, L
                 for limit in lane_path.limits
             ),
             passages=tuple(passage.shifted(shift - station) for passage in lane_path.passages),
+            heights=tuple(
+                height._replace(station=height.station - station + shift)
+                for height in lane_path.heights
+            ),
         ),
     )
 

@@ -278,8 +278,8 @@ class Loop:
             decision = ego.decide(self._k, time, seen)
             controlled_at = perf_counter()
             recorder.ego(ego.id, ego.row(time, seen, decision))
-            if ego.vehicle.record:
-                recorder.outputs(ego.id, ego.vehicle.record, ego.vehicle.recorded)
+            if ego.has_outputs:
+                recorder.outputs(ego.id, *ego.outputs())
             predicted = ego.expected(seen) if self._looks else None
             if predicted is not None:
                 self._record_predictions(ego.id, predicted, seen.relevant)

@@ -56,7 +56,7 @@ def preflight(config: RunConfig, scenario: Scenario) -> CheckedRun:
     _require_distinct(egos)
     time_step = control_step(config, files)
     require_vehicles(egos, time_step)
-    require_code(config)
+    require_code(config, time_step)
     require_steady_preset(config.crowd.preset, time_step, "[crowd] preset")
     for ego in egos:
         if ego.perception.preset:

@@ -1,6 +1,7 @@
 """One vehicle that giveway drives: its FMU, its controller, its path."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +17,15 @@ from giveway.ego.relevance import Nearby, Relevance
 from giveway.ego.safety import Guard
 from giveway.ego.seen import Seen
 from giveway.ego.speed_profile import SpeedProfile
+from giveway.ego.standing import waits_for
 from giveway.ego.waiting import WaitingEgo
 from giveway.ego.way_ahead import WayAhead
 from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, Pose
+from giveway.geometry.slope import Slope
+from giveway.records.outputs import ROAD_GRADE
 from giveway.records.rows import STOP_SPEED, EgoRow
 from pedestrian_model import Crowd, Surroundings
 
@@ -29,9 +33,7 @@ _BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
 _STRAIGHT = (
     1.0  # [s] for which other vehicles are predicted straight on; beyond it the road may bend
 )
-_NEAR = 3.0  # [m] in addition to the distance kept: what is so near is what the ego stands for
 _LIKELY = 0.75  # of what positions are off at most, as plans count with it: the layer with all
-_FREE = ("clear", "drive on")  # reasons of a planning controller that sees nobody in its way
 
 
 class Ego:
@@ -46,6 +48,7 @@ class Ego:
         goal: the FMU's position [m] at which it is done.
         time_step: [s].
         profile: its speed where nothing is in its way; None: the controller's own.
+        slope: of the path; None: it is level.
     """
 
     def __init__(
@@ -58,6 +61,7 @@ class Ego:
         goal: float,
         time_step: float,
         profile: SpeedProfile | None = None,
+        slope: Slope | None = None,
     ) -> None:
         config = waiting.config
         self._controller, self._predictor = waiting.controller, waiting.predictor
@@ -68,6 +72,8 @@ class Ego:
         self.shape = shape
         self.way = way
         self._profile = profile
+        self._slope = slope
+        self.has_outputs = bool(waiting.vehicle.record) or slope is not None
         self._time_step = time_step
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal = goal
@@ -304,9 +310,20 @@ class Ego:
     def advance(self) -> None:
         """Step the FMU with the force decided on."""
         self._pose = None
-        self.vehicle.step(self._force)
+        if self._slope is None:
+            self.vehicle.step(self._force)
+        else:
+            self.vehicle.step(self._force, self._slope.grade(self.front, self.shape.length))
         if self.way.bounds:
             self.way.pass_time(self.front, self.vehicle.speed, self._time_step)
+
+    def outputs(self) -> tuple[Sequence[tuple[str, str, str]], Sequence[float]]:
+        """What is recorded of its FMU at this instant, and the grade of its road if it has one."""
+        record, values = self.vehicle.record, self.vehicle.recorded
+        if self._slope is None:
+            return record, values
+        grade = self._slope.grade(self.front, self.shape.length)
+        return (*record, ROAD_GRADE), (*values, grade)
 
     def row(self, time: float, seen: Seen, decision: Decision) -> EgoRow:
         """The row of this instant for the tables."""
@@ -335,29 +352,3 @@ class Ego:
             return ""
         kept = self._origin + self.config.regulation.safe_distance
         return waits_for(self.front, kept, seen, decision, self._eases_off)
-
-
-def waits_for(front: float, kept: float, seen: Seen, decision: Decision, eases_off: bool) -> str:
-    """What an ego that stands stands for; empty when it drives off.
-
-    Args:
-        front: station of its front bumper [m].
-        kept: distance [m] from there that it keeps to who is in front.
-        seen: what it reacts to.
-        decision: its controller's.
-        eases_off: it brakes less than a step before.
-    """
-    place, cause = min(
-        (seen.pedestrian - front - kept, "person"),
-        (seen.leader.station - front - kept, "vehicle"),
-        (seen.stop - front, seen.stops_for),
-    )
-    if place <= _NEAR:
-        return cause
-    if decision.acting == "safety":
-        return "person"
-    if seen.ahead.size and seen.ahead.min() - front - kept <= 0.0:
-        return "vehicle" if seen.predicted is None else "person"
-    if decision.force > 0.0 or eases_off:
-        return ""
-    return "none" if decision.reason in _FREE else "plan"

@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 from controller import PluggedIn, Setup
 from giveway.config import EgoRunConfig
-from giveway.config.sections import DEFAULT_SPEED
-from giveway.plug_ins.finding import load_class
+from giveway.config.controller_fmu import prepared, setup_of
+from giveway.ego.fmu_plug_in import FmuPlugIn
+from giveway.plug_ins.finding import is_fmu, load_class, shown
 from giveway.plug_ins.sockets import CONTROLLER
 
 
@@ -23,8 +24,8 @@ def plugged_in(config: EgoRunConfig, time_step: float) -> PluggedIn:
         ControlError: it is not installed, or cannot be imported.
         ControllerError: it cannot be made.
     """
-    name = config.controller
     make, setup = maker(config), setup_of(config, time_step)
+    name = shown(config.controller)
     return PluggedIn(f"'{name}' of '{config.ego_id}'", lambda: make(setup), setup)
 
 
@@ -36,27 +37,9 @@ def maker(config: EgoRunConfig) -> Callable[[Setup], object]:
 
     Raises:
         ConfigError: its options cannot be used.
-        ControlError: it is not installed, or cannot be imported.
+        ControlError: it is not installed, or cannot be imported or read.
     """
+    if is_fmu(config.controller):
+        return lambda setup: FmuPlugIn(prepared(config, setup.time_step))
     kind, options = load_class(config.controller, CONTROLLER, config.controller_options)
     return lambda setup: kind(setup) if options is None else kind(setup, options)
-
-
-def setup_of(config: EgoRunConfig, time_step: float) -> Setup:
-    """What a controller is told of its drive.
-
-    Args:
-        config: of the ego; its reference speed is a number.
-        time_step: of the co-simulation [s].
-    """
-    vehicle, regulation = config.vehicle, config.regulation
-    speed = regulation.reference_speed
-    return Setup(
-        time_step=time_step,
-        mass=vehicle.mass,
-        friction=vehicle.friction,
-        reference_speed=DEFAULT_SPEED if isinstance(speed, str) else speed,
-        safe_distance=regulation.safe_distance,
-        force_limit=config.mpc.force_limit,
-        comfortable_deceleration=regulation.comfortable_deceleration,
-    )

@@ -34,7 +34,7 @@ class RecordedVehicle(Vehicle):
         self._row = 0
         self._show()
 
-    def step(self, force: float = 0.0) -> None:  # noqa: ARG002
+    def step(self, force: float = 0.0, grade: float = 0.0) -> None:  # noqa: ARG002
         """Move on by one control step, whatever the force."""
         self._row = min(self._row + 1, len(self._track.time) - 1)
         self._show()

@@ -23,11 +23,13 @@ from fmus import (
 )
 from fmus.checking import convergence, goes_the_wrong_way, opener_of, remedy
 from fmus.profile.advice import gain_line
-from fmus.profile.vehicle_profile import Axis, FittedModel
+from fmus.profile.tables import Axis
+from fmus.profile.vehicle_profile import FittedModel
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.sections import BUNDLED_VEHICLES, DEFAULT_SPEED, VehicleConfig
 from giveway.errors import VehicleError
 from giveway.records.columns import EGO_COLUMNS
+from giveway.records.outputs import ROAD_GRADE
 
 _CHECK_FORCE = 4000.0  # [N] that the self-check drives and brakes with, or the force limit
 _SAME_STEP = 1e-6  # relative
@@ -57,7 +59,7 @@ def require_vehicles(egos: Sequence[EgoRunConfig], time_step: float) -> None:
             prepare(path, step_size=time_step, profile=profile)
         except FmuError as error:
             raise VehicleError(str(error)) from error
-        taken = {column.name for column in EGO_COLUMNS}
+        taken = {ROAD_GRADE[0], *(column.name for column in EGO_COLUMNS)}
         for name in () if profile is None else profile.record:
             if name in taken:
                 raise VehicleError(

@@ -4,7 +4,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from math import inf, sqrt
 
-from controller import Controller, SafetyParameters, WorstMotion
+from controller import Controller, PluggedIn, SafetyParameters, WorstMotion
 from fmus import FmuError, Vehicle
 from giveway.config import EgoRunConfig
 from giveway.config.presets import parameters_of
@@ -66,6 +66,17 @@ class WaitingEgo:
             raise VehicleError(str(error)) from error
 
     @property
+    def warnings(self) -> list[str]:
+        """What the user should know of its FMUs."""
+        own = self.controller.warnings if isinstance(self.controller, PluggedIn) else []
+        return [*self.vehicle.warnings, *own]
+
+    def close(self) -> None:
+        """End its controller, if that is a process; the vehicle is closed by its stack."""
+        if isinstance(self.controller, PluggedIn):
+            self.controller.close()
+
+    @property
     def clearance(self) -> float:
         """The distance that the safety layer keeps to pedestrians' bodies [m].
 
@@ -115,7 +126,9 @@ def make_waiting_ego(
     predictor = predictor_of(config, controller, time_step, expected)
     fastest = max(crowd.max_speed, expected.max_speed)
     safety = safety_parameters(config, time_step) if config.safety_layer else None
-    return WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety)
+    ego = WaitingEgo(config, vehicle, description, controller, predictor, fastest, safety)
+    stack.callback(ego.close)
+    return ego
 
 
 def recorded_ego(config: EgoRunConfig, track: EgoTrack, time_step: float) -> WaitingEgo:

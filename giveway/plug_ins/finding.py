@@ -61,6 +61,21 @@ def is_reference(name: str) -> bool:
     return _REFERENCE.fullmatch(name) is not None
 
 
+def is_fmu(name: str) -> bool:
+    """Whether a name is that of a file with an FMU."""
+    return name.lower().endswith(".fmu")
+
+
+def same_name(name: Any) -> Any:
+    """A name as it is compared: a file's may be written in several ways."""
+    return os.path.abspath(name) if isinstance(name, str) and is_fmu(name) else name  # noqa: PTH100
+
+
+def shown(name: str) -> str:
+    """A name without the folder of a file."""
+    return Path(name).name if is_fmu(name) else name
+
+
 def declared_names(socket: Socket = CONTROLLER) -> list[str]:
     """The names that installed distributions declare for a socket."""
     return sorted({point.name for point in metadata.entry_points(group=socket.group)})

@@ -7,6 +7,13 @@ from numpy.typing import NDArray
 
 from giveway.records.columns import Column
 
+ROAD_GRADE = (
+    "road_grade",
+    "rad",
+    "angle at which the ego's body stands on the road, by the heights of the net; uphill positive",
+)
+"""Name, unit and meaning of the column that egos on roads with heights have."""
+
 
 class Output(NamedTuple):
     """One variable of an ego's FMU at the ego's control instants."""

@@ -262,7 +262,7 @@ def _ego(run: RunFolder, frame: Frame, name: str, names: dict[str, int]) -> dict
     kinds = list(dict.fromkeys(acted))
     return {
         "id": name,
-        "controller": config.controller,
+        "controller": config.controller_name,
         "body": [length, width],
         "corridor": width / 2 + CORRIDOR_MARGIN if half_width is None else half_width,
         "safe": config.regulation.safe_distance,

@@ -163,7 +163,7 @@ class EgoResult:
             safe_distance=config.regulation.safe_distance,
             reference_speed=reference,
             stop_speed=config.record.stop_speed,
-            controller=config.controller,
+            controller=config.controller_name,
             people=self.people_at_worst,
             vehicles=self.vehicle_contacts,
         )

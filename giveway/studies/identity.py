@@ -16,6 +16,7 @@ from giveway.config.foreign_code import code_hashes
 from giveway.config.presets import is_preset_file
 from giveway.ego.vehicle import fmu_path
 from giveway.errors import ConfigError, GivewayError
+from giveway.plug_ins.finding import is_fmu, shown
 from giveway.results.provenance import scenario_hashes, scenario_inputs, sha256, software_versions
 from giveway.scenario_files.options import parse_options
 from giveway.studies.record import Task
@@ -80,6 +81,9 @@ def cell_digest(config: RunConfig, inputs: dict[str, str], software: str) -> str
             settings = table.get(section, {})
             if key in settings:
                 settings[key] = Path(settings[key]).name
+        if is_fmu(table.get("controller", "")):
+            table["controller"] = shown(table["controller"])
+            table["controller_profile"] = Path(table.get("controller_profile", "")).name
     values["scenario"] = Path(values["scenario"]).name
     content = {"settings": values, "inputs": inputs, "software": software}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
@@ -168,6 +172,9 @@ def _vehicle_files(config: RunConfig) -> list[tuple[str, Path]]:
         named: list[Path] = [fmu_path(ego.vehicle)]
         named += [Path(ego.vehicle.profile)] if ego.vehicle.profile else []
         found += [(f"vehicle of {ego.ego_id}: {f.name}", f) for f in named if f.is_file()]
+        if ego.controller_profile:
+            profile = Path(ego.controller_profile)
+            found.append((f"controller of {ego.ego_id}: {profile.name}", profile))
     return found
 
 

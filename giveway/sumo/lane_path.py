@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from giveway.geometry.kernel import Array
+from giveway.sumo.heights import Height
 
 
 class Light(NamedTuple):
@@ -46,3 +47,4 @@ class LanePath:
     limits: tuple[SpeedLimit, ...]  # of each lane, in order; the first holds from the beginning
     passages: tuple[Passage, ...]  # through junctions whose lanes inside the network has
     lanes: tuple[tuple[str, str], ...]  # on which it enters and leaves each edge
+    heights: tuple[Height, ...] = ()  # of the lanes' vertices, in order

@@ -2,7 +2,7 @@
 
 import itertools
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,6 +13,7 @@ from giveway.errors import ScenarioError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at, stations_of
 from giveway.sumo.crossings import Crossing, crossings
+from giveway.sumo.heights import Height, heights_of
 from giveway.sumo.inside import lanes_inside
 from giveway.sumo.lane_path import LanePath, Light, Passage, SpeedLimit
 from giveway.sumo.merging import Merging, mergings
@@ -80,6 +81,7 @@ class Lanes:
         begins: list[float] = []
         limits: list[SpeedLimit] = []
         passages: list[Passage] = []
+        heights: list[Height] = []
         driven = 0.0
         for number, (entry, leave) in enumerate(pairs):
             shape = self._changing(edges[number], entry, leave, start if number == 0 else 0.0)
@@ -87,6 +89,7 @@ class Lanes:
             begins.append(driven)
             own = {f"{edges[number]}_{i}" for i in (entry, leave)}
             limits.append(SpeedLimit(driven, min(map(self.speed_limit, own))))
+            heights += self._heights(f"{edges[number]}_{entry}", driven, _length(shape))
             driven += _length(shape)
             if number < len(links):
                 link = links[number]
@@ -97,6 +100,8 @@ class Lanes:
                 speeds = map(self.speed_limit, link.via)
                 limits.extend(map(SpeedLimit, begins_inside, speeds))
                 inside = [self.shape(name) for name in link.via]
+                for name, begin in zip(link.via, begins_inside, strict=True):
+                    heights += self._heights(name, begin, self.length(name))
                 following = self.shape(link.lane)
                 onwards = np.concatenate([shape[-1:], *inside, following[:1]])
                 points.extend(inside)
@@ -112,7 +117,11 @@ class Lanes:
             tuple(limits),
             tuple(passages),
             tuple((f"{e}_{i}", f"{e}_{j}") for e, (i, j) in zip(edges, pairs, strict=True)),
+            tuple(heights),
         )
+
+    def _heights(self, lane: str, begin: float, length: float) -> Iterator[Height]:
+        return heights_of(self._sumo, lane, self.shape(lane), begin, length)
 
     def mergings(self, lane_path: LanePath) -> tuple[Merging, ...]:
         """Where others come onto the lanes of a path, in its order."""

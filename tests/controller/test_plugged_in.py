@@ -54,7 +54,7 @@ def test_an_answer_becomes_a_force_within_the_actuators_limits(answer, force):
 def test_the_inverse_is_that_of_fmus_with_a_speed_setpoint_or_an_acceleration():
     """What the inverse maps of the roles would set comes back."""
     from fmus.profile.commands import AccelerationCommand, SetpointCommand
-    from fmus.profile.wiring import Wire
+    from fmus.profile.wires import Wire
 
     raw = np.zeros(1)
     wire = Wire("own", None, 1.0, 0.0, "")

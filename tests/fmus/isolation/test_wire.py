@@ -21,9 +21,9 @@ def answered(answer, timeout=0.02):
     with there:
         there.sendall(answer)
         there.shutdown(socket.SHUT_WR)
-        line = Client(here)
+        line = Client(here, 2, 3)
         try:
-            return line.ask(STEP, 1.0, 0.0, timeout)
+            return line.ask(STEP, (1.0,), timeout)
         finally:
             line.close()
 
@@ -36,16 +36,16 @@ def test_noise_is_told_from_a_reply(noise):
 
 @given(st.binary(max_size=100))
 def test_noise_instead_of_the_text_is_no_reply(noise):
-    head = reply_layout(0).pack(DONE, 1, len(noise) + 1, 0.0, 0.0, 0.0)
+    head = reply_layout(3).pack(DONE, 1, len(noise) + 1, 0.0, 0.0, 0.0)
     with pytest.raises((GarbledError, EOFError)):
         answered(head + b"!" + noise)
 
 
 def test_a_reply_is_read_whole():
     body = json.dumps({"warnings": ["x" * 50_000]}).encode()
-    head = reply_layout(0).pack(DONE, 1, len(body), 1.0, 2.0, 3.0)
-    done, x, v, a, text = answered(head + body)
-    assert (done, x, v, a, len(text["warnings"][0])) == (True, 1.0, 2.0, 3.0, 50_000)
+    head = reply_layout(3).pack(DONE, 1, len(body), 1.0, 2.0, 3.0)
+    done, state, text = answered(head + body)
+    assert (done, state, len(text["warnings"][0])) == (True, [1.0, 2.0, 3.0], 50_000)
 
 
 @pytest.mark.parametrize(
@@ -53,36 +53,36 @@ def test_a_reply_is_read_whole():
 )
 def test_a_reply_to_something_else_or_without_measure_is_refused(number, length):
     with pytest.raises(GarbledError):
-        answered(reply_layout(0).pack(DONE, number, length, 0.0, 0.0, 0.0))
+        answered(reply_layout(3).pack(DONE, number, length, 0.0, 0.0, 0.0))
 
 
 def test_a_text_nested_without_end_is_refused():
     body = b"[" * 60_000
     with pytest.raises(GarbledError):
-        answered(reply_layout(0).pack(DONE, 1, len(body), 0.0, 0.0, 0.0) + body)
+        answered(reply_layout(3).pack(DONE, 1, len(body), 0.0, 0.0, 0.0) + body)
 
 
 def test_a_reply_in_drops_does_not_stretch_the_time_out():
     here, there = socket.socketpair()
-    line = Client(here)
+    line = Client(here, 2, 3)
     with there:
         there.sendall(b"do")
         with pytest.raises(TimeoutError):
-            line.ask(STEP, 1.0, 0.0, 0.05)
+            line.ask(STEP, (1.0,), 0.05)
     line.close()
 
 
 def test_every_request_has_a_time_out_of_its_own():
     here, there = socket.socketpair()
-    line = Client(here)
+    line = Client(here, 2, 3)
     with there:
         for number, timeout in enumerate((0.05, 0.05, 0.01, 5.0), start=1):
             if number < 4:
                 with pytest.raises(TimeoutError):
-                    line.ask(STEP, 1.0, 0.0, timeout)
+                    line.ask(STEP, (1.0,), timeout)
             else:
-                there.sendall(reply_layout(0).pack(DONE, number, 0, 1.0, 2.0, 3.0))
-                assert line.ask(STEP, 1.0, 0.0, timeout)[0]
+                there.sendall(reply_layout(3).pack(DONE, number, 0, 1.0, 2.0, 3.0))
+                assert line.ask(STEP, (1.0,), timeout)[0]
             assert here.gettimeout() == timeout
     line.close()
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from fmus.description.model import Channel, Variable
 from fmus.profile.commands import make_command
 from fmus.profile.vehicle_profile import make_profile
-from fmus.profile.wiring import Wire
+from fmus.profile.wires import Wire
 
 H = 0.05  # [s]
 M, ALPHA = 1400.0, 80.0  # [kg], [N.s/m]

@@ -87,11 +87,22 @@ class Zoo:
         It has the parameters ``mass``, ``friction`` and ``v0``; FMI 2.0: no units, and a parameter
         ``broken`` with which it raises an exception at 0.2 s; FMI 3.0: kN and km/h.
         """
-        key = f"python {fmi}"
+        return self._python(fmi, "car")
+
+    def python_controller(self, fmi: str) -> Path:
+        """The controller of python/fmi2_controller.py or python/fmi3_controller.py."""
+        return self._python(fmi, "controller")
+
+    def hill_car(self) -> Path:
+        """The car of python/fmi3_hill_car.py, which feels the road's grade."""
+        return self._python("3.0", "hill_car")
+
+    def _python(self, fmi: str, what: str) -> Path:
+        key = f"python {what} {fmi}"
         if key not in self._built:
             packer = {"2.0": "pythonfmu", "3.0": "pythonfmu3"}[fmi]
-            source = PYTHON / f"fmi{fmi[0]}_car.py"
-            folder = self._folder / packer
+            source = PYTHON / f"fmi{fmi[0]}_{what}.py"
+            folder = self._folder / f"{packer}_{what}"
             subprocess.run(
                 [sys.executable, "-m", packer, "build", "-f", str(source), "-d", str(folder)],
                 check=True,

@@ -1,0 +1,88 @@
+"""A controller that is an FMU: told what it sees, asked for its answer, once in each step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from fmus.errors import FmuStepError
+from fmus.fmi import load
+from fmus.fmi.status import STATUS_NAMES, WARNING
+from fmus.profile.controller_preparation import PreparedController
+
+
+class ControllerFmu:
+    """Runs a controller FMU in this process.
+
+    Its answer at t_k is what it puts out at the end of the step from t_k, told what it sees at
+    t_k: whether it decides as soon as it is told or as it steps, there is no lag.
+
+    Args:
+        prepared: the controller.
+        folder: of its unpacked FMU, which stays.
+
+    Attributes:
+        answer: of the last step, in the FMU's own unit.
+        time: at the end of that step [s].
+
+    Raises:
+        FmuPlatformError: it has no binary that can be loaded.
+    """
+
+    def __init__(self, prepared: PreparedController, folder: Path) -> None:
+        self.prepared = prepared
+        self.answer = self.time = 0.0
+        self._steps = 0
+        fmu = prepared.profile.fmu
+        self._instance = load(
+            prepared.model,
+            prepared.wiring.interface,
+            folder,
+            prepared.binary,
+            solver=fmu.solver,
+            tolerance=fmu.tolerance,
+            stop_time=fmu.stop_time,
+        )
+
+    def start(self) -> None:
+        """Begin (again) at time 0 with a new instance.
+
+        Raises:
+            FmuStartError: the FMU refuses its start values.
+        """
+        wiring = self.prepared.wiring
+        self._instance.stop()
+        self._steps, self.time = 0, 0.0
+        channels = [wire.channel for wire in wiring.inputs]
+        self._instance.start(wiring.start_values, channels, [wiring.answer.channel])
+
+    def step(self, told: Sequence[float]) -> None:
+        """Ask at t_k; an FMU whose step is longer is asked once in each of its own.
+
+        Args:
+            told: what it sees, in its own units.
+
+        Raises:
+            FmuStepError: it does not do the step.
+        """
+        pace, instance = self.prepared.pace, self._instance
+        if self._steps % pace.stretch == 0:
+            for index, value in enumerate(told):
+                instance.inputs[index] = value
+            first = self._steps // pace.stretch * pace.substeps
+            for number in range(first, first + pace.substeps):
+                status = instance.tick(number * pace.step, pace.step)
+                if status > WARNING:
+                    said = instance.messages.take() or "without a message"
+                    raise FmuStepError(
+                        f"{self.prepared.path}: no step from {number * pace.step:.10g} s to "
+                        f"{(number + 1) * pace.step:.10g} s: the FMU returned "
+                        f"'{STATUS_NAMES[status]}', {said}"
+                    )
+            self.answer = instance.outputs[0]
+        self._steps += 1
+        self.time = self._steps * self.prepared.step_size
+
+    def close(self) -> None:
+        """End the FMU and free its library."""
+        self._instance.close()

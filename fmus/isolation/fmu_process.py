@@ -1,0 +1,190 @@
+"""An FMU's process as its client sees it: started anew for every episode, asked, ended."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import weakref
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fmus import errors
+from fmus.errors import FmuCrashError, FmuError, FmuStartCrashError, FmuStepError
+from fmus.isolation.cleanup import remove
+from fmus.isolation.process_host import ProcessHost, make_process_host
+from fmus.isolation.wire import LOAD, QUIT, STEP, Client, GarbledError, Text
+from fmus.isolation.worker import Order
+from fmus.profile.preparation import unpack
+from fmus.text import printable
+
+if TYPE_CHECKING:
+    from fmus.isolation.riders import Rider
+    from fmus.profile.controller_preparation import PreparedController
+    from fmus.profile.preparation import Prepared
+
+_END_TIMEOUT = 5.0  # [s] for an FMU to end by itself
+_END_PATIENCE = 1.0  # [s] between the end of the connection and that of the process
+
+
+class FmuProcess:
+    """Whatever the FMU does in its process, this one goes on.
+
+    Args:
+        rider: what the FMU is run as.
+        prepared: the vehicle or controller.
+
+    Attributes:
+        warnings: of the FMU, since its last start.
+        failed: the episode has failed: the FMU is no more asked to end.
+        last: the numbers of a reply that told an error; empty: none did.
+        last_time: of it [s].
+
+    Raises:
+        FmuError: it cannot be unpacked, or no process can be started.
+    """
+
+    def __init__(self, rider: type[Rider], prepared: Prepared | PreparedController) -> None:
+        self.path = prepared.path
+        self.warnings: list[str] = []
+        self.failed = False
+        self.last: Sequence[float] = ()
+        self.last_time = 0.0
+        self._numbers = rider.numbers(prepared)
+        self._client: Client | None = None
+        folder = Path(tempfile.mkdtemp(prefix="vehicle-fmu-"))
+        try:
+            self._host = make_process_host(Order(rider, prepared, folder / "fmu"), folder)
+        except BaseException:
+            remove(folder)
+            raise
+        self._owner = os.getpid()
+        self._closing = weakref.finalize(self, _close, self._owner, self._host, folder)
+        try:
+            unpack(prepared, folder / "fmu")
+        except BaseException:
+            self._closing()
+            raise
+
+    @property
+    def closed(self) -> bool:
+        """Whether it has been closed for good."""
+        return not self._closing.alive
+
+    def begin(self) -> None:
+        """End the last episode; a new process is there for the next one."""
+        self.warnings = []
+        self.end()
+        self.failed, self.last = False, ()
+        self._client = Client(self._host.start_process(), *self._numbers)
+
+    def ask(
+        self, what: bytes, numbers: Sequence[float], timeout: float, when: Callable[[], str]
+    ) -> Sequence[float]:
+        """Have something done.
+
+        Args:
+            what: is to be done.
+            numbers: of the request.
+            timeout: in which it must be done [s].
+            when: says when that was, for messages.
+
+        Returns:
+            The numbers of the reply.
+
+        Raises:
+            FmuError: what the FMU's process reports.
+            FmuCrashError: it died, or did not answer in time.
+        """
+        assert self._client is not None  # it exists while no call is refused
+        try:
+            done, state, text = self._client.ask(what, numbers, timeout)
+            if text:
+                self.warnings += _warnings(text)
+            if not done:
+                raise self._reported_error(text, state)
+        except (TimeoutError, EOFError, GarbledError) as problem:
+            self.failed = True
+            raise self._crash(what, when(), problem, timeout) from None
+        except BaseException:  # Ctrl-C: the reply would be taken for that of the next step
+            self.failed = True
+            raise
+        return state
+
+    def _reported_error(self, text: Text, state: Sequence[float]) -> FmuError:
+        """The error that the FMU's process reported; only our own error classes are accepted."""
+        kind = getattr(errors, str(text.get("error")), None)
+        message = printable(text.get("message"), 2000)
+        if not (isinstance(kind, type) and issubclass(kind, FmuError)):
+            return FmuStepError(f"{self.path}: {message}")
+        time = text.get("time")
+        if isinstance(time, float):
+            self.last, self.last_time = state, time
+        return kind(message)
+
+    def _crash(self, what: bytes, when: str, problem: Exception, timeout: float) -> FmuCrashError:
+        """End the process; the error says when it ended, why, and what it printed last."""
+        lost = isinstance(problem, EOFError)
+        report = self._host.end_process(_END_PATIENCE if lost else 0.0)
+        if lost:
+            reason = f"the FMU's process {report.cause} {when}{report.after_printing}"
+            advice = "report it to the FMU's maker"
+        elif isinstance(problem, TimeoutError):
+            reason = f"no answer within {timeout:g} s {when}{report.after_printing}; killed"
+            key = "step_timeout" if what == STEP else "start_timeout"
+            line = f"{key} = {min(10.0 * timeout, 3600.0):g}"
+            advice = f"if it is only slow, add `{line}` to [fmu] of the profile"
+        else:
+            reason = (
+                f"the FMU's process wrote into giveway's connection {when}{report.after_printing}"
+            )
+            advice = "killed; report it to the FMU's maker"
+        kind = FmuCrashError if what == STEP else FmuStartCrashError
+        return kind(f"{self.path}: {reason}; {advice}")
+
+    def end(self) -> None:
+        """End the process if there is one; ask it to end first unless it has failed."""
+        client, self._client = self._client, None
+        if client is None:
+            return
+        try:
+            if not self.failed:
+                client.ask(QUIT, (), _END_TIMEOUT)
+        except TimeoutError:
+            self.warnings.append(
+                f"{self.path.name}: the FMU did not end within {_END_TIMEOUT:g} s; killed"
+            )
+        except (EOFError, GarbledError):
+            cause = self._host.end_process(_END_PATIENCE).cause
+            self.warnings.append(f"{self.path.name}: the FMU's process {cause} when it was ended")
+        finally:
+            client.close()
+            self._host.end_process()
+
+    def close(self) -> None:
+        """End the FMU and its process; nothing happens the second time."""
+        if self.closed:
+            return
+        try:
+            if os.getpid() == self._owner:  # a fork of this process must not end the FMU
+                self.end()
+        finally:
+            self._closing()
+
+
+def while_starting(what: bytes) -> str:
+    """When something happened that is no step, for messages."""
+    return "while it was loaded" if what == LOAD else "while it was started"
+
+
+def _close(owner: int, host: ProcessHost, folder: Path) -> None:
+    if os.getpid() == owner:
+        try:
+            host.close()
+        finally:  # also after a Ctrl-C during the wait
+            remove(folder)
+
+
+def _warnings(text: Text) -> list[str]:
+    warnings = text.get("warnings")
+    return [printable(w, 1000) for w in warnings] if isinstance(warnings, list) else []

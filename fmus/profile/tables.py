@@ -1,0 +1,154 @@
+"""What all profiles share: tables, axes, how an FMU is stepped, start values, and their errors."""
+
+from __future__ import annotations
+
+import tomllib
+from math import isfinite
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
+
+from fmus.description.model import Value
+from fmus.errors import FmuProfileError
+from fmus.text import printable
+
+
+class Table(BaseModel):
+    """A table of a profile: frozen, finite numbers only, unknown keys refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Axis(Table):
+    """One quantity: SI = gain * (factor * raw + unit_offset) + offset.
+
+    ``factor`` and ``unit_offset`` belong to the unit. ``variable`` may be one element of an FMI 3
+    array, ``x[2]``, counted from 1.
+    """
+
+    variable: str = Field(min_length=1)
+    unit: str | None = None  # where the FMU declares none, or a wrong one
+    gain: float | None = None  # None: 1, and the unit must be of the right dimension
+    offset: float = 0.0
+
+    @model_validator(mode="after")
+    def _invertible(self) -> Axis:
+        if self.gain == 0.0:
+            raise ValueError("gain = 0: expected a number that is not 0")
+        return self
+
+
+class Stepping(Table):
+    """How an FMU is stepped."""
+
+    kind: Literal["co-simulation", "model-exchange"] | None = None  # None: the former if it can
+    step: float | None = Field(None, gt=0, le=10)  # [s] the FMU's own; None: the control step
+    stop_time: float | None = Field(None, gt=0, le=1e9)  # [s] told to the FMU; None: no stop time
+    solver: Literal["cvode", "rk4"] | None = None  # of Model Exchange; None: cvode where it runs
+    tolerance: float | None = Field(None, gt=0, le=0.1)  # relative, of Model Exchange
+    start_timeout: float = Field(60.0, gt=0, le=3600)  # [s] wall clock
+    step_timeout: float = Field(10.0, gt=0, le=3600)  # [s] wall clock
+
+
+def flat(values: Any) -> Any:
+    """An unquoted ``vehicle.mass = 1`` is a table in TOML; here it is the variable's name."""
+    if not isinstance(values, dict):
+        return values
+    found: dict[str, Any] = {}
+    tables = [("", values)]
+    while tables:
+        prefix, table = tables.pop()
+        for key, value in table.items():
+            name = f"{prefix}{key}"
+            if isinstance(value, dict):
+                tables.append((f"{name}.", value))
+            elif not _is_value(value):
+                expected = "a finite number, true, false, text, or a list of finite numbers"
+                raise ValueError(f"{name} = {str(value)[:60]}: expected {expected}")
+            else:
+                found[name] = value
+    return found
+
+
+Parameters = Annotated[dict[str, Value], BeforeValidator(flat)]
+"""Start values by variable name, in the FMU's own units."""
+
+
+def _is_value(value: object) -> bool:
+    if isinstance(value, list):
+        return all(_is_number(item) for item in value)
+    return isinstance(value, bool | str) or _is_number(value)
+
+
+def _is_number(value: object) -> bool:
+    if isinstance(value, int):
+        return not isinstance(value, bool) and abs(value) < 1 << 64
+    return isinstance(value, float) and isfinite(value)
+
+
+_Profile = TypeVar("_Profile", bound=Table)
+
+
+def read_tables(path: Path, what: str, guide: str) -> dict[str, Any]:
+    """The tables of a profile's TOML file.
+
+    Args:
+        path: of the file.
+        what: it is expected to be.
+        guide: where one is to be had.
+
+    Raises:
+        FmuProfileError: the file is missing, or not TOML.
+    """
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except FileNotFoundError:
+        raise FmuProfileError(f"{path}: no such file; {guide}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
+        raise FmuProfileError(
+            f"{path}: cannot be read ({reason}); expected {what} (TOML)"
+        ) from None
+    except (ValueError, RecursionError) as error:  # not TOML's own: a number of thousands of digits
+        raise FmuProfileError(f"{path}: not valid TOML: {error}; mend the line named") from None
+
+
+def validated(kind: type[_Profile], values: dict[str, Any], origin: str, guide: str) -> _Profile:
+    """A profile of a kind.
+
+    Args:
+        kind: of profile.
+        values: with the keys of the TOML file.
+        origin: named in errors.
+        guide: that describes the keys.
+
+    Raises:
+        FmuProfileError: a key or value cannot be used.
+    """
+    try:
+        return kind.model_validate(values)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        raise FmuProfileError(f"{origin}: {_explained(first, guide)}") from None
+
+
+def _explained(error: Any, guide: str) -> str:
+    *tables, key = (str(part) for part in error["loc"]) if error["loc"] else ("",)
+    place = f"[{'.'.join(tables)}] {key}" if tables else f"[{key}]" if key else "profile"
+    if error["type"] == "extra_forbidden":
+        return f"{place}: unknown key; {guide} lists the keys"
+    if error["type"] == "missing":
+        return f"{place}: missing; add it ({guide})"
+    if error["type"] == "value_error":
+        table = ".".join((*tables, key))
+        return f"[{table}]: {error['ctx']['error']}" if table else str(error["ctx"]["error"])
+    given = printable(repr(error["input"]), 60)
+    return f"{place} = {given}: {str(error['msg']).removeprefix('Input ')}"

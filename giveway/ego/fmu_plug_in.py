@@ -1,0 +1,78 @@
+"""A controller FMU as a plug-in: what an observation tells its inputs, what its output means."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+
+from controller import Acceleration, Force, Observation, PlugInError, Speed
+from fmus import FmuError, IsolatedController, PreparedController
+
+_TOLD: dict[str, Callable[[Observation], float]] = {
+    "speed": lambda seen: seen.speed,
+    "acceleration": lambda seen: seen.acceleration,
+    "position": lambda seen: seen.position,
+    "last_force": lambda seen: seen.force,
+    "gap": lambda seen: seen.gap,
+    "person_gap": lambda seen: seen.person_gap,
+    "leader_gap": lambda seen: seen.leader_gap,
+    "leader_speed": lambda seen: seen.leader_speed,
+    "speed_limit": lambda seen: seen.speed_limit,
+    "stop_gap": lambda seen: seen.stop_gap,
+}
+
+
+class FmuPlugIn:
+    """Driven by an FMU, in a process of its own that starts with the first question.
+
+    Args:
+        prepared: the controller.
+    """
+
+    def __init__(self, prepared: PreparedController) -> None:
+        wiring = prepared.wiring
+        self.horizon = wiring.horizon
+        self._fmu = IsolatedController(prepared)
+        self._single = [_TOLD[wire.role] for wire in wiring.inputs if wire.role in _TOLD]
+        roles = [wire.role for wire in wiring.inputs]
+        self._positions = roles.count("obstacle_positions")
+        self._gaps = roles.count("obstacle_gaps")
+        self._answer = wiring.answer.role
+        self._lead = 0.0
+        if prepared.profile.outputs.speed is not None:
+            self._lead = prepared.profile.outputs.speed.lead or 0.0
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the user should know of the FMU."""
+        return self._fmu.warnings
+
+    def control(self, seen: Observation) -> Force | Acceleration | Speed:
+        """Its answer.
+
+        Raises:
+            PlugInError: it does not give one.
+        """
+        told = [tell(seen) for tell in self._single]
+        if self.horizon:
+            ahead = seen.obstacle_positions.tolist()
+            ahead += (self.horizon - len(ahead)) * [inf]
+            told += ahead[: self._positions]
+            told += [station - seen.position for station in ahead[: self._gaps]]
+        try:
+            value = self._fmu.ask(told)
+        except FmuError as error:
+            raise PlugInError(str(error)) from error
+        if self._answer == "force":
+            return Force(value)
+        if self._answer == "acceleration":
+            return Acceleration(value)
+        return Speed(value, self._lead)
+
+    def reset(self) -> None:
+        """Forget the past."""
+        self._fmu.restart()
+
+    def close(self) -> None:
+        """End the FMU's process."""
+        self._fmu.close()

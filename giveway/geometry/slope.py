@@ -1,0 +1,58 @@
+"""How steep a path is, where its network has heights."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from giveway.geometry.kernel import Array
+
+_FLAT = 1e-6  # [m] of height: less is none
+
+
+@dataclass(frozen=True)
+class Slope:
+    """The heights along a path, straight in between.
+
+    Attributes:
+        stations: (k,) [m] along the path, which is laid out in the plane.
+        heights: (k,) [m] there.
+    """
+
+    stations: Array
+    heights: Array
+
+    @classmethod
+    def through(cls, points: Sequence[tuple[float, float]]) -> Slope | None:
+        """The slope through stations and heights [m], in order; None: the path is level."""
+        if not points:
+            return None
+        stations, heights = np.array(points, dtype=np.float64).T
+        if np.ptp(heights) < _FLAT:
+            return None
+        return cls(stations, heights)
+
+    def grade(self, front: float, length: float) -> float:
+        """The angle [rad] at which a body stands, uphill positive: from its rear to its front.
+
+        Args:
+            front: station of its front [m].
+            length: of the body [m]; what stands beyond an end of the path does not count.
+        """
+        first, last = self.stations[0], self.stations[-1]
+        rear = min(max(front - length, first), last)
+        front = min(max(front, first), last)
+        if front - rear < 1e-3:
+            return 0.0
+        low, high = np.interp((rear, front), self.stations, self.heights)
+        return math.atan2(float(high - low), float(front - rear))
+
+    @property
+    def steepest(self) -> float:
+        """The largest angle [rad] between two of its points a metre or more apart."""
+        along, up = np.diff(self.stations), np.diff(self.heights)
+        long = along >= 1.0
+        return float(np.arctan2(np.abs(up[long]), along[long]).max(initial=0.0))

@@ -1,0 +1,47 @@
+"""How high lanes lie: SUMO tells a lane's shape as x, y only, and z at a place on it."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import stations_of
+
+
+class Height(NamedTuple):
+    """A point of the road's profile along a lane path."""
+
+    station: float  # [m] along the lane path
+    z: float  # [m]
+
+
+def heights_of(sumo: Any, lane: str, shape: Array, begin: float, length: float) -> Iterator[Height]:
+    """The heights at the vertices of a lane's centre line.
+
+    SUMO counts places on a lane along the inclined line, a path in the plane: so the vertices are
+    looked up twice, the second time by their distances in space.
+
+    Args:
+        sumo: the libsumo module.
+        lane: its id.
+        shape: (k, 2) [m] its centre line.
+        begin: station [m] at which it begins on the path.
+        length: that it takes up there [m]; more where the path changes lanes.
+    """
+    flat = stations_of(shape)
+    if flat[-1] < 1e-6:  # a lane without length, as inside a small junction
+        yield Height(begin, _z(sumo, lane, np.zeros(1))[0])
+        return
+    z = _z(sumo, lane, flat / flat[-1])
+    inclined = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(flat), np.diff(z)))])
+    z = _z(sumo, lane, inclined / inclined[-1])
+    yield from map(Height, (begin + flat * (length / flat[-1])).tolist(), z.tolist())
+
+
+def _z(sumo: Any, lane: str, shares: Array) -> Array:
+    """(k,) [m] at shares of a lane's length."""
+    edge, _, index = lane.rpartition("_")
+    nominal = float(sumo.lane.getLength(lane))
+    at = (share * nominal for share in shares.tolist())
+    return np.array([sumo.simulation.convert3D(edge, place, int(index))[2] for place in at])
