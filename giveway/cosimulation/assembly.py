@@ -12,12 +12,14 @@ from shapely.ops import substring
 
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.crowd import ENCOUNTERS
+from giveway.cosimulation.arrivals import Arrivals, require_end
 from giveway.cosimulation.departures import Departures
 from giveway.cosimulation.free_drive import free_drive
 from giveway.cosimulation.preflight import CheckedRun, substeps_of
 from giveway.cosimulation.yielding import Yielding
 from giveway.crowd.encounters import FreeDrive
 from giveway.crowd.exchange import Exchange
+from giveway.crowd.flows import Flows, corners
 from giveway.crowd.models import model_of
 from giveway.crowd.priority import PriorityOnFoot
 from giveway.crowd.roster import Roster
@@ -66,6 +68,7 @@ class Parts:
     egos: tuple[WaitingEgo, ...]  # as they were before their departure
     departures: Departures
     roster: Roster
+    arrivals: Arrivals | None  # None: nobody comes in during the run
     crowd_model: PedestrianModel
     exchange: Exchange | None  # None: the scenario's own pedestrians stay SUMO's
     surroundings: Surroundings
@@ -82,6 +85,7 @@ class Parts:
         identified = [model_remark(ego.config, self.time_step) for ego in self.egos]
         remarks += [text for text in identified if text]
         remarks += [f"ego '{ego.id}': {text}" for ego in self.egos for text in ego.vehicle.warnings]
+        remarks += [] if self.arrivals is None else self.arrivals.flows.remarks
         unconnected = 0 if self.exchange is None else self.exchange.unconnected
         if unconnected:
             remarks.append(
@@ -121,7 +125,8 @@ def assemble(
     controllers = [make_controller(ego, time_step) for ego in egos if driven is None]
     imagined = config.ego.route if config.ego.none else ()
     walkers = not zone.nowhere and not (zone.follows_egos and not egos and not imagined)
-    moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
+    added = config.crowd.adds_people
+    moved = bool(egos) or added or walkers
     sumo = stack.enter_context(
         SumoSession(
             files,
@@ -153,6 +158,7 @@ def assemble(
     else:
         departures.run_until_first(goes_on)
     roster = _roster(config, departures, way, sumo, files.net_file, network)
+    arrivals = _arrivals(config, roster, time_step, sumo, files.net_file, network)
     exchange = None
     if network is not None:
         exchange = Exchange(
@@ -163,9 +169,9 @@ def assemble(
             walls=config.crowd.walls,
         )
     yielding = None
-    if config.traffic.yielding and (len(roster) or walkers or egos):
+    if config.traffic.yielding and (added or walkers or egos):
         yielding = Yielding(sumo.vehicles, sumo.step_length, config.traffic.yield_distance)
-    priority = _priority(config, egos, sumo) if len(roster) or walkers else None
+    priority = _priority(config, egos, sumo) if added or walkers else None
     return Parts(
         config=config,
         sumo=sumo,
@@ -177,6 +183,7 @@ def assemble(
         egos=waiting,
         departures=departures,
         roster=roster,
+        arrivals=arrivals,
         crowd_model=model_of(config, time_step, roster, threads=config.crowd.threads),
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
@@ -283,7 +290,30 @@ def _roster(
     if not host:
         host = _host(_middle(config, drive), network or WalkNetwork.read(net_file), net_file)
     sumo.add_persons(spawned.ids, host)
-    return Roster(spawned.ids, _crowd(spawned))
+    return Roster(spawned.ids, _crowd(spawned), spawned.traits)
+
+
+def _arrivals(
+    config: RunConfig,
+    roster: Roster,
+    time_step: float,
+    sumo: SumoSession,
+    net_file: Path,
+    network: WalkNetwork | None,
+) -> Arrivals | None:
+    """The people who are going to come in; None: nobody is."""
+    crowd = config.crowd
+    if not (crowd.flow and crowd.flow_scale):
+        return None
+    require_end(config, sumo.end)
+    files = [file for file in sumo.start.read if file != net_file]
+    prefixes = [free_prefix(f"{flow.name}.", files) for flow in crowd.flow]
+    hosts = [crowd.host_edge] * len(crowd.flow)
+    if not crowd.host_edge:
+        network = network or WalkNetwork.read(net_file)
+        places = [shapely.MultiPoint(corners(flow.start)).centroid for flow in crowd.flow]
+        hosts = [_host((place.x, place.y), network, net_file) for place in places]
+    return Arrivals(Flows(config, roster, prefixes, time_step), sumo, hosts)
 
 
 def _middle(config: RunConfig, drive: FreeDrive | None) -> tuple[float, float]:
