@@ -15,18 +15,17 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from giveway.config import RunConfig
-from giveway.config.flows import FlowConfig, Place, is_line
 from giveway.crowd.groups import facing, of_parties, parties_per_person, party_size
 from giveway.crowd.kinds import desired_speeds, draw_kinds
 from giveway.crowd.roster import ARRIVAL_RADIUS, Roster, Trait
 from giveway.crowd.spawn import has_room
+from giveway.crowd.ways import Gate, LitCrossing, gates_of, somewhere, with_lights
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 
 _STREAM = 0xF70  # tells these draws from others of the same seed
 _TRIES = 20  # places at which a party looks for room, at each of SUMO's instants
 _HOUR = 3600.0  # [s]
-_BODY = 0.27  # [m] from a line's ends; half of a shoulder breadth
 
 
 class Party(NamedTuple):
@@ -37,21 +36,6 @@ class Party(NamedTuple):
     kinds: tuple[str, ...]
     speed: float  # [m/s] at which they like to walk together; of one who is alone the own
     random: np.random.Generator  # of its places
-
-
-class Gate(NamedTuple):
-    """What people come through on the way: a point, or a line that they cross anywhere."""
-
-    middle: Array  # (2,) [m]
-    across: Array  # (2,) unit direction in which a line is crossed; 0, 0: a point
-    half_width: float  # [m] of a line; 0: a point
-
-    def aim(self, place: Array) -> Array:
-        """(2,) [m] where somebody at ``place`` (2,) comes through."""
-        along = np.array([-self.across[1], self.across[0]])
-        room = max(self.half_width - _BODY, 0.0)
-        beside = float(np.clip((place - self.middle) @ along, -room, room))
-        return np.asarray(self.middle + beside * along)
 
 
 class Walk(NamedTuple):
@@ -70,9 +54,12 @@ class Flow:
         config: the run's.
         number: of the flow in it.
         prefix: of its people's ids; a number follows.
+        lit: crossings at which they wait for their light.
     """
 
-    def __init__(self, config: RunConfig, number: int, prefix: str) -> None:
+    def __init__(
+        self, config: RunConfig, number: int, prefix: str, lit: Sequence[LitCrossing]
+    ) -> None:
         flow, crowd = config.crowd.flow[number], config.crowd
         self._flow, self._crowd = flow, crowd
         self._seed = (config.seed, _STREAM, number)
@@ -84,7 +71,7 @@ class Flow:
         self._random = np.random.default_rng(self._seed)
         self._next = flow.begin + self._random.exponential(self._headway)
         self._parties = self._persons = 0
-        self._gates = _gates(flow)
+        self._gates, self._lit = gates_of(flow), lit
         self.waiting: deque[Party] = deque()
 
     def come(self, until: float) -> None:
@@ -106,9 +93,9 @@ class Flow:
 
     def walk(self, party: Party, ahead: float) -> Walk | None:
         """Somewhere for a party to be, ``ahead`` [m] of its start; None: it has arrived there."""
-        place = _somewhere(self._flow.start, party.random)
-        end = _somewhere(self._flow.to, party.random)
-        gates = list(self._gates)
+        place = somewhere(self._flow.start, party.random)
+        end = somewhere(self._flow.to, party.random)
+        gates = list(with_lights(place, self._gates, end, self._lit))
         while True:
             goal = gates[0].aim(place) if gates else end
             way = goal - place
@@ -138,22 +125,29 @@ class Flows:
         roster: the crowd.
         prefixes: of the ids of each flow's people.
         time_step: of the co-simulation [s].
+        lit: crossings at which they wait for their light.
     """
 
     def __init__(
-        self, config: RunConfig, roster: Roster, prefixes: Sequence[str], time_step: float
+        self,
+        config: RunConfig,
+        roster: Roster,
+        prefixes: Sequence[str],
+        time_step: float,
+        lit: Sequence[LitCrossing] = (),
     ) -> None:
         self._config = config
         self._roster = roster
         self._prefixes = tuple(prefixes)
         self._time_step = time_step
-        self._flows = [Flow(config, i, prefix) for i, prefix in enumerate(prefixes)]
+        self._lit = tuple(lit)
+        self._flows = [Flow(config, i, prefix, lit) for i, prefix in enumerate(prefixes)]
         self._step = -1
         self._longest = [0.0] * len(prefixes)  # [s] that anybody waited for room
 
     def afresh(self, roster: Roster) -> Self:
         """The same streams from their beginning, into another crowd."""
-        return type(self)(self._config, roster, self._prefixes, self._time_step)
+        return type(self)(self._config, roster, self._prefixes, self._time_step, self._lit)
 
     def enter(self, step: int) -> list[list[str]]:
         """Let people in at the control step ``step``; for each flow the names of those.
@@ -216,41 +210,6 @@ class Flows:
         return found
 
 
-def _gates(flow: FlowConfig) -> tuple[Gate, ...]:
-    """What a flow comes through, with the lines facing away from where it comes from."""
-    gates = []
-    before = _middle(flow.start)
-    for place in flow.via:
-        middle = _middle(place)
-        across, half = np.zeros(2), 0.0
-        if is_line(place):
-            ends = np.array(place)
-            along = ends[1] - ends[0]
-            length = math.hypot(*along)
-            across, half = np.array([along[1], -along[0]]) / length, length / 2.0
-            across = across if across @ (middle - before) >= 0.0 else -across
-        gates.append(Gate(middle, across, half))
-        before = middle
-    return tuple(gates)
-
-
-def corners(place: Place) -> Array:
-    """(2, 2) [m] the ends of a line, opposite corners of a rectangle; a point twice."""
-    numbers = np.array(place, dtype=np.float64).ravel()
-    return np.resize(numbers, (2, 2))
-
-
-def _middle(place: Place) -> Array:
-    return np.asarray(corners(place).mean(axis=0))
-
-
-def _somewhere(place: Place, random: np.random.Generator) -> Array:
-    """(2,) [m] a point, or one of a line or rectangle, all alike."""
-    low, high = corners(place)
-    share = random.random() if is_line(place) else random.random(2)
-    return np.asarray(low + share * (high - low))
-
-
 def _crowd(walk: Walk, speed: float) -> Crowd:
     """A party as a crowd."""
     count = len(walk.position)
@@ -262,4 +221,5 @@ def _crowd(walk: Walk, speed: float) -> Crowd:
         np.full(count, speed),
         [np.vstack([through, end]) for end in walk.destination],
         passages=[np.vstack([lines, np.zeros(3)])] * count,
+        signals=[np.array([*(gate.signal for gate in walk.gates), -1])] * count,
     )
