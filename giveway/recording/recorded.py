@@ -117,7 +117,7 @@ class RecordedRows:
         rows = self._rows["crowd"]
         rows = rows[: np.searchsorted(rows[:, 0], len(self.time))]  # no copy: it may be most of RAM
         step, pedestrian, x, y, vx, vy = rows.T
-        told = {name: about for name, *about in map(json.loads, self._names["traits"])}
+        told = {name: about for name, *about in map(json.loads, self._names.get("traits", ()))}
         traits = [told.get(name, ("", "")) for name in self._names["pedestrians"]]
         return CrowdTrack(
             step=_indices(step),
