@@ -7,10 +7,11 @@ docs/reproduction.md explains.
 from __future__ import annotations
 
 import math
-from typing import Final, Literal
+from typing import Annotated, Final, Literal
 
-from pydantic import model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
+from giveway.config.flows import FlowConfig, read_flows
 from giveway.config.option import (
     Displacement,
     Preset,
@@ -19,6 +20,7 @@ from giveway.config.option import (
     TextOrNumber,
     option,
 )
+from giveway.config.people import DISTRACTED, SHARE, PeopleConfig
 from giveway.config.plug_in_names import BUNDLED_MODELS, ModelName
 from giveway.config.reasons import GAP, MILLIMETRE
 
@@ -75,6 +77,15 @@ class CrowdConfig(Section):
     )
     desired_speed_max: float = option(
         2.2, "m/s", "its upper truncation", gt=0, le=2.5, least=0.01, because=WALKING
+    )
+    groups: float = option(
+        0.0,
+        None,
+        "share of the added people who walk in groups of two to five; encounters are groups anyway",
+        flag="--groups",
+        ge=0,
+        le=1,
+        because=SHARE,
     )
     acceleration_noise: float = option(
         0.0,
@@ -146,6 +157,37 @@ class CrowdConfig(Section):
         le=256,
         because="more than a machine has processors slow it down",
     )
+
+    flow_scale: float = option(
+        1.0,
+        None,
+        "the rate of every flow times this",
+        flag="--flow-scale",
+        ge=0,
+        le=100,
+        least=1e-3,
+        because="fewer come in no run",
+    )
+    people: PeopleConfig = PeopleConfig()
+    flow: Annotated[tuple[FlowConfig, ...], BeforeValidator(read_flows)] = Field(
+        default=(), description="streams of people, so many an hour from here to there"
+    )
+
+    @property
+    def adds_people(self) -> bool:
+        """Whether giveway adds anybody."""
+        return self.pedestrians > 0 or bool(self.flow and self.flow_scale)
+
+    @property
+    def has_distracted(self) -> bool:
+        """Whether anybody may be distracted."""
+        each = (self.people, *(flow.people for flow in self.flow if flow.people is not None))
+        return any(people.shares[DISTRACTED] for people in each)
+
+    @property
+    def has_groups(self) -> bool:
+        """Whether anybody may walk in a group that stays together."""
+        return self.groups > 0.0 or any(flow.groups for flow in self.flow)
 
     @property
     def plugged_in(self) -> bool:

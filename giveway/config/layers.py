@@ -26,7 +26,7 @@ Location = tuple[str, ...]
 PLUGGED = {socket.options: socket for socket in SOCKETS}
 """The tables whose keys are somebody else's (--set)."""
 
-NO_FLAGS = frozenset({"egos", "measure", *PLUGGED})
+NO_FLAGS = frozenset({"egos", "measure", "flow", *PLUGGED})
 """Lists of tables, and those."""
 
 
@@ -253,14 +253,15 @@ def dump_toml(config: RunConfig) -> str:
     for table in PLUGGED:
         if own := getattr(config, table):
             document.add(table, tomlkit.item(own))
-    if config.egos:
-        tables = tomlkit.aot()
-        for ego in config.egos:
-            tables.append(tomlkit.item(ego))
-        document.add("egos", tables)
-    if config.measure:
-        tables = tomlkit.aot()
-        for measure in config.measure:
-            tables.append(tomlkit.item(measure.settings()))
-        document.add("measure", tables)
+    crowd: Any = document["crowd"]
+    for where, key, entries in (
+        (crowd, "flow", [flow.settings() for flow in config.crowd.flow]),
+        (document, "egos", list(config.egos)),
+        (document, "measure", [measure.settings() for measure in config.measure]),
+    ):
+        if entries:
+            array = tomlkit.aot()
+            for settings in entries:
+                array.append(tomlkit.item(settings))
+            where.add(key, array)
     return with_schema(tomlkit.dumps(document), RUN)

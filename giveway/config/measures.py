@@ -7,7 +7,7 @@ from typing import Any
 import shapely
 from pydantic import Field
 
-from giveway.config.option import Section
+from giveway.config.option import Section, is_number
 
 _KEYS = ("name", "line", "area", "interval")
 _FARTHEST = 1e7  # [m] a coordinate; beyond it a millimetre is lost in rounding
@@ -67,7 +67,7 @@ def _read(entry: dict[str, Any], number: int) -> MeasureConfig:
     if len(kinds) != 1:
         raise ValueError(f"{called}: expected either line or area, a list of points [x, y] in m")
     interval = entry.get("interval", 10.0)
-    if not _is_number(interval) or not 0.5 <= interval <= _FARTHEST:
+    if not is_number(interval) or not 0.5 <= interval <= _FARTHEST:
         raise ValueError(f"{called}: interval = {interval!r}: expected at least 0.5 [s]")
     kind = kinds[0]
     places = _places(entry[kind], f"{called}: {kind}")
@@ -75,16 +75,11 @@ def _read(entry: dict[str, Any], number: int) -> MeasureConfig:
     return MeasureConfig.model_validate({"name": name, kind: places, "interval": float(interval)})
 
 
-def _is_number(value: object) -> bool:
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    return is_number and math.isfinite(value)  # type: ignore[arg-type]
-
-
 def _places(value: Any, called: str) -> tuple[Place, ...]:
     points = value if isinstance(value, list | tuple) else [value]
     for point in points:
         is_pair = isinstance(point, list | tuple) and len(point) == 2
-        if not is_pair or not all(_is_number(c) and abs(c) <= _FARTHEST for c in point):
+        if not is_pair or not all(is_number(c) and abs(c) <= _FARTHEST for c in point):
             raise ValueError(f"{called}: {point!r}: expected a point [x, y] in m")
     return tuple((float(x), float(y)) for x, y in points)
 

@@ -1,5 +1,6 @@
 """How an option is declared: its unit, its bounds, and the values it takes from files and flags."""
 
+import math
 import shlex
 from typing import Annotated, Any, Literal, get_args
 
@@ -68,6 +69,12 @@ def expectation(error: Any, field: FieldInfo) -> str:
     out_of_range = error["type"] in _OUT_OF_RANGE and extra.get("because")
     because = f": {extra['because']}" if out_of_range else ""
     return f"{expected}{unit}{because} ({field.description})"
+
+
+def is_number(value: object) -> bool:
+    """Whether a value of a TOML file is a finite number."""
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and math.isfinite(value)  # type: ignore[arg-type]
 
 
 def _split(value: Any) -> Any:

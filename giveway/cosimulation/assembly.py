@@ -11,35 +11,30 @@ import shapely
 from shapely.ops import substring
 
 from giveway.config import EgoRunConfig, RunConfig
-from giveway.config.crowd import ENCOUNTERS
+from giveway.cosimulation.arrivals import Arrivals
 from giveway.cosimulation.departures import Departures
-from giveway.cosimulation.free_drive import free_drive
+from giveway.cosimulation.people import people_at_first, people_to_come
 from giveway.cosimulation.preflight import CheckedRun, substeps_of
 from giveway.cosimulation.yielding import Yielding
-from giveway.crowd.encounters import FreeDrive
 from giveway.crowd.exchange import Exchange
 from giveway.crowd.models import model_of
 from giveway.crowd.priority import PriorityOnFoot
 from giveway.crowd.roster import Roster
-from giveway.crowd.spawn import PREFIX, Spawned, spawn
 from giveway.crowd.zone import Zone
 from giveway.ego.controllers import make_controller
 from giveway.ego.vehicle import model_remark
 from giveway.ego.waiting import WaitingEgo, make_waiting_ego, recorded_ego
-from giveway.errors import ConfigError, CrowdError, ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.records.tracks import EgoTrack
-from giveway.scenario_files import StartOptions, free_prefix
+from giveway.scenario_files import StartOptions
 from giveway.sumo.session import SumoSession
 from giveway.sumo.types import all_types, inserted_type
 from giveway.walkways import WalkNetwork
 from pedestrian_model import (
     OPEN_GROUND,
-    Crowd,
     PedestrianModel,
-    PedestrianModelError,
     Surroundings,
 )
 from sumo_scenarios import available
@@ -66,6 +61,7 @@ class Parts:
     egos: tuple[WaitingEgo, ...]  # as they were before their departure
     departures: Departures
     roster: Roster
+    arrivals: Arrivals | None  # None: nobody comes in during the run
     crowd_model: PedestrianModel
     exchange: Exchange | None  # None: the scenario's own pedestrians stay SUMO's
     surroundings: Surroundings
@@ -82,6 +78,7 @@ class Parts:
         identified = [model_remark(ego.config, self.time_step) for ego in self.egos]
         remarks += [text for text in identified if text]
         remarks += [f"ego '{ego.id}': {text}" for ego in self.egos for text in ego.warnings]
+        remarks += [] if self.arrivals is None else self.arrivals.flows.remarks
         unconnected = 0 if self.exchange is None else self.exchange.unconnected
         if unconnected:
             remarks.append(
@@ -121,7 +118,8 @@ def assemble(
     controllers = [make_controller(ego, time_step) for ego in egos if driven is None]
     imagined = config.ego.route if config.ego.none else ()
     walkers = not zone.nowhere and not (zone.follows_egos and not egos and not imagined)
-    moved = bool(egos) or bool(config.crowd.pedestrians) or walkers
+    added = config.crowd.adds_people
+    moved = bool(egos) or added or walkers
     sumo = stack.enter_context(
         SumoSession(
             files,
@@ -136,7 +134,8 @@ def assemble(
     way = _imagined_way(config, sumo) if imagined else None
     if way is not None:
         zone = zone.along(_driven_part(way, config))
-    network = WalkNetwork.read(files.net_file) if walkers or config.crowd.walls else None
+    lit = bool(config.crowd.flow) and any(crossing.system for crossing in sumo.lanes.crossings)
+    network = WalkNetwork.read(files.net_file) if walkers or lit or config.crowd.walls else None
     if network is not None:
         zone.require_overlap(network.boundary)
         remarks += _remarks_on(network, files.net_file)
@@ -152,7 +151,8 @@ def assemble(
         departures.forgo(driven.start)
     else:
         departures.run_until_first(goes_on)
-    roster = _roster(config, departures, way, sumo, files.net_file, network)
+    roster = people_at_first(config, departures, way, sumo, files.net_file, network)
+    arrivals = people_to_come(config, roster, time_step, sumo, files.net_file, network)
     exchange = None
     if network is not None:
         exchange = Exchange(
@@ -163,9 +163,9 @@ def assemble(
             walls=config.crowd.walls,
         )
     yielding = None
-    if config.traffic.yielding and (len(roster) or walkers or egos):
+    if config.traffic.yielding and (added or walkers or egos):
         yielding = Yielding(sumo.vehicles, sumo.step_length, config.traffic.yield_distance)
-    priority = _priority(config, egos, sumo) if len(roster) or walkers else None
+    priority = _priority(config, egos, sumo) if added or walkers else None
     return Parts(
         config=config,
         sumo=sumo,
@@ -177,6 +177,7 @@ def assemble(
         egos=waiting,
         departures=departures,
         roster=roster,
+        arrivals=arrivals,
         crowd_model=model_of(config, time_step, roster, threads=config.crowd.threads),
         exchange=exchange,
         surroundings=OPEN_GROUND if exchange is None else exchange.surroundings,
@@ -259,63 +260,3 @@ def _remarks_on(network: WalkNetwork, net_file: Path) -> list[str]:
         "roads and go straight over junctions; netconvert's --sidewalks.guess, --walkingareas and "
         "--crossings.guess add them"
     ]
-
-
-def _roster(
-    config: RunConfig,
-    departures: Departures,
-    way: EgoPath | None,
-    sumo: SumoSession,
-    net_file: Path,
-    network: WalkNetwork | None,
-) -> Roster:
-    """The pedestrians that giveway adds."""
-    if not config.crowd.pedestrians:
-        return Roster()
-    prefix = free_prefix(PREFIX, (file for file in sumo.start.read if file != net_file))
-    way = departures.first_path or way
-    drive = free_drive(config, way) if config.crowd.sampler == ENCOUNTERS else None
-    spawned = spawn(config.crowd, way, config.seed, prefix, drive)
-    for name in departures.names:
-        if name in spawned.ids:
-            raise ConfigError(f"--ego-id '{name}': a pedestrian has this id; choose another")
-    host = config.crowd.host_edge
-    if not host:
-        host = _host(_middle(config, drive), network or WalkNetwork.read(net_file), net_file)
-    sumo.add_persons(spawned.ids, host)
-    return Roster(spawned.ids, _crowd(spawned))
-
-
-def _middle(config: RunConfig, drive: FreeDrive | None) -> tuple[float, float]:
-    """Where the added people are about: x, y [m] of the middle of their area or of the drive."""
-    if drive is not None:
-        pose = drive.path.pose(drive.departure + drive.distance / 2.0)
-        return pose.x, pose.y
-    x_min, y_min, x_max, y_max = config.crowd.spawn_area
-    return (x_min + x_max) / 2, (y_min + y_max) / 2
-
-
-def _host(place: tuple[float, float], network: WalkNetwork, net_file: Path) -> str:
-    """The edge for pedestrians that is nearest to a place x, y [m]."""
-    lane = network.nearest_lane(*place)
-    if lane is None:
-        raise ScenarioError(
-            f"{net_file}: no lane for pedestrians, where SUMO could register the added ones; "
-            "build the network with netconvert --sidewalks.guess, or add none (--pedestrians 0)"
-        )
-    return lane.edge
-
-
-def _crowd(spawned: Spawned) -> Crowd:
-    """The added pedestrians, who walk already: at the desired speed, towards the destination."""
-    route = spawned.destination - spawned.position
-    direction = route / np.maximum(np.hypot(route[:, 0], route[:, 1]), 1e-9)[:, None]
-    try:
-        return Crowd.create(
-            spawned.position,
-            spawned.desired_speed[:, None] * direction,
-            spawned.desired_speed,
-            [destination[None] for destination in spawned.destination],
-        )
-    except PedestrianModelError as error:
-        raise CrowdError(f"pedestrians cannot be placed: {error}") from error

@@ -29,6 +29,9 @@ class Followed:
     Attributes:
         crowd: the people that giveway adds, as they began.
         names: their ids.
+        traits: what sets them apart.
+        flows: of those who come in during the run; None: nobody does.
+        substeps: control steps per SUMO step.
         secluded: nobody but they and the egos is ever there.
         walks: how they get on.
         traffic: what the background vehicles do.
@@ -41,6 +44,9 @@ class Followed:
         self._parts = parts
         self.crowd = parts.roster.crowd.copy()
         self.names = tuple(parts.roster.ids)
+        self.traits = dict(parts.roster.traits)
+        self.flows = None if parts.arrivals is None else parts.arrivals.flows
+        self.substeps = parts.substeps
         self.secluded = parts.secluded
         self.walks = WalkLog(parts.time_step)
         self.traffic = TrafficNotes(parts.sumo)
@@ -91,7 +97,7 @@ class Followed:
             return True
         self.last = step + math.ceil(LONGEST / parts.time_step)
         if self.secluded:
-            alone = CrowdAlone(parts.roster, walking, self.walks, step)
+            alone = CrowdAlone(parts.roster, walking, self.walks, step, self.flows, parts.substeps)
             alone.go_on(self.last, self.walks.near, heartbeat)
             return True
         for name in self._parked:

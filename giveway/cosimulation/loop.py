@@ -192,9 +192,10 @@ class Loop:
     def _nobody_comes(self) -> bool:
         """Whether a scenario without an end has nobody left, and no ego is to be inserted."""
         sumo, waiting = self._parts.sumo, self._parts.departures.waiting
-        return (
-            sumo.end == np.inf and not sumo.expects_more and all(ego.taken_over for ego in waiting)
-        )
+        arrivals = self._parts.arrivals
+        if sumo.end < np.inf or sumo.expects_more or not all(ego.taken_over for ego in waiting):
+            return False
+        return arrivals is None or not arrivals.flows.keeps_coming
 
     def _progress(self, acting: str) -> Progress:
         elapsed, pedestrians = self._k * self._time_step, len(self._roster)
@@ -221,6 +222,8 @@ class Loop:
                     self.followed.walks.add_way(self._ways[-1])
             if arrivals and parts.config.crowd.pedestrians and not parts.departures.waiting:
                 self._remark_on_spawn_area()
+        if parts.arrivals is not None:
+            parts.arrivals.update(self._k)
         if parts.exchange is not None:
             parts.exchange.update(self._places())
         if parts.priority is not None:
@@ -296,7 +299,7 @@ class Loop:
         """Record the pedestrians near an ego, and from time to time all of them."""
         roster = self._roster
         if len(roster.ids) > self._named:
-            self._recorder.name_pedestrians(roster.ids[self._named :])
+            self._recorder.name_pedestrians(roster.ids[self._named :], roster.traits)
             self._named = len(roster.ids)
         if self._law.ruled:
             self._law.walks(roster)

@@ -107,6 +107,8 @@ class ReplayedLoop:
         for ego in parts.departures.due():
             self._egos.append(ego)
             _recall(ego)
+        if parts.arrivals is not None:
+            parts.arrivals.update(self._k)
         if parts.exchange is not None:
             parts.exchange.update(self._places())
         if parts.priority is not None:

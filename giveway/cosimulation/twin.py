@@ -33,7 +33,6 @@ from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.walk_log import WalkLog
 from giveway.records.walks import WalkTrack
-from pedestrian_model import Crowd
 
 _KEPT = 8  # crowds among themselves that a process remembers
 _alone: OrderedDict[bytes, CrowdAlone] = OrderedDict()
@@ -126,24 +125,27 @@ def _again(
 
 def _crowd_alone(config: RunConfig, followed: Followed, time_step: float) -> CrowdAlone:
     """The crowd of a run among itself, as far as it has been asked for already."""
-    key = _key(config, followed.crowd, followed.names, time_step)
+    key = _key(config, followed, time_step)
     if key in _alone:
         _alone.move_to_end(key)
         return _alone[key]
-    roster = Roster(followed.names, followed.crowd.copy())
+    roster = Roster(followed.names, followed.crowd.copy(), followed.traits)
     walks = WalkLog(time_step, lambda _: True)
-    model = model_of(config, time_step, roster)
-    alone = _alone[key] = CrowdAlone(roster, Walking(config, model, roster, walks), walks)
+    walking = Walking(config, model_of(config, time_step, roster), roster, walks)
+    flows = None if followed.flows is None else followed.flows.afresh(roster)
+    alone = CrowdAlone(roster, walking, walks, flows=flows, every=followed.substeps)
+    _alone[key] = alone
     if len(_alone) > _KEPT:
         _alone.popitem(last=False)
     return alone
 
 
-def _key(config: RunConfig, crowd: Crowd, names: tuple[str, ...], time_step: float) -> bytes:
+def _key(config: RunConfig, followed: Followed, time_step: float) -> bytes:
     """A hash of all that the crowd among itself depends on."""
     digest = hashlib.sha256()
-    settings = config.crowd
+    settings, crowd = config.crowd, followed.crowd
     noise = settings.acceleration_noise
+    drawn = (settings, config.seed, followed.substeps) if settings.flow else None
     for part in (
         parameters_of(settings.preset),
         (
@@ -157,7 +159,9 @@ def _key(config: RunConfig, crowd: Crowd, names: tuple[str, ...], time_step: flo
             noise,
             config.seed if noise else None,
         ),
-        names,
+        followed.names,
+        sorted(followed.traits.items()),
+        drawn,
     ):
         digest.update(repr(part).encode())
     for array in (*crowd.state, *crowd.wishes):

@@ -26,9 +26,6 @@ class Disturbance:
     def __init__(self, model: PedestrianModel, deviation: float, seed: int) -> None:
         self._model = model
         self._deviation = deviation
-        self._time_step = model.time_step
-        self._fastest = model.parameters.max_speed
-        self._most = model.parameters.max_acceleration * model.time_step  # [m/s] in a step
         self._random = np.random.default_rng((seed, _STREAM))
 
     def advance(
@@ -51,27 +48,30 @@ class Disturbance:
         before = crowd.velocity.copy()
         self._model.advance(crowd, vehicles, surroundings)
         push = planar_noise(self._random, known)[present]
-        push *= self._deviation * self._time_step
-        self.push(crowd, before, push)
+        push *= self._deviation * self._model.time_step
+        pushed(self._model, crowd, before, push)
 
-    def push(self, crowd: Crowd, before: Array, push: Array) -> None:
-        """Change the step's velocities by ``push`` (n, 2) [m/s], within the limits.
 
-        The whole change of the step, the model's own and the random one, keeps a_max, and the
-        result v_max. Taking a velocity back to v_max shortens its way from ``before``, which lies
-        within, so the second limit keeps the first. Positions follow: half the added velocity
-        times the step, as constant acceleration has it.
+def pushed(model: PedestrianModel, crowd: Crowd, before: Array, push: Array) -> None:
+    """Change the velocities after a model's step by ``push`` (n, 2) [m/s], within its limits.
 
-        Args:
-            crowd: after its step.
-            before: (n, 2) [m/s] its velocities before.
-            push: (n, 2) [m/s] to be added.
-        """
-        change = crowd.velocity + push - before
-        wanted = before + change * _within(change, self._most)
-        wanted *= _within(wanted, self._fastest)
-        crowd.position[:] += 0.5 * self._time_step * (wanted - crowd.velocity)
-        crowd.velocity[:] = wanted
+    The whole change of the step, the model's own and the added one, keeps a_max, and the result
+    v_max. Taking a velocity back to v_max shortens its way from ``before``, which lies within, so
+    the second limit keeps the first. Positions follow: half the added velocity times the step, as
+    constant acceleration has it.
+
+    Args:
+        model: whose step it was.
+        crowd: after its step.
+        before: (n, 2) [m/s] its velocities before.
+        push: (n, 2) [m/s] to be added.
+    """
+    most = model.parameters.max_acceleration * model.time_step  # [m/s] in a step
+    change = crowd.velocity + push - before
+    wanted = before + change * _within(change, most)
+    wanted *= _within(wanted, model.parameters.max_speed)
+    crowd.position[:] += 0.5 * model.time_step * (wanted - crowd.velocity)
+    crowd.velocity[:] = wanted
 
 
 def disturbance_of(config: RunConfig, model: PedestrianModel) -> Disturbance | None:

@@ -1,23 +1,21 @@
 """Crowds that an ego meets: groups from both sides, timed against its drive with nobody about.
 
-Sizes and formation of groups: Moussaïd, Perozo, Garnier, Helbing & Theraulaz, "The walking
-behaviour of pedestrian social groups and its impact on crowd dynamics", PLoS ONE 5(4), 2010. The
+Sizes and formation of groups are those of groups.py, also for those who walk alone. The
 distributions, and what comes of them: docs/encounter.md.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from giveway.config.crowd import CrowdConfig
+from giveway.crowd.groups import LARGEST, RATE, formation
+from giveway.crowd.kinds import desired_speeds
 from giveway.errors import CrowdError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 
-_GROUP_RATE = 1.11  # of the zero-truncated Poisson distribution of sizes (population B)
-_LARGEST_GROUP = 5
-_ABREAST = 3  # more walk in two rows
-_BESIDE, _BEHIND = 0.75, 1.0  # [m] between neighbours in a row, and between rows
 _JITTER = 0.1  # [m] on each axis about the place in the formation
 _SKEW, _MOST_SKEW = 10.0, 25.0  # [deg] of a group's heading about the square crossing
 _FIRST, _LAST = 12.0, 4.0  # [m] of the way before the first, and behind the last crossing place
@@ -47,17 +45,19 @@ class FreeDrive:
 
 
 def meet(
-    config: CrowdConfig, drive: FreeDrive, random: np.random.Generator
-) -> tuple[Array, Array, Array]:
+    config: CrowdConfig, drive: FreeDrive, kinds: Sequence[str], random: np.random.Generator
+) -> tuple[Array, Array, Array, list[int]]:
     """Draw ``config.pedestrians`` people in groups that cross the way of a free drive.
 
     Args:
         config: how many, how fast, and how far apart they start.
         drive: that they meet.
+        kinds: (n,) of people they are.
         random: of the draws.
 
     Returns:
-        (n, 2) [m] where they start, (n, 2) [m] their destinations, (n,) [m/s] desired speeds.
+        (n, 2) [m] where they start, (n, 2) [m] their destinations, (n,) [m/s] desired speeds, and
+        the sizes of their groups.
 
     Raises:
         CrowdError: the drive is too short, or there is no room for so many.
@@ -76,7 +76,8 @@ def meet(
     speeds: list[float] = []
     for size, side, meets in zip(sizes, sides, meeting, strict=True):
         for _ in range(_ATTEMPTS):
-            speed = _speed(config, random)
+            first = len(position)
+            speed = _speed(config, kinds[first : first + int(size)], random)
             starts, ends = _group(drive, int(size), side, speed, bool(meets), random)
             if _has_room(starts, position, config.minimum_spacing):
                 break
@@ -88,27 +89,23 @@ def meet(
             )
         position, destination = np.vstack([position, starts]), np.vstack([destination, ends])
         speeds += [speed] * int(size)
-    return position, destination, np.array(speeds)
+    return position, destination, np.array(speeds), sizes
 
 
 def _sizes(people: int, random: np.random.Generator) -> list[int]:
     """Sizes of groups, zero-truncated Poisson up to the largest; the last is what is left."""
     sizes: list[int] = []
     while (left := people - sum(sizes)) > 0:
-        size = int(random.poisson(_GROUP_RATE))
-        if 1 <= size <= _LARGEST_GROUP:
+        size = int(random.poisson(RATE))
+        if 1 <= size <= LARGEST:
             sizes.append(min(size, left))
     return sizes
 
 
-def _speed(config: CrowdConfig, random: np.random.Generator) -> float:
-    """The desired speed [m/s] that the members of a group share: normal, redrawn within bounds."""
-    low, high = config.desired_speed_min, config.desired_speed_max
-    for _ in range(_ATTEMPTS):
-        speed = float(random.normal(config.desired_speed_mean, config.desired_speed_sd))
-        if low <= speed <= high:
-            return speed
-    return min(max(config.desired_speed_mean, low), high)
+def _speed(config: CrowdConfig, kinds: Sequence[str], random: np.random.Generator) -> float:
+    """The desired speed [m/s] that the members of a group share; of a mixed one the slowest's."""
+    members = kinds if any(kinds) else kinds[:1]
+    return float(desired_speeds(config, members, random).min())
 
 
 def _group(
@@ -128,22 +125,9 @@ def _group(
     heading = pose.heading + side * np.pi / 2.0 + np.radians(skew)
     ahead = np.array([np.cos(heading), np.sin(heading)])
     beside = np.array([-ahead[1], ahead[0]])
-    place = np.array([pose.x, pose.y]) + _formation(size) @ np.vstack([beside, ahead])
+    place = np.array([pose.x, pose.y]) + formation(size) @ np.vstack([beside, ahead])
     place += random.uniform(-_JITTER, _JITTER, (size, 2))
     return place - speed * arrival * ahead, place + _BEYOND * ahead
-
-
-def _formation(size: int) -> Array:
-    """(size, 2) [m] beside and ahead of the middle: abreast, the larger ones in two rows."""
-    front = size if size <= _ABREAST else (size + 1) // 2
-    rows = [front, size - front]
-    return np.array(
-        [
-            ((i - (row - 1) / 2.0) * _BESIDE, -number * _BEHIND)
-            for number, row in enumerate(rows)
-            for i in range(row)
-        ]
-    )
 
 
 def _has_room(starts: Array, others: Array, spacing: float) -> bool:

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig, RunConfig
 from giveway.config.presets import parameters_of
+from giveway.crowd.attention import Inattentive
+from giveway.crowd.cohesion import BY_FORCES, Cohesive
 from giveway.crowd.roster import Roster
 from giveway.errors import CrowdError
 from giveway.plug_ins.finding import load_class
@@ -45,6 +47,19 @@ def model_of(
         ControlError: the model is not installed.
         CrowdError: somebody else's model cannot be made.
     """
+    crowd = config.crowd
+    model = _plain_model_of(config, time_step, roster, threads)
+    if crowd.has_distracted and not crowd.plugged_in:
+        model = Inattentive(model, lambda: roster.distracted)
+    if crowd.has_groups and crowd.model in BY_FORCES:
+        model = Cohesive(model, lambda: roster.groups)
+    return model
+
+
+def _plain_model_of(
+    config: RunConfig, time_step: float, roster: Roster, threads: int
+) -> PedestrianModel:
+    """The model itself, in which all people are alike."""
     crowd = config.crowd
     parameters = parameters_of(crowd.preset)
     if crowd.plugged_in or crowd.model in JUPEDSIM_MODELS:

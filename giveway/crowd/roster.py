@@ -2,17 +2,28 @@
 
 import hashlib
 import itertools
-from collections.abc import Iterable, Sequence
-from typing import Protocol
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from giveway.config import RunConfig
+from giveway.config.people import DISTRACTED
 from giveway.crowd.disturbance import disturbance_of
 from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, arrived
 
 ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
+
+
+class Trait(NamedTuple):
+    """What sets somebody apart that giveway adds."""
+
+    kind: str = ""  # as in kinds.py; empty: of none
+    group: str = ""  # the id of its first member; empty: alone
+
+
+_NOTHING = Trait()
 
 
 class Roster:
@@ -25,17 +36,26 @@ class Roster:
         names: the ids of each of them.
         newcomers: indices of those who joined since somebody last emptied the list.
         added: ids of those that giveway added; the others are the scenario's own.
+        traits: of those who have any, by their ids.
     """
 
-    def __init__(self, ids: Sequence[str] = (), crowd: Crowd | None = None) -> None:
+    def __init__(
+        self,
+        ids: Sequence[str] = (),
+        crowd: Crowd | None = None,
+        traits: Mapping[str, Trait] | None = None,
+    ) -> None:
         self.ids: list[str] = list(ids)
         self.crowd = Crowd.empty() if crowd is None else crowd
         self.present = np.arange(len(self.ids))
         self.names = list(ids)
-        self.added = frozenset(ids)
+        self.added = set(ids)
+        self.traits = dict(traits or {})
         self.newcomers = list(range(len(self.ids)))
         self._index = {name: i for i, name in enumerate(self.ids)}
         self._keys: list[int] = []
+        self._distracted: list[bool] = []
+        self._groups: list[int] = []
         self._counts = {"taken_over": 0, "handed_back": 0, "arrived": 0, "continued": 0}
 
     def __len__(self) -> int:
@@ -55,10 +75,39 @@ class Roster:
             self._keys.append(int.from_bytes(digest, "big") >> 1)
         return np.array(self._keys, dtype=np.int64)[self.present]
 
+    @property
+    def distracted(self) -> NDArray[np.bool_]:
+        """(n,) who of them is."""
+        self._learn()
+        return np.array(self._distracted, dtype=np.bool_)[self.present]
+
+    @property
+    def groups(self) -> NDArray[np.int64]:
+        """(n,) the number of each one's group; -1: alone."""
+        self._learn()
+        return np.array(self._groups, dtype=np.int64)[self.present]
+
+    def _learn(self) -> None:
+        """Note the traits of those who are new."""
+        for name in itertools.islice(self.ids, len(self._groups), None):
+            trait = self.traits.get(name, _NOTHING)
+            self._distracted.append(trait.kind == DISTRACTED)
+            self._groups.append(self._index[trait.group] if trait.group else -1)
+
+    def add(self, names: Sequence[str], crowd: Crowd, traits: Mapping[str, Trait]) -> None:
+        """Let people in that giveway adds during the run."""
+        self.added.update(names)
+        self.traits |= traits
+        self._join(names, crowd)
+
     def take_in(self, names: Iterable[str], crowd: Crowd) -> None:
         """Add walkers of the scenario; who comes back keeps the index."""
-        indices = []
         names = list(names)
+        self._join(names, crowd)
+        self._counts["taken_over"] += len(names)
+
+    def _join(self, names: Sequence[str], crowd: Crowd) -> None:
+        indices = []
         for name in names:
             if name not in self._index:
                 self._index[name] = len(self.ids)
@@ -68,7 +117,6 @@ class Roster:
         self.newcomers += indices
         self.names += names
         self.crowd = self.crowd.concatenate(crowd) if len(self.crowd) else crowd
-        self._counts["taken_over"] += len(indices)
 
     def release(self, gone: NDArray[np.bool_]) -> list[str]:
         """Drop those where ``gone`` (n,) is true from the crowd; their ids."""

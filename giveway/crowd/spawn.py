@@ -1,17 +1,22 @@
 """The pedestrians of a run, drawn from its seed: where each starts, goes, and how fast."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from giveway.config.crowd import ENCOUNTERS, CrowdConfig
 from giveway.crowd.encounters import FreeDrive, meet
+from giveway.crowd.groups import facing, of_parties, party_sizes, slowest
+from giveway.crowd.kinds import desired_speeds, draw_kinds
+from giveway.crowd.roster import Trait
 from giveway.errors import CrowdError
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, Pose
 
-_REDRAWS = 1_000
 _ATTEMPTS_PER_PERSON = 2_000  # rejection sampling up to a third of the densest packing
+
+_KINDS = 0x41D  # tells draws of who they are from others of the same seed
 
 PREFIX = "ped"  # of the ids of the pedestrians that giveway adds
 
@@ -24,6 +29,14 @@ class Spawned:
     position: Array  # (n, 2) [m]
     destination: Array  # (n, 2) [m]
     desired_speed: Array  # (n,) [m/s]
+    kinds: tuple[str, ...]  # (n,) as in kinds.py; empty: of no kind
+    groups: tuple[str, ...]  # (n,) the id of the first in each one's group; empty: alone
+
+    @property
+    def traits(self) -> dict[str, Trait]:
+        """Who of them is what, by their ids."""
+        told = zip(self.ids, self.kinds, self.groups, strict=True)
+        return {name: Trait(kind, group) for name, kind, group in told if kind or group}
 
 
 def spawn(
@@ -37,7 +50,7 @@ def spawn(
 
     They start uniform in the spawn area; with the sampler ``encounters`` so as to meet ``drive``.
 
-    With ``two_sided`` every second one stands on, and walks to, the mirror image about the ego's
+    With ``two_sided`` every second party stands on, and walks to, the mirror image about the ego's
     path where it passes the spawn area. The first k of a larger crowd of the same seed are not the
     same people: the spacing rule couples them.
 
@@ -54,13 +67,15 @@ def spawn(
     """
     random = np.random.default_rng(seed)
     ids = tuple(f"{prefix}{i}" for i in range(config.pedestrians))
+    kinds = draw_kinds(config.people, len(ids), np.random.default_rng((seed, _KINDS)))
     if config.sampler == ENCOUNTERS:
         if drive is None:
             raise CrowdError(
                 "--sampler encounters: people meet an ego on its route, and there is none; name "
                 "one (--ego-route)"
             )
-        return Spawned(ids, *meet(config, drive, random))
+        position, destination, desired_speed, sizes = meet(config, drive, kinds, random)
+        return Spawned(ids, position, destination, desired_speed, kinds, of_parties(sizes, ids))
     axis = None
     if config.two_sided:
         if path is None:
@@ -68,13 +83,15 @@ def spawn(
                 "--two-sided: mirrors about the way of an inserted ego; name it (--ego-route)"
             )
         axis = _axis(config, path)
-    position = _scatter(config, random, axis)
-    desired_speed = _truncated_normal(config, random)
+    sizes = party_sizes(len(ids), config.groups, random)
+    position = _scatter(config, sizes, random, axis)
+    desired_speed = slowest(desired_speeds(config, kinds, random), sizes)
     destination = position + np.asarray(config.walk)
     if axis is not None:
-        unmirrored = _mirror(position[1::2], axis)
-        destination[1::2] = _mirror(unmirrored + np.asarray(config.walk), axis)
-    return Spawned(ids, position, destination, desired_speed)
+        across = np.repeat(np.arange(len(sizes)) % 2 == 1, sizes)
+        unmirrored = _mirror(position[across], axis)
+        destination[across] = _mirror(unmirrored + np.asarray(config.walk), axis)
+    return Spawned(ids, position, destination, desired_speed, kinds, of_parties(sizes, ids))
 
 
 def _axis(config: CrowdConfig, path: EgoPath) -> Pose:
@@ -84,22 +101,28 @@ def _axis(config: CrowdConfig, path: EgoPath) -> Pose:
     return path.pose(float(stations[0]))
 
 
-def _scatter(config: CrowdConfig, random: np.random.Generator, axis: Pose | None) -> Array:
-    """(n, 2) places, none closer to another than the minimum spacing.
+def _scatter(
+    config: CrowdConfig, sizes: Sequence[int], random: np.random.Generator, axis: Pose | None
+) -> Array:
+    """(n, 2) places of parties, no two people of different ones closer than the minimum spacing.
 
-    All in the spawn area, or every second one in its mirror image about ``axis``.
+    All in the spawn area, or every second party in its mirror image about ``axis``.
     """
     x_min, y_min, x_max, y_max = config.spawn_area
     low, high = np.array([x_min, y_min]), np.array([x_max, y_max])
     places = np.empty((config.pedestrians, 2))
-    for count in range(config.pedestrians):
+    count = 0
+    for number, size in enumerate(sizes):
+        shape = facing(size, np.asarray(config.walk))
         for _ in range(_ATTEMPTS_PER_PERSON):
-            candidate = random.uniform(low, high)
-            if axis is not None and count % 2:
-                candidate = _mirror(candidate[None], axis)[0]
-            offsets = places[:count] - candidate
-            if not (np.einsum("ij,ij->i", offsets, offsets) < config.minimum_spacing**2).any():
-                places[count] = candidate
+            candidate = random.uniform(low, high) + shape
+            if size > 1 and not ((candidate >= low) & (candidate <= high)).all():
+                continue
+            if axis is not None and number % 2:
+                candidate = _mirror(candidate, axis)
+            if has_room(candidate, places[:count], config.minimum_spacing):
+                places[count : count + size] = candidate
+                count += size
                 break
         else:
             area = (x_max - x_min) * (y_max - y_min)
@@ -111,17 +134,10 @@ def _scatter(config: CrowdConfig, random: np.random.Generator, axis: Pose | None
     return places
 
 
-def _truncated_normal(config: CrowdConfig, random: np.random.Generator) -> Array:
-    """(n,) desired speeds [m/s]: normal, redrawn until inside the bounds."""
-    mean, deviation = config.desired_speed_mean, config.desired_speed_sd
-    low, high = config.desired_speed_min, config.desired_speed_max
-    speeds = random.normal(mean, deviation, config.pedestrians)
-    for _ in range(_REDRAWS):
-        outside = (speeds < low) | (speeds > high)
-        if not outside.any():
-            return speeds
-        speeds[outside] = random.normal(mean, deviation, int(outside.sum()))
-    return np.clip(speeds, low, high)  # bounds so narrow that hardly any draw falls between them
+def has_room(places: Array, others: Array, spacing: float) -> bool:
+    """Whether each of ``places`` (k, 2) keeps ``spacing`` [m] from all ``others`` (n, 2)."""
+    offsets = others[None] - places[:, None]
+    return not (np.einsum("ijk,ijk->ij", offsets, offsets) < spacing**2).any()
 
 
 def _mirror(points: Array, axis: Pose) -> Array:

@@ -25,6 +25,12 @@ class PedestrianRow:
     """The columns of the table; nan (an empty cell) says that the event never occurred."""
 
     id: Annotated[str, Quantity(None, "the pedestrian")]
+    kind: Annotated[
+        str, Quantity(None, "adult, child, elderly, distracted, hurried; empty: not told apart")
+    ]
+    group: Annotated[
+        str, Quantity(None, "id of the first in the group it walks in; empty: it walks alone")
+    ]
     first_seen: Annotated[float, Quantity("s", "time of its first record")]
     last_seen: Annotated[float, Quantity("s", "time of its last record")]
     path_length: Annotated[float, Quantity("m", "length of the path it walked")]
@@ -158,6 +164,8 @@ def _walks(
         mean_speed = np.where(last_seen > first_seen, path / (last_seen - first_seen), np.nan)
     return {
         "id": list(crowd.ids),
+        "kind": list(crowd.kinds) or [""] * len(crowd.ids),
+        "group": list(crowd.groups) or [""] * len(crowd.ids),
         "first_seen": first_seen,
         "last_seen": last_seen,
         "path_length": path,

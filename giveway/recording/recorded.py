@@ -117,6 +117,8 @@ class RecordedRows:
         rows = self._rows["crowd"]
         rows = rows[: np.searchsorted(rows[:, 0], len(self.time))]  # no copy: it may be most of RAM
         step, pedestrian, x, y, vx, vy = rows.T
+        told = {name: about for name, *about in map(json.loads, self._names.get("traits", ()))}
+        traits = [told.get(name, ("", "")) for name in self._names["pedestrians"]]
         return CrowdTrack(
             step=_indices(step),
             pedestrian=_indices(pedestrian),
@@ -125,6 +127,8 @@ class RecordedRows:
             vx=np.ascontiguousarray(vx),
             vy=np.ascontiguousarray(vy),
             ids=self._names["pedestrians"],
+            kinds=tuple(kind for kind, _ in traits),
+            groups=tuple(group for _, group in traits),
         )
 
     def background_track(self) -> BackgroundTrack:

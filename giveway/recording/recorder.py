@@ -44,6 +44,7 @@ class Recorder:
         self._words = names("words")
         self._egos = names("egos")
         self._pedestrians = names("pedestrians")
+        self._traits = names("traits")  # pedestrian, kind, group, as JSON
         self._vehicles = names("vehicles")
         self._keys: dict[tuple[str, str], int] = {}
         self._steps = 0
@@ -53,10 +54,19 @@ class Recorder:
         self._clock.block(1)[0, 0] = time
         self._steps += 1
 
-    def name_pedestrians(self, ids: Sequence[str]) -> None:
-        """Note the names of pedestrians, in the order of their indices."""
+    def name_pedestrians(
+        self, ids: Sequence[str], traits: Mapping[str, tuple[str, str]] | None = None
+    ) -> None:
+        """Note the names of pedestrians, in the order of their indices.
+
+        Args:
+            ids: of them.
+            traits: the kind and the group of those who have any.
+        """
         for name in ids:
             self._pedestrians.index(name)
+            if traits and name in traits:
+                self._traits.index(json.dumps([name, *traits[name]]))
 
     def drive(self, ego_id: str, shape: VehicleShape, goal: float) -> None:
         """Note an ego that departs: its body and the distance [m] it is to drive."""
@@ -202,6 +212,7 @@ class Recorder:
                 "words": self._words.names,
                 "egos": self._egos.names,
                 "pedestrians": self._pedestrians.names,
+                "traits": self._traits.names,
                 "vehicles": self._vehicles.names,
             },
         )

@@ -47,6 +47,8 @@ class CrowdTrack:
     vx: NDArray[np.float64]  # (R,) [m/s]
     vy: NDArray[np.float64]  # (R,) [m/s]
     ids: tuple[str, ...]  # one per pedestrian
+    kinds: tuple[str, ...] = ()  # likewise, as "elderly"; nothing: nobody is of any
+    groups: tuple[str, ...] = ()  # likewise, the id of its first member; nothing: there are none
 
     def during(self, first: int, instants: int) -> CrowdTrack:
         """The records of ``instants`` control instants from ``first`` on, which becomes step 0."""
@@ -61,6 +63,8 @@ class CrowdTrack:
             vx=self.vx[a:b],
             vy=self.vy[a:b],
             ids=self.ids,
+            kinds=self.kinds,
+            groups=self.groups,
         )
 
 

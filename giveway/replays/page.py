@@ -207,7 +207,7 @@ def _walk_unrecorded(run: RunFolder) -> bool:
     """Whether SUMO moves persons without a record: those handed back; all, without an ego."""
     counts = run.manifest.get("pedestrians")
     handed_back = isinstance(counts, dict) and bool(counts.get("handed_back"))
-    return handed_back or not (run.egos or run.config.crowd.pedestrians)
+    return handed_back or not (run.egos or run.config.crowd.adds_people)
 
 
 def _road(run: RunFolder, frame: Frame) -> dict[str, Any]:

@@ -155,7 +155,7 @@ def _require_people(cell: Cell, config: RunConfig, scenario: Scenario) -> None:
         ConfigError: neither giveway nor the scenario has anybody walk in this one.
     """
     varied = any("crowd" in level.settings for level in cell.levels.values())
-    if not varied or config.crowd.pedestrians > 0:
+    if not varied or config.crowd.adds_people:
         return
     if not declares_people(scenario_inputs(scenario).values()):
         raise ConfigError(

@@ -100,9 +100,8 @@ class SumoSession:
         self.junctions = Junctions(self._sumo, scenario.net_file, self.lanes)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())
-        self._just_added: dict[str, None] = {}  # they depart with the next step
-        self._host_lane: str | None = None
-        self._added_at = 0.0
+        self._just_added: dict[str, tuple[float, str | None]] = {}  # when, on which lane
+        self._host_lanes: dict[str, str | None] = {}  # by edge
 
     def _load(self) -> None:
         self._stderr = NativeStderr(self._native_log)
@@ -176,20 +175,23 @@ class SumoSession:
 
     def add_persons(self, ids: Sequence[str], host_edge: str) -> None:
         """Add persons who live on ``host_edge``; they appear with the next :meth:`mirror`."""
-        if host_edge not in self._sumo.edge.getIDList():
-            raise ScenarioError(
-                f"{self._config_file}: host edge '{host_edge}' for the pedestrians does not exist; "
-                "name an edge that allows pedestrians with [crowd] host_edge"
-            )
+        if host_edge not in self._host_lanes:
+            self._host_lanes[host_edge] = self._host_lane(host_edge)
         taken = set(self._sumo.person.getIDList()).intersection(ids)
         if taken:
             raise ScenarioError(f"person id '{min(taken)}': the scenario already has this person")
         for name in ids:
             self.call(self._sumo.person.add, name, host_edge, 0.0, _DEPART_NOW, PEDESTRIAN_TYPE)
             self.call(self._sumo.person.appendWalkingStage, name, [host_edge], -1.0)
-        self._just_added = dict.fromkeys(ids)
-        self._added_at = self.time
-        self._host_lane = FootPaths(self._sumo).lane(host_edge)
+            self._just_added[name] = self.time, self._host_lanes[host_edge]
+
+    def _host_lane(self, host_edge: str) -> str | None:
+        if host_edge not in self._sumo.edge.getIDList():
+            raise ScenarioError(
+                f"{self._config_file}: host edge '{host_edge}' for the pedestrians does not exist; "
+                "name an edge that allows pedestrians with [crowd] host_edge"
+            )
+        return FootPaths(self._sumo).lane(host_edge)
 
     def remove_persons(self, ids: Sequence[str]) -> None:
         """Let persons arrive; they are gone with the next step."""
@@ -197,14 +199,17 @@ class SumoSession:
             self._just_added.pop(name, None)
             self.call(self._sumo.person.removeStages, name)  # unlike remove: counts as arrival
 
-    def _clear_host_edge(self) -> None:
-        """Move added persons, once departed, away from the host edge's beginning in SUMO's books.
+    def _clear_host_edges(self) -> None:
+        """Move added persons, once departed, away from a host edge's beginning in SUMO's books.
 
         SUMO's own pedestrians would swerve round those who seem to stand there.
         """
-        for name in self._just_added if self._host_lane else ():
-            self.call(self._sumo.person.moveTo, name, self._host_lane, NOWHERE)
-        self._just_added = {}
+        now = self.time
+        for name, (added_at, lane) in list(self._just_added.items()):
+            if now > added_at:
+                del self._just_added[name]
+                if lane is not None:
+                    self.call(self._sumo.person.moveTo, name, lane, NOWHERE)
 
     # --- stepping -----------------------------------------------------------------------------
 
@@ -228,8 +233,8 @@ class SumoSession:
         Raises:
             SumoError: SUMO failed, or disagrees by more than 1e-6 m.
         """
-        if self._just_added and self._sumo.simulation.getTime() > self._added_at:
-            self._clear_host_edge()
+        if self._just_added:
+            self._clear_host_edges()
         self._moves_pending = bool(egos or ids)
         try:
             with self._stderr:

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from giveway.config import RunConfig
-from giveway.crowd.disturbance import Disturbance, disturbance_of
+from giveway.crowd.disturbance import Disturbance, disturbance_of, pushed
 from pedestrian_model import OPEN_GROUND, SIM, Crowd, CrowdModel, Vehicles
 
 DT = 0.05
@@ -46,16 +46,14 @@ def test_no_step_exceeds_the_model_s_limits(seed, deviation):
 def test_a_push_within_the_limits_is_added_as_it_is():
     crowd = make_crowd(np.array([[0.0, 1.0]]))
     place, before = crowd.position.copy(), crowd.velocity.copy()
-    Disturbance(CrowdModel(SIM, DT), 1.0, 1).push(crowd, before, np.array([[0.1, -0.05]]))
+    pushed(CrowdModel(SIM, DT), crowd, before, np.array([[0.1, -0.05]]))
     assert crowd.velocity == pytest.approx(np.array([[0.1, 0.95]]))
     assert crowd.position - place == pytest.approx(0.5 * DT * np.array([[0.1, -0.05]]))
 
 
 def test_a_push_beyond_the_acceleration_limit_keeps_its_direction():
     crowd = make_crowd(np.array([[0.0, 1.0]]))
-    Disturbance(CrowdModel(SIM, DT), 1.0, 1).push(
-        crowd, crowd.velocity.copy(), np.array([[3.0, 4.0]])
-    )
+    pushed(CrowdModel(SIM, DT), crowd, crowd.velocity.copy(), np.array([[3.0, 4.0]]))
     assert crowd.velocity == pytest.approx(np.array([[0.15, 1.2]]))  # 0.25 m/s of (0.6, 0.8)
 
 

@@ -1,0 +1,135 @@
+"""The way of somebody who walks with a flow: where it begins, what it leads through, its end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from giveway.config.flows import FlowConfig, Place, is_line
+from giveway.geometry.kernel import Array
+from giveway.sumo.crossings import Crossing
+from giveway.walkways.reading import Signal
+
+_BODY = 0.27  # [m] from a line's ends; half of a shoulder breadth
+_BACK = 0.3  # [m] from the kerb people wait for their light
+
+
+class Gate(NamedTuple):
+    """What people come through on the way: a point, or a line that they cross anywhere."""
+
+    middle: Array  # (2,) [m]
+    across: Array  # (2,) unit direction in which a line is crossed; 0, 0: a point
+    half_width: float  # [m] of a line; 0: a point
+    signal: int = -1  # that has to be open; -1: none
+
+    def aim(self, place: Array) -> Array:
+        """(2,) [m] where somebody at ``place`` (2,) comes through."""
+        along = np.array([-self.across[1], self.across[0]])
+        room = max(self.half_width - _BODY, 0.0)
+        beside = float(np.clip((place - self.middle) @ along, -room, room))
+        return np.asarray(self.middle + beside * along)
+
+
+class LitCrossing(NamedTuple):
+    """A crossing with a light."""
+
+    kerb: Array  # (2,) [m] the middle of one kerb
+    along: Array  # (2,) unit direction to the other kerb
+    length: float  # [m]
+    half_width: float  # [m]
+    signal: int
+
+    def gate(self, start: Array, end: Array) -> Gate | None:
+        """Where somebody waits who walks straight over it; None: the way leads elsewhere."""
+        u, w = self._place(start)
+        u_end, w_end = self._place(end)
+        along = self.along
+        if u > u_end:  # the other way about: seen from the other kerb
+            u, u_end = self.length - u, self.length - u_end
+            along = -along
+        if not u <= 0.0 < self.length <= u_end:
+            return None
+        if abs(w - u / (u_end - u) * (w_end - w)) > self.half_width:
+            return None
+        kerb = self.kerb if along is self.along else self.kerb + self.length * self.along
+        return Gate(kerb - _BACK * along, along, self.half_width, self.signal)
+
+    def _place(self, at: Array) -> tuple[float, float]:
+        """[m] along it from the kerb, and beside it."""
+        x, y = at - self.kerb
+        d_x, d_y = self.along
+        return float(x * d_x + y * d_y), float(y * d_x - x * d_y)
+
+
+def lit_crossings(
+    crossings: Sequence[Crossing], signals: Sequence[Signal]
+) -> tuple[LitCrossing, ...]:
+    """Those crossings of the network at which people wait for their light.
+
+    Args:
+        crossings: all.
+        signals: that the run watches, in the order of ``Surroundings.closed``.
+    """
+    by_edge = {signal.crossing: number for number, signal in enumerate(signals)}
+    found = []
+    for crossing in crossings:
+        signal = by_edge.get(crossing.lane.rpartition("_")[0])
+        way = crossing.ends[1] - crossing.ends[0]
+        length = math.hypot(*way)
+        if signal is not None and length > 0.0:
+            kerb, half_width = crossing.ends[0], crossing.width / 2.0
+            found.append(LitCrossing(kerb, way / length, length, half_width, signal))
+    return tuple(found)
+
+
+def gates_of(flow: FlowConfig) -> tuple[Gate, ...]:
+    """What a flow comes through, with the lines facing away from where it comes from."""
+    gates = []
+    before = middle_of(flow.start)
+    for place in flow.via:
+        middle = middle_of(place)
+        across, half = np.zeros(2), 0.0
+        if is_line(place):
+            first, last = corners(place)
+            length = math.hypot(*(last - first))
+            d_x, d_y = (last - first) / length
+            across, half = np.array([d_y, -d_x]), length / 2.0
+            across = across if across @ (middle - before) >= 0.0 else -across
+        gates.append(Gate(middle, across, half))
+        before = middle
+    return tuple(gates)
+
+
+def with_lights(
+    start: Array, gates: Sequence[Gate], end: Array, lit: Sequence[LitCrossing]
+) -> Iterator[Gate]:
+    """The gates of a way, and the kerbs between them at which people wait for their light."""
+    at = start
+    for gate in (*gates, None):
+        goal = end if gate is None else gate.aim(at)
+        kerbs = [kerb for crossing in lit if (kerb := crossing.gate(at, goal))]
+        yield from sorted(kerbs, key=lambda kerb: math.dist(kerb.middle, at))
+        if gate is not None:
+            yield gate
+        at = goal
+
+
+def corners(place: Place) -> Array:
+    """(2, 2) [m] the ends of a line, opposite corners of a rectangle; a point twice."""
+    numbers = np.array(place, dtype=np.float64).ravel()
+    return np.resize(numbers, (2, 2))
+
+
+def middle_of(place: Place) -> Array:
+    """(2,) [m]."""
+    return np.asarray(corners(place).mean(axis=0))
+
+
+def somewhere(place: Place, random: np.random.Generator) -> Array:
+    """(2,) [m] a point, or one of a line or rectangle, all alike."""
+    low, high = corners(place)
+    share = random.random() if is_line(place) else random.random(2)
+    return np.asarray(low + share * (high - low))

@@ -1,0 +1,225 @@
+"""People who come in during a run, through the real SUMO, FMU and solver."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import giveway
+import sumo_scenarios
+from giveway.errors import ConfigError
+from pedestrian_model import PLAIN_MODELS
+
+DOCS = Path(__file__).parents[2] / "docs"
+NORTH = {
+    "name": "north",
+    "from": [[18.0, -16.0], [36.0, -16.0]],
+    "to": [18.0, 14.0, 36.0, 16.0],
+    "rate": 2400.0,
+    "begin": -40.0,
+}
+SOUTH = {"name": "south", "from": NORTH["to"], "to": NORTH["from"], "rate": 1200.0, "begin": -40.0}
+PLAZA = {"scenario": "shared_space", "seed": 3, "crowd": {"pedestrians": 0, "flow": [NORTH, SOUTH]}}
+ACROSS = {
+    "name": "across",
+    "from": [58.0, -6.2, 76.0, -3.8],
+    "to": [58.0, 3.8, 76.0, 6.2],
+    "rate": 1800.0,
+    "begin": -10.0,
+}
+STREET = {"scenario": "street", "seed": 3, "crowd": {"pedestrians": 0, "flow": [ACROSS]}}
+
+
+def with_crowd(config: dict, **crowd: object) -> dict:
+    return {**config, "crowd": {**config["crowd"], **crowd}}
+
+
+def entrances(result: giveway.RunResult) -> dict[str, tuple[float, ...]]:
+    """When and where everybody was seen first."""
+    first = result.trajectories.query("type == 'pedestrian'").drop_duplicates("id")
+    return {row.id: (row.time, row.x, row.y) for row in first.itertuples()}
+
+
+@pytest.mark.parametrize("config", [PLAZA, STREET], ids=["open ground", "a street"])
+def test_whoever_drives_meets_the_same_people_at_the_same_time(config: dict) -> None:
+    record = {"near": 500.0}
+    runs = [
+        giveway.run({**config, "controller": name, "record": record})
+        for name in ("mpc", "pid-tuned")
+    ]
+    known, others = (entrances(run) for run in runs)
+    shorter = min(run.time[-1] for run in runs)
+    common = {name for name, (time, *_) in known.items() if time < shorter}
+    assert len(common) > 10
+    assert any(known[name][0] > runs[0].time[0] for name in common)  # some came in later
+    for name in common:
+        assert known[name] == others[name]
+
+
+@pytest.mark.parametrize("config", [PLAZA, STREET], ids=["open ground", "a street"])
+def test_the_twin_has_the_very_same_arrivals(config: dict) -> None:
+    """Who does not mind the ego loses nothing: where, when and how everybody came is the same."""
+    blind = with_crowd(config, model="constant-velocity")
+    result = giveway.run({**blind, "twin": True})
+    delays = result.pedestrians.delay.dropna()
+    assert len(delays) > 10
+    assert delays.abs().max() < 1e-9
+    assert not result.remarks
+
+
+def test_people_who_mind_lose_time_before_an_ego_that_others_do_not_have() -> None:
+    result = giveway.run({**with_crowd(PLAZA, flow_scale=2.0), "twin": True})
+    assert result.effect is not None
+    pairs = zip(result.effect.run.ids, result.effect.twin.ids, strict=False)
+    assert all(one == other for one, other in pairs)  # up to the shorter one's end
+    assert result.summary["people_delay"] != 0.0
+    assert result.summary["frontal_contacts"] == 0
+
+
+def test_the_same_seed_has_the_same_bytes_and_another_seed_other_people(tmp_path: Path) -> None:
+    people = {"elderly": 0.3, "distracted": 0.3}
+    mixed = with_crowd(PLAZA, groups=0.6, people=people, acceleration_noise=0.2)
+    for name, seed in (("one", 3), ("same", 3), ("other", 4)):
+        giveway.run({**mixed, "seed": seed}, results=tmp_path / name, pictures=False)
+    for table in ("ego", "trajectories", "pedestrians", "summary"):
+        one, same, other = (
+            (tmp_path / name / f"{table}.csv").read_bytes() for name in ("one", "same", "other")
+        )
+        assert one == same != other
+
+
+@pytest.mark.parametrize("model", ["vci", *PLAIN_MODELS])
+def test_they_come_whatever_moves_them(model: str) -> None:
+    kinds = {"elderly": 0.3, "distracted": 0.3}
+    crowd = {"model": model, "groups": 0.5, "people": kinds}
+    result = giveway.run(with_crowd(PLAZA, **crowd))
+    table = result.pedestrians
+    assert result.ending == "completed"
+    assert set(table["kind"]) == {"adult", "elderly", "distracted"}
+    grouped = table[table["group"] != ""]
+    assert 0.2 < len(grouped) / len(table) < 0.8
+    assert grouped.groupby("group").size().between(2, 5).all()
+    counts = result.manifest["pedestrians"]
+    assert counts["added"] == len(table) == counts["arrived"] + counts["walking"]
+    assert counts["arrived"] > 0
+
+
+@pytest.fixture
+def endless(tmp_path: Path) -> dict:
+    """The plaza as a scenario without an end, in steps of 1 s, where nobody drives."""
+    net = Path(sumo_scenarios.__file__).parent / "shared_space/shared_space.net.xml"
+    config = tmp_path / "endless.sumocfg"
+    config.write_text(f'<configuration><net-file value="{net}"/></configuration>')
+    return {**PLAZA, "scenario": str(config), "ego": {"none": True, "route": ["plaza"]}}
+
+
+def test_without_an_ego_the_run_ends_when_the_last_of_them_has_arrived(endless: dict) -> None:
+    flow = {**NORTH, "begin": 5.0, "end": 15.0}
+    result = giveway.run(with_crowd(endless, flow=[flow]))
+    counts = result.manifest["pedestrians"]
+    assert counts["walking"] == 0
+    assert counts["added"] == counts["arrived"] == len(result.pedestrians) > 2
+    assert result.pedestrians["first_seen"].min() >= 5.0
+    assert result.pedestrians["first_seen"].max() <= 16.0
+    assert 30.0 < result.time[-1] < 80.0
+    walked = result.pedestrians["path_length"]
+    assert walked.between(29.0, 40.0).all()  # from the line to the rectangle
+
+
+def test_a_run_that_would_not_end_is_refused(endless: dict) -> None:
+    with pytest.raises(ConfigError, match="flow 'north': its people keep coming"):
+        giveway.run(endless)
+    assert giveway.run({**endless, "time_limit": 3.0}).ending == "time limit"
+
+
+def test_they_are_persons_of_sumo_for_its_own_outputs(tmp_path: Path) -> None:
+    config = {**STREET, "sumo": {"fcd": True}, "time_limit": 12.0}
+    result = giveway.run(config, results=tmp_path / "run", pictures=False)
+    (fcd,) = (tmp_path / "run" / "sumo").rglob("*fcd*")
+    seen = set(re.findall(r'<person id="(across\.\d+)"', fcd.read_text()))
+    stayed = result.pedestrians.query("last_seen > first_seen + 2.0")["id"]  # two of SUMO's steps
+    assert set(stayed) <= seen
+    assert len(stayed) >= 5
+
+
+def test_they_wait_for_their_light() -> None:
+    """At a crossing that has green in the same part of every 60 s."""
+    way = {"from": [5.0, -9.0, 7.5, -7.0], "to": [5.0, 7.0, 7.5, 9.0]}
+    flow = {"name": "lit", **way, "rate": 900.0}
+    crowd = {"flow": [flow], "zone": "none"}
+    config = {"scenario": "junction", "seed": 2, "crowd": crowd, "time_limit": 180.0}
+    result = giveway.run({**config, "ego.none": True})
+    people = result.trajectories.query("type == 'pedestrian'")
+    stood = people.groupby("id")["speed"].apply(lambda speed: (speed < 0.1).sum() * 0.05)
+    assert stood.max() > 10.0  # [s]
+    before, on = people[people["y"] < -3.5], people[people["y"].abs() < 2.5]
+    assert before.groupby("id")["y"].max().max() > -4.5  # they come up to the kerb
+    entered = on.groupby("id")["time"].min().to_numpy() % 60.0
+    assert len(entered) > 20
+    share, _ = np.histogram(entered, bins=12, range=(0.0, 60.0))
+    assert (share == 0).sum() >= 6  # nobody sets out while it is red
+
+
+def test_they_have_priority_on_a_zebra() -> None:
+    zebra = {"name": "zebra", "from": [58.5, -6.3, 61.5, -5.5], "to": [58.5, 5.5, 61.5, 6.3]}
+    crowd = {"flow": [{**zebra, "rate": 900.0}], "zone": "none"}
+    config = {"scenario": "junction", "seed": 2, "crowd": crowd}
+    result = giveway.run(config)
+    judged = result.ledger
+    given_way = judged[judged["other"].str.startswith("zebra.")]
+    assert (given_way["kind"] == "encounter").any()
+    assert result.summary["failures_to_yield"] == 0
+    assert result.summary["overlaps"] == 0
+
+
+def test_a_study_varies_their_number_and_who_they_are(study_of, tmp_path: Path) -> None:
+    study = study_of(
+        """
+        name = "flows"
+        replications = 3
+        [run]
+        scenario = "shared_space"
+        controller = "pid-tuned"
+        time_limit = 4.0
+        crowd.pedestrians = 0
+        [[run.crowd.flow]]
+        from = [[18.0, -16.0], [36.0, -16.0]]
+        to = [18.0, 14.0, 36.0, 16.0]
+        rate = 1800
+        begin = -40
+        [factors]
+        "crowd.flow_scale" = [1.0, 2.0]
+        "crowd.people.elderly" = [0.0, 1.0]
+        [comparison]
+        minimum_pairs = 3
+        resamples = 99
+        """,
+        tmp_path / "study",
+    )
+    assert len(study.runs) == 12
+    assert study.failures.empty
+    clearance = study.runs.groupby(["crowd.flow_scale", "crowd.people.elderly"])[
+        "minimum_clearance"
+    ]
+    assert clearance.mean().nunique() == 4
+
+
+def test_what_docs_print_runs_and_can_be_replayed(tmp_path: Path) -> None:
+    (block,) = re.findall(r"```toml\n(.*?)```", (DOCS / "crowds.md").read_text(), flags=re.DOTALL)
+    config = tmp_path / "plaza.toml"
+    config.write_text(block, encoding="utf-8")
+    result = giveway.run(config, results=tmp_path / "run", pictures=False)
+    names = {flow["name"] for flow in tomllib.loads(block)["crowd"]["flow"]}
+    assert {name.partition(".")[0] for name in result.pedestrians["id"]} == names
+    assert result.pedestrians.query("id.str.startswith('school')")["kind"].eq("child").mean() > 0.5
+    page = tmp_path / "page.html"
+    result.replay().save(page)
+    assert "north.1" in page.read_text(encoding="utf-8")
+    written = tomllib.loads((tmp_path / "run" / "config.toml").read_text(encoding="utf-8"))
+    again = giveway.run(tmp_path / "run" / "config.toml")
+    assert len(written["crowd"]["flow"]) == 2
+    assert again.summary == result.summary
