@@ -278,6 +278,7 @@ class Loop:
             decision = ego.decide(self._k, time, seen)
             controlled_at = perf_counter()
             recorder.ego(ego.id, ego.row(time, seen, decision))
+            recorder.hasty(ego.id, seen.hasty)
             if ego.vehicle.record:
                 recorder.outputs(ego.id, ego.vehicle.record, ego.vehicle.recorded)
             predicted = ego.expected(seen) if self._looks else None
