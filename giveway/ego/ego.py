@@ -19,6 +19,7 @@ from giveway.ego.seen import NOBODY, Seen
 from giveway.ego.setting_out import SettingOut
 from giveway.ego.speed_profile import SpeedProfile
 from giveway.ego.waiting import WaitingEgo
+from giveway.ego.waits_for import waits_for
 from giveway.ego.way_ahead import WayAhead
 from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
@@ -31,9 +32,7 @@ _BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
 _STRAIGHT = (
     1.0  # [s] for which other vehicles are predicted straight on; beyond it the road may bend
 )
-_NEAR = 3.0  # [m] in addition to the distance kept: what is so near is what the ego stands for
 _LIKELY = 0.75  # of what positions are off at most, as plans count with it: the layer with all
-_FREE = ("clear", "drive on")  # reasons of a planning controller that sees nobody in its way
 
 
 class Ego:
@@ -348,29 +347,3 @@ class Ego:
             return ""
         kept = self._origin + self.config.regulation.safe_distance
         return waits_for(self.front, kept, seen, decision, self._eases_off)
-
-
-def waits_for(front: float, kept: float, seen: Seen, decision: Decision, eases_off: bool) -> str:
-    """What an ego that stands stands for; empty when it drives off.
-
-    Args:
-        front: station of its front bumper [m].
-        kept: distance [m] from there that it keeps to who is in front.
-        seen: what it reacts to.
-        decision: its controller's.
-        eases_off: it brakes less than a step before.
-    """
-    place, cause = min(
-        (seen.pedestrian - front - kept, "person"),
-        (seen.leader.station - front - kept, "vehicle"),
-        (seen.stop - front, seen.stops_for),
-    )
-    if place <= _NEAR:
-        return cause
-    if decision.acting == "safety":
-        return "person"
-    if seen.ahead.size and seen.ahead.min() - front - kept <= 0.0:
-        return "vehicle" if seen.predicted is None else "person"
-    if decision.force > 0.0 or eases_off:
-        return ""
-    return "none" if decision.reason in _FREE else "plan"
