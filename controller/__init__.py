@@ -4,6 +4,7 @@ Yang & Özgüner 2019, "Combining Social Force Model with Model Predictive Contr
 Longitudinal Speed Regulation in Pedestrian-Dense Scenarios" (arXiv 1907.05178).
 """
 
+from controller._stopping import towards_kerb
 from controller.conformance import Finding, check_controller
 from controller.errors import (
     ControllerError,
@@ -92,5 +93,6 @@ __all__ = [
     "check_controller",
     "later_cost",
     "own_cost",
+    "towards_kerb",
     "worst_motion",
 ]

@@ -20,6 +20,7 @@ class Limits(NamedTuple):
     force_rate_limit: float  # [N per step]
     walking_acceleration: float  # a_max [m/s^2]
     walking_speed: float  # v_max [m/s]
+    setting_out: float  # a_k [m/s^2] towards the kerb, of who is on a sidewalk
     half_width: float  # of the ego [m]
     body_radius: float  # R [m]
     margin: float  # [m]
@@ -169,6 +170,9 @@ def _may_meet(
     v_x: float,
     v_y: float,
     error: float,
+    to_x: float,
+    to_y: float,
+    depth: float,
     steps: int,
     slack: float,
     c: Limits,
@@ -177,7 +181,8 @@ def _may_meet(
     """Whether somebody seen at (x, y) with velocity (v_x, v_y) can meet the moving front.
 
     Who accelerates by at most a_max is within a_max t^2/2 of x + v t, and who walks at most at
-    v_max is within v_max t of x.
+    v_max is within v_max t of x. Who is on a sidewalk, ``depth`` [m] from the kerb in the direction
+    (to_x, to_y), gets no farther in this direction than :func:`towards_kerb` says.
     """
     for j in range(steps + 1):
         box = boxes[j]
@@ -187,9 +192,44 @@ def _may_meet(
         accelerated = 0.5 * c.walking_acceleration * t * t
         if not _touches(box, x + v_x * t, y + v_y * t, accelerated, error, slack, c):
             continue
-        if _touches(box, x, y, c.walking_speed * t, error, slack, c):
+        if not _touches(box, x, y, c.walking_speed * t, error, slack, c):
+            continue
+        if depth <= error:
+            return True
+        pace = v_x * to_x + v_y * to_y
+        nearer = towards_kerb(t, pace, depth - error, c.setting_out, c.walking_acceleration)
+        between = _nearest(box, to_x, to_y) - (x * to_x + y * to_y)
+        if between - nearer <= box[8] + error + slack:
             return True
     return False
+
+
+@kernel
+def towards_kerb(t: float, pace: float, depth: float, setting_out: float, most: float) -> float:
+    """How far [m] somebody on a sidewalk gets towards its kerb, and beyond it, within ``t`` [s].
+
+    Args:
+        t: from now on.
+        pace: towards the kerb, now [m/s].
+        depth: to the kerb [m], > 0.
+        setting_out: of the acceleration towards the kerb at most [m/s^2] until they get there ...
+        most: ... and from then on.
+    """
+    fastest = sqrt(pace * pace + 2.0 * setting_out * depth)
+    there = (fastest - pace) / setting_out
+    if t <= there:
+        return pace * t + 0.5 * setting_out * t * t
+    rest = t - there
+    return depth + fastest * rest + 0.5 * most * rest * rest
+
+
+@kernel
+def _nearest(box: Array, to_x: float, to_y: float) -> float:
+    """The least of what a box's points have in the direction (to_x, to_y) [m]."""
+    along, across = to_x * box[2] + to_y * box[3], to_y * box[2] - to_x * box[3]
+    least: float = box[0] * to_x + box[1] * to_y
+    least += min(along * box[4], along * box[5]) + min(across * box[6], across * box[7])
+    return least
 
 
 @kernel
@@ -198,15 +238,17 @@ def is_safe(
     speed: float,
     way: Array,
     spacing: float,
-    position: Array,
-    velocity: Array,
-    errors: Array,
+    people: tuple[Array, ...],
     c: Limits,
     commands: Array,
     boxes: Array,
     slack: float,
 ) -> bool:
-    """Whether after ``force`` the ego can stop without moving into anybody."""
+    """Whether after ``force`` the ego can stop without moving into anybody.
+
+    ``people`` are their positions, velocities, errors and kerbs.
+    """
+    position, velocity, errors, kerbs = people
     steps, travel = _stop(force, speed, way, spacing, c, commands, boxes)
     if steps < 0:
         return False
@@ -219,6 +261,10 @@ def is_safe(
         d_x, d_y = x - way[0, 0], y - way[0, 1]
         if d_x * d_x + d_y * d_y > reach * reach:
             continue
-        if _may_meet(x, y, velocity[i, 0], velocity[i, 1], errors[i], steps, slack, c, boxes):
+        to_x, to_y, depth = 0.0, 0.0, 0.0
+        if i < kerbs.shape[0]:
+            to_x, to_y, depth = kerbs[i, 0], kerbs[i, 1], kerbs[i, 2]
+        v_x, v_y, error = velocity[i, 0], velocity[i, 1], errors[i]
+        if _may_meet(x, y, v_x, v_y, error, to_x, to_y, depth, steps, slack, c, boxes):
             return False
     return True

@@ -28,6 +28,7 @@ _RESOLUTION = 4.0  # [N] to which the largest safe force is found
 _SLACK = 1e-9  # [m] that a new plan keeps and the fallback need not: above rounding, below a hair
 _WHOLE_STEPS = 1e-6  # of a step: a reaction time of so little more is no step more
 _PEOPLE = RECORDED["recorded-99.9"]
+_NO_KERBS = np.zeros((0, 3))
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +41,7 @@ class SafetyParameters:
 
     walking_acceleration: float = _PEOPLE.acceleration  # a_max [m/s^2]
     walking_speed: float = _PEOPLE.speed  # v_max [m/s]
+    setting_out: float = _PEOPLE.setting_out  # a_k [m/s^2] towards the road, while on a sidewalk
     body_radius: float = 0.27  # R [m] of the VCI model (TSAS 2020)
     width: float = 2.0  # of the ego [m] (Yang & Özgüner 2019)
     margin: float = 0.05  # [m] kept between the front and a body (ours)
@@ -51,6 +53,7 @@ class SafetyParameters:
     def __post_init__(self) -> None:
         require_positive("walking_acceleration", self.walking_acceleration, "m/s^2")
         require_positive("walking_speed", self.walking_speed, "m/s")
+        require(self.setting_out > 0.0, "setting_out", self.setting_out, "a number > 0 [m/s^2]")
         require_not_negative("body_radius", self.body_radius, "m")
         require_positive("width", self.width, "m")
         require_not_negative("margin", self.margin, "m")
@@ -65,7 +68,7 @@ class SafetyParameters:
     @property
     def worst(self) -> WorstMotion:
         """What people are taken to do at worst."""
-        return WorstMotion(self.walking_acceleration, self.walking_speed)
+        return WorstMotion(self.walking_acceleration, self.walking_speed, self.setting_out)
 
 
 class SafeForce(NamedTuple):
@@ -100,6 +103,7 @@ class SafetyLayer:
             force_rate_limit=p.force_rate_limit,
             walking_acceleration=p.walking_acceleration,
             walking_speed=p.walking_speed,
+            setting_out=min(p.setting_out, p.walking_acceleration),
             half_width=p.width / 2.0,
             body_radius=p.body_radius,
             margin=p.margin,
@@ -150,6 +154,7 @@ class SafetyLayer:
         position: Array,
         velocity: Array,
         errors: Array | None = None,
+        kerbs: Array = _NO_KERBS,
     ) -> SafeForce:
         """Let a force through, or the largest safe one below it.
 
@@ -162,6 +167,8 @@ class SafetyLayer:
             position: (n, 2) [m] people's centres, in the frame of ``way``.
             velocity: (n, 2) [m/s] theirs.
             errors: (n,) [m] that ``position`` is off at most; None: the parameters' for everybody.
+            kerbs: (n, 3) of those on a sidewalk the unit vector to its kerb, and how far that is
+                [m]; 0 for the others. Without rows nobody is.
         """
         if errors is None:
             if len(self._errors) < len(position):
@@ -175,6 +182,7 @@ class SafetyLayer:
             position,
             velocity,
             errors,
+            kerbs,
             self._plain_limits,
             self._commands,
             self._boxes,
@@ -195,6 +203,7 @@ def largest_safe_force(
     position: Array,
     velocity: Array,
     errors: Array,
+    kerbs: Array,
     limits: tuple[float, ...],
     commands: Array,
     boxes: Array,
@@ -209,26 +218,26 @@ def largest_safe_force(
         position: (n, 2) [m].
         velocity: (n, 2) [m/s].
         errors: (n,) [m], or more; how far off the positions are at most.
+        kerbs: (n, 3), or none; see :meth:`SafetyLayer.filter`.
         limits: the numbers of :class:`Limits`; a plain tuple, which numba unpacks 2 us faster.
         commands: (delay + 1,) [N] the forces of the past, the latest last; changed.
         boxes: (longest stop [steps] + 1, 9) scratch.
     """
     c, v = Limits(*limits), speed if speed > STANDSTILL else 0.0
     verdict, safe = LETS_THROUGH, force
+    people = position, velocity, errors, kerbs
     if position.shape[0] > 0 and not is_safe(
-        force, v, way, spacing, position, velocity, errors, c, commands, boxes, _SLACK
+        force, v, way, spacing, people, c, commands, boxes, _SLACK
     ):
         verdict = ACTS
         safe = max(-c.force_limit, commands[-1] - c.force_rate_limit)
         safe = min(safe, force)
         unsafe = force
-        if not is_safe(safe, v, way, spacing, position, velocity, errors, c, commands, boxes, 0.0):
+        if not is_safe(safe, v, way, spacing, people, c, commands, boxes, 0.0):
             verdict, unsafe = UNAVOIDABLE, safe
         while unsafe - safe > _RESOLUTION:
             middle = 0.5 * (safe + unsafe)
-            if is_safe(
-                middle, v, way, spacing, position, velocity, errors, c, commands, boxes, _SLACK
-            ):
+            if is_safe(middle, v, way, spacing, people, c, commands, boxes, _SLACK):
                 safe = middle
             else:
                 unsafe = middle

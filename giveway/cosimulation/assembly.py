@@ -146,7 +146,7 @@ def assemble(
         )
     else:
         waiting = tuple(recorded_ego(ego, driven.tracks[ego.ego_id], time_step) for ego in egos)
-    departures = Departures(waiting, sumo, files.config_file, time_step)
+    departures = Departures(waiting, sumo, files.config_file, time_step, network)
     if driven is not None and driven.absent:
         departures.forgo(driven.start)
     else:

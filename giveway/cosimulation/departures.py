@@ -23,6 +23,7 @@ from giveway.geometry.path import EgoPath
 from giveway.scenario_files import declares, flows_due, undeclared
 from giveway.sumo.lane_path import LanePath
 from giveway.sumo.session import SumoSession
+from giveway.walkways import WalkNetwork
 
 LONGEST_WAIT = 86_400.0  # [s] for a departure in a scenario that never ends
 LONGEST_WAIT_FOR_ROOM = 300.0  # [s] after which an ego that finds none ends the run
@@ -37,6 +38,7 @@ class Departures:
         session: the running simulation.
         config_file: the scenario, for messages.
         time_step: [s] of the co-simulation.
+        network: where people can walk; None: nobody asks.
 
     Attributes:
         times: at which each ego that is to be inserted is due [s], by its id.
@@ -47,7 +49,12 @@ class Departures:
     """
 
     def __init__(
-        self, egos: Sequence[WaitingEgo], session: SumoSession, config_file: Path, time_step: float
+        self,
+        egos: Sequence[WaitingEgo],
+        session: SumoSession,
+        config_file: Path,
+        time_step: float,
+        network: WalkNetwork | None = None,
     ) -> None:
         self.waiting = list(egos)
         self._session = session
@@ -64,7 +71,7 @@ class Departures:
         self._blocked: dict[str, float] = {}  # [s] since when an ego lacks room
         self._queued: set[str] = set()  # egos that SUMO is to insert
         self._cautious: set[str] = set()  # of these, who have room where SUMO may insert others
-        self._entrance = Entrance(session, time_step)
+        self._entrance = Entrance(session, time_step, network)
         self.remarks = self._entrance.remarks  # what the user should know
         self.ways = self._entrance.ways  # of those that have departed
 

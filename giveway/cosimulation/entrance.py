@@ -14,6 +14,7 @@ from giveway.ego.controllers import make_controller
 from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
 from giveway.ego.junctions import PathJunction, junctions_on
+from giveway.ego.kerbs import Kerbs
 from giveway.ego.leader import CLOSEST
 from giveway.ego.lights import Lights
 from giveway.ego.merges import Merges, places_of
@@ -30,6 +31,7 @@ from giveway.records.way import EgoWay
 from giveway.sumo.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.sumo.vehicles import VehicleState
+from giveway.walkways import WalkNetwork
 
 _BEHIND = 0.5  # [m] more than it keeps is left behind a vehicle that stands
 _LEAST_GAP = 1.0  # [m] behind it
@@ -44,14 +46,17 @@ class Entrance:
     Args:
         session: the running simulation.
         time_step: [s] of the co-simulation.
+        network: where people can walk; None: nobody asks.
 
     Attributes:
         remarks: what the user should know.
         ways: of those that have entered, by their ids.
     """
 
-    def __init__(self, session: SumoSession, time_step: float) -> None:
-        self._session = session
+    def __init__(
+        self, session: SumoSession, time_step: float, network: WalkNetwork | None = None
+    ) -> None:
+        self._session, self._network = session, network
         self._time_step = time_step
         self.remarks: list[str] = []
         self.ways: dict[str, EgoWay] = {}
@@ -181,6 +186,7 @@ class Entrance:
             self._time_step,
             profile,
             slope,
+            self._kerbs(ego, path, shape),
         )
 
     def _remark_on_slope(self, ego: WaitingEgo, slope: Slope) -> None:
@@ -191,6 +197,14 @@ class Entrance:
                 f"ego '{ego.id}': its road is up to {percent:.1f} % steep, and its FMU drives as "
                 "on the level: no profile names an input of it for the grade (docs/vehicles.md)"
             )
+
+    def _kerbs(self, ego: WaitingEgo, path: EgoPath, shape: VehicleShape) -> Kerbs | None:
+        """The kerbs beside the path; None: there are none, or they are no matter."""
+        network = self._network
+        if network is None or ego.safety is None or ego.safety.setting_out == math.inf:
+            return None
+        kerbs = Kerbs(path, shape.width, network.sidewalks, self._session.lanes.crossings)
+        return kerbs if kerbs else None
 
     def _lights(self, config: EgoRunConfig, lane_path: LanePath, hardest: float) -> Lights | None:
         """The traffic lights that the ego heeds; None: there are none."""

@@ -281,6 +281,7 @@ class Loop:
             decision = ego.decide(self._k, time, seen)
             controlled_at = perf_counter()
             recorder.ego(ego.id, ego.row(time, seen, decision))
+            recorder.hasty(ego.id, seen.hasty)
             if ego.has_outputs:
                 recorder.outputs(ego.id, *ego.outputs())
             predicted = ego.expected(seen) if self._looks else None

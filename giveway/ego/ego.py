@@ -11,14 +11,16 @@ from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight
+from giveway.ego.kerbs import NO_KERBS, Kerbs
 from giveway.ego.leader import NO_LEADER, Following
 from giveway.ego.path_view import PathView
 from giveway.ego.relevance import Nearby, Relevance
 from giveway.ego.safety import Guard
-from giveway.ego.seen import Seen
+from giveway.ego.seen import NOBODY, Seen
+from giveway.ego.setting_out import SettingOut
 from giveway.ego.speed_profile import SpeedProfile
-from giveway.ego.standing import waits_for
 from giveway.ego.waiting import WaitingEgo
+from giveway.ego.waits_for import waits_for
 from giveway.ego.way_ahead import WayAhead
 from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
@@ -49,6 +51,7 @@ class Ego:
         time_step: [s].
         profile: its speed where nothing is in its way; None: the controller's own.
         slope: of the path; None: it is level.
+        kerbs: beside its path; None: there is no sidewalk.
     """
 
     def __init__(
@@ -62,6 +65,7 @@ class Ego:
         time_step: float,
         profile: SpeedProfile | None = None,
         slope: Slope | None = None,
+        kerbs: Kerbs | None = None,
     ) -> None:
         config = waiting.config
         self._controller, self._predictor = waiting.controller, waiting.predictor
@@ -98,6 +102,8 @@ class Ego:
         perception = Perception(config, waiting.worst.acceleration, time_step)
         self._perception = None if perception.exact else perception
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
+        self._kerbs = kerbs if self._guard is not None else None
+        self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
         self._foresight = self._foresee(waiting)
         self._force = 0.0
         self._eases_off = False  # a brake, or drives off
@@ -180,6 +186,10 @@ class Ego:
         if perception is not None:
             crowd = perception.observe(truth, numbers)
             errors = perception.errors
+        kerbs, hasty = NO_KERBS, NOBODY
+        if self._kerbs is not None:
+            kerbs = self._kerbs.of(crowd.position, front)
+            hasty = self._setting_out.beyond(numbers, crowd.velocity, kerbs)
         pedestrian, reachable = corridor.closest_now(crowd.position, front)
         closest = pedestrian
         if perception is not None:
@@ -194,8 +204,9 @@ class Ego:
                 relevant = self._nearby.of(crowd, front, speed)
             pedestrians = crowd if relevant is None else crowd.select(relevant)
             if foresight is not None:
+                behind = kerbs[relevant] if len(kerbs) and relevant is not None else kerbs
                 off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
-                foresight.look(pedestrians, surroundings, poses, row, front, speed, off)
+                foresight.look(pedestrians, surroundings, poses, row, front, speed, off, behind)
             else:
                 predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
@@ -232,6 +243,8 @@ class Ego:
             numbers,
             errors,
             to_clear,
+            kerbs,
+            hasty,
         )
 
     def decide(self, step: int, time: float, seen: Seen) -> Decision:
@@ -255,7 +268,7 @@ class Ego:
             )
         if self._guard is not None:
             there = self.front, self.vehicle.speed
-            safe = self._guard.overrule(decision, *there, seen.crowd, seen.errors)
+            safe = self._guard.overrule(decision, *there, seen.crowd, seen.errors, seen.kerbs)
             if safe is not None:
                 controller.applied(safe.force)
                 decision = safe

@@ -7,6 +7,7 @@ import numpy as np
 from controller import Heats, Manoeuvre, Prospect, Trials, Verdict, WorstMotion
 from giveway.ego.corridor import fill_poses
 from giveway.ego.crossers import fill_crossers
+from giveway.ego.kerbs import NO_KERBS, kerb_lines
 from giveway.ego.prospects import View, assess
 from giveway.ego.race import Lanes, run_race
 from giveway.ego.threats import Alarm
@@ -108,9 +109,10 @@ class CrowdForesight:
             able.speed,
             braking,
             worst is not None,
+            min(able.setting_out, able.acceleration),
         )
         self._alarm = tuple(self._limits)
-        self._clearance, self._off = clearance, 0.0
+        self._clearance = clearance
         self._length = shape.length
         self._constant = np.arange(N + 1) * time_step
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
@@ -135,6 +137,7 @@ class CrowdForesight:
         front: float,
         speed: float,
         off: float = 0.0,
+        kerbs: Array = NO_KERBS,
     ) -> None:
         """Begin an instant.
 
@@ -146,10 +149,10 @@ class CrowdForesight:
             front: the front bumper's station [m].
             speed: the ego's [m/s].
             off: [m] how far people's positions are off at most, beside what the clearance has.
+            kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.kerbs.Kerbs.of`.
         """
-        if off != self._off:
-            self._off = off
-            self._alarm = tuple(self._limits._replace(clearance=self._clearance + off))
+        lines = kerb_lines(pedestrians.position, kerbs)
+        self._alarm = (*self._limits._replace(clearance=self._clearance + off)[:-1], lines)
         self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front, self._now = poses, row, front, speed
         self._copied, self._stale, self._preferred = False, True, False

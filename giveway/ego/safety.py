@@ -6,6 +6,7 @@ import numpy as np
 
 from controller import Decision, LongitudinalModel, SafetyLayer, SafetyParameters
 from giveway.config import EgoRunConfig
+from giveway.ego.kerbs import NO_KERBS
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.path import EgoPath, body_pose, segment_at
@@ -45,6 +46,7 @@ class Guard:
         speed: float,
         crowd: Crowd,
         errors: Array | None = None,
+        kerbs: Array = NO_KERBS,
     ) -> Decision | None:
         """The safety layer's decision instead of the controller's; None: it lets that through.
 
@@ -54,10 +56,11 @@ class Guard:
             speed: the ego's [m/s].
             crowd: the pedestrians as it sees them.
             errors: (n,) [m] that their positions are off at most; None: as the limits say.
+            kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.kerbs.Kerbs.of`.
         """
         poses, spacing = self._poses.sample(front, self._layer.reach(speed))
         safe = self._layer.filter(
-            decision.force, speed, poses, spacing, crowd.position, crowd.velocity, errors
+            decision.force, speed, poses, spacing, crowd.position, crowd.velocity, errors, kerbs
         )
         if not safe.acted:
             return None

@@ -6,9 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.ego.foresight import CrowdForesight
+from giveway.ego.kerbs import NO_KERBS
 from giveway.ego.leader import Leader
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
+
+NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
 
 
 class Seen(NamedTuple):
@@ -31,3 +34,5 @@ class Seen(NamedTuple):
     numbers: NDArray[np.int64] | None = None  # (n,) of the crowd: a person keeps its number
     errors: Array | None = None  # (n,) [m] its positions are off at most; None: as perception says
     to_clear: float = 0.0  # [m] to be driven on to leave the crossings and junctions that it is on
+    kerbs: Array = NO_KERBS  # (n, 3) of those on sidewalks
+    hasty: NDArray[np.int64] = NOBODY  # numbers of who set out for the road too suddenly just now

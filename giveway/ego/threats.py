@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from controller import towards_kerb
+from giveway.ego.kerbs import NO_KERBS
 from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import Array, kernel
 
@@ -13,6 +15,7 @@ _WHOLE = 1e-6  # of a step: so much longer a stop takes no step more
 _ROUNDING = 1e-6  # [m] farther off than could matter: nothing that is left out is a near miss
 _FADING = 0.5  # [s] beyond the conflict time in which somebody counts less and less
 _SPARE = 0.05  # [m] kept beyond what the safety layer needs: predictions are a little off
+_NOT_BEHIND_ONE = 0.0, 0.0, 0.0  # no kerb
 
 
 class Alarm(NamedTuple):
@@ -24,6 +27,8 @@ class Alarm(NamedTuple):
     walking_speed: float  # [m/s] that no pedestrian exceeds
     braking: float  # of the ego at most [m/s^2]
     heeded: bool  # there is a safety layer that would act
+    setting_out: float = np.inf  # [m/s^2] towards the kerb, that nobody on a sidewalk exceeds
+    kerbs: Array = NO_KERBS  # (n, 3) a x + b y = c [m] of those on sidewalks, 0 of the others
 
 
 @kernel
@@ -83,12 +88,19 @@ def conflicts_and_calm(
         if turn != 0.0:
             x, y = to_frame(x, y, c_b, s_b)
             w_x, w_y = to_frame(w_x, w_y, c_b, s_b)
-        if is_threat(x, y, w_x, w_y, braking, half_width, time_step, alarm):
+        kerb = 0.0, 0.0, 0.0
+        if j < alarm.kerbs.shape[0]:
+            a, b = alarm.kerbs[j, 0], alarm.kerbs[j, 1]
+            depth = alarm.kerbs[j, 2] - a * here[j, 0] - b * here[j, 1] - _SPARE
+            a, b = to_frame(a, b, c, s)
+            a, b = to_frame(a, b, c_b, s_b)
+            kerb = a, b, depth
+        if is_threat(x, y, w_x, w_y, braking, half_width, time_step, alarm, kerb):
             low, high = 0.0, calm
             for _ in range(_HALVINGS):
                 middle = 0.5 * (low + high)
                 slower = outline(middle, time_step, alarm)
-                if is_threat(x, y, w_x, w_y, slower, half_width, time_step, alarm):
+                if is_threat(x, y, w_x, w_y, slower, half_width, time_step, alarm, kerb):
                     high = middle
                 else:
                     low = middle
@@ -137,6 +149,7 @@ def is_threat(
     half_width: float,
     time_step: float,
     alarm: Alarm,
+    kerb: tuple[float, float, float] = _NOT_BEHIND_ONE,
 ) -> bool:
     """Whether a pedestrian could get before the front while the ego brakes fully from here on.
 
@@ -151,7 +164,9 @@ def is_threat(
         half_width: of the ego [m].
         time_step: [s] until the brake acts.
         alarm: the limits.
+        kerb: of somebody on a sidewalk: the unit vector to it, and how far it is [m].
     """
+    to_x, to_y, depth = kerb
     last = o.stop * time_step
     if max(x - o.farthest, -x) - abs(w_x) * last > o.most:
         return False
@@ -166,6 +181,13 @@ def is_threat(
         ahead = x + w_x * t
         off = max(0.0, low - ahead, ahead - high)
         aside = max(0.0, abs(y + w_y * t) - half_width)
-        if off * off + aside * aside <= reach * reach:
+        if off * off + aside * aside > reach * reach:
+            continue
+        if depth <= 0.0:
+            return True
+        pace = w_x * to_x + w_y * to_y
+        nearer = towards_kerb(t, pace, depth, alarm.setting_out, alarm.walking_acceleration)
+        between = min(to_x * low, to_x * high) - abs(to_y) * half_width - (x * to_x + y * to_y)
+        if between - nearer <= o.clear:
             return True
     return False

@@ -157,6 +157,7 @@ def safety_parameters(config: EgoRunConfig, time_step: float) -> SafetyParameter
     return SafetyParameters(
         walking_acceleration=worst.acceleration,
         walking_speed=worst.speed,
+        setting_out=worst.setting_out,
         body_radius=walking.body_radius,
         margin=safety.margin + model_margin(config, time_step),
         position_error=_WITHIN * config.perception.position_noise,

@@ -27,6 +27,7 @@ HARD = 4.0
 """[m/s^2] A harder deceleration is a hard brake: above what passengers who stand can bear."""
 _CAUSE = 15.0  # [m] nobody nearer in front at a hard brake: it has no cause
 _ROUNDING = 1.0 + 1e-6  # of a velocity in a table
+_NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
 _AROUND = 0.5  # [s] before and after its begin in which that is looked for
 
 
@@ -137,6 +138,7 @@ def summarise(
     stop_speed: float = STOP_SPEED,
     controller: str,
     people: WorstMotion | None = None,
+    hasty: NDArray[np.int64] = _NOBODY,
     vehicles: Sequence[VehicleContact] = (),
 ) -> Summary:
     """Summarise a run in one row.
@@ -157,6 +159,7 @@ def summarise(
         stop_speed: the ego stands below it [m/s].
         controller: its name; "mpc" and "mpc-paper" optimise.
         people: what the safety layer takes them to do at worst; None: there is no such layer.
+        hasty: rows of ``per_pedestrian`` who set out from a sidewalk harder than that.
         vehicles: the background vehicles that it came into contact with.
 
     Raises:
@@ -172,6 +175,7 @@ def summarise(
     brakes = hard_brakes(ego)
     frontal = (per_pedestrian["contact"] == FRONTAL).to_numpy()
     beyond = _beyond(per_pedestrian, people)
+    beyond[hasty] = True
     return Summary(
         completed=bool(ego.position[-1] >= goal),
         completion_time=_time_at(ego, goal),

@@ -22,6 +22,7 @@ from giveway.records.tracks import (
 )
 from giveway.records.way import EgoWay
 
+_NOBODY: NDArray[np.int64] = np.empty(0, dtype=np.int64)
 _MOST = 2.0**53  # beyond it a number of 64 bits has no exact integers
 
 
@@ -35,6 +36,7 @@ class RecordedEgo(NamedTuple):
     track: EgoTrack
     predictions: PredictionTrack
     outputs: tuple[Output, ...] = ()
+    hasty: NDArray[np.int64] = _NOBODY  # indices of who set out for the road too suddenly
 
 
 class RecordedRows:
@@ -74,6 +76,7 @@ class RecordedRows:
                     self._track(rows),
                     self._predictions_of(number),
                     self._outputs_of(name, rows),
+                    self._hasty_of(number),
                 )
 
     def _track(self, rows: Array) -> EgoTrack:
@@ -108,6 +111,11 @@ class RecordedRows:
                 values[_indices(known[:, 0])] = known[:, 2]
                 found.append(Output(name, unit, description, values[_indices(rows[:, 0])]))
         return tuple(found)
+
+    def _hasty_of(self, number: float) -> NDArray[np.int64]:
+        """Who set out for the road more suddenly than an ego's safety layer assumes."""
+        rows = self._rows["hasty"]
+        return np.unique(_indices(rows[rows[:, 0] == number, 1]))
 
     def _words(self, indices: Array) -> NDArray[np.str_]:
         return np.array(self._names["words"], dtype=np.str_)[_indices(indices)]

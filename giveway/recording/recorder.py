@@ -38,6 +38,7 @@ class Recorder:
         self._predictions = rows("predictions", 6)  # instant, ego, pedestrian, look-ahead, x, y
         self._signals = rows("signals", 3)  # time, system, state
         self._people = rows("people", 5)  # instant, pedestrian, desired speed, x, y
+        self._hasty = rows("hasty", 2)  # ego, pedestrian
         self._outputs = rows("outputs", 3)  # instant, which of them, value
         self._ways = names("ways")  # as JSON
         self._recorded = names("outputs")  # ego, name, unit, description, as JSON
@@ -134,6 +135,12 @@ class Recorder:
             row.iterations,
         )
 
+    def hasty(self, ego_id: str, pedestrians: Indices) -> None:
+        """Note who set out for the road more suddenly than an ego's safety layer assumes."""
+        if len(pedestrians):
+            block = self._hasty.block(len(pedestrians))
+            block[:, 0], block[:, 1] = self._egos.index(ego_id), pedestrians
+
     def crowd(
         self, present: Indices, position: Array, velocity: Array, egos: Array, within: float
     ) -> None:
@@ -204,6 +211,7 @@ class Recorder:
                 "predictions": self._predictions.filled,
                 "signals": self._signals.filled,
                 "people": self._people.filled,
+                "hasty": self._hasty.filled,
                 "outputs": self._outputs.filled,
             },
             {

@@ -1,11 +1,12 @@
 """What one ego of a run leaves behind: its rows, and what they come to."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from controller import WorstMotion
 from giveway.config import EgoRunConfig, RunConfig
@@ -53,6 +54,7 @@ class EgoResult:
         law: what its drive is judged by; None: the law of the road has no say on its way.
         outputs: what the profile of its FMU wants to have recorded.
         effect: the run's people beside those of its twin; None: there is no twin.
+        hasty: indices of those who set out from a sidewalk more suddenly than its layer assumes.
     """
 
     config: EgoRunConfig
@@ -68,6 +70,7 @@ class EgoResult:
     outputs: tuple[Output, ...] = ()
     law: LawRows | None = None
     effect: Effect | None = None
+    hasty: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
 
     @property
     def body_radius(self) -> float:
@@ -165,6 +168,7 @@ class EgoResult:
             stop_speed=config.record.stop_speed,
             controller=config.controller_name,
             people=self.people_at_worst,
+            hasty=self.hasty,
             vehicles=self.vehicle_contacts,
         )
         row = figures.as_dict()
@@ -211,6 +215,7 @@ def results_of_egos(
             background=background,
             outputs=ego.outputs,
             law=law_of(ego),
+            hasty=ego.hasty,
         )
         for ego in recorded
     )

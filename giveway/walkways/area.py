@@ -22,6 +22,18 @@ def walkable_area(survey: Survey) -> shapely.MultiPolygon:
     parts += [_lane(lane, _OVERLAP) for lane in survey.crossings.values()]
     parts += [polygon_of(area) for area in survey.walkingareas.values()]
     parts += _bare_junctions(survey)
+    return _joined(parts)
+
+
+def sidewalk_area(survey: Survey, place: shapely.Geometry) -> shapely.MultiPolygon:
+    """The sidewalks and walkingareas that reach into a place: where there are people only."""
+    parts = [_lane(edge.lane) for edge in survey.edges.values() if edge.sidewalk]
+    parts += [polygon_of(area) for area in survey.walkingareas.values()]
+    return _joined([part for part in parts if part.intersects(place)])
+
+
+def _joined(parts: list[shapely.Geometry]) -> shapely.MultiPolygon:
+    """What parts come to together: gaps closed, spits cut off."""
     closed = shapely.union_all(parts).buffer(_GAP, join_style="mitre")
     opened = closed.buffer(-_GAP - _SLIVER, join_style="mitre")
     area = opened.buffer(_SLIVER, join_style="mitre").simplify(_SIMPLE)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from giveway.walkways.area import walkable_area, walls
+from giveway.walkways.area import sidewalk_area, walkable_area, walls
 from giveway.walkways.gates import Array
 from giveway.walkways.graph import WalkGraph
 from giveway.walkways.reading import Signal, Survey, survey
@@ -117,6 +117,10 @@ class WalkNetwork:
     @cached_property
     def _walkable(self) -> shapely.MultiPolygon:
         return walkable_area(self._survey)
+
+    def sidewalks(self, place: shapely.Geometry) -> shapely.MultiPolygon:
+        """The sidewalks and walkingareas that reach into a place: no roads, no crossings."""
+        return sidewalk_area(self._survey, place)
 
     def wall_segments(self) -> Array:
         """The edge of the walkable area as segments (k, 4) x0, y0, x1, y1 [m].

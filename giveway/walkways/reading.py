@@ -13,6 +13,7 @@ from giveway.walkways.gates import Array
 
 _PEDESTRIAN = "pedestrian"
 _CAR = "passenger"
+_ON_FOOT = frozenset(("pedestrian", "bicycle"))
 _DEFAULT_WIDTH = 3.2  # [m] SUMO's width of a lane that names none
 
 
@@ -45,6 +46,7 @@ class WalkEdge:
     id: str
     junctions: tuple[str, str]  # where its lane begins and where it ends
     lane: PedLane
+    sidewalk: bool = False  # nothing that has an engine uses the lane
 
 
 @dataclass(frozen=True)
@@ -131,7 +133,13 @@ class _Reader:
             exclusive = attributes.get("allow") == _PEDESTRIAN
             if edge["id"] not in found.edges or (exclusive and not self._exclusive):
                 ends = edge["from"], edge["to"]
-                found.edges[edge["id"]] = WalkEdge(edge["id"], ends, _ped_lane(attributes))
+                sidewalk = set(attributes.get("allow", "").split())
+                found.edges[edge["id"]] = WalkEdge(
+                    edge["id"],
+                    ends,
+                    _ped_lane(attributes),
+                    sidewalk=bool(sidewalk) and sidewalk <= _ON_FOOT,
+                )
                 self._exclusive = exclusive
 
     def _junction(self, attributes: dict[str, str]) -> None:

@@ -15,6 +15,7 @@ from giveway.metrics.law.areas import Area
 from giveway.metrics.law.drive import Drive, runs, spread
 from giveway.metrics.law.encounters import AHEAD, Encounter
 from giveway.metrics.law.standing import BEFORE, Owed
+from giveway.records.way import JunctionOnWay
 
 AFTER = 2.0
 """[s] A cause counts for so long after it was there."""
@@ -46,6 +47,7 @@ class _Stand(NamedTuple):
 
     front: float  # [m] station
     sight: float  # [m] how far ahead a vehicle keeps it from driving on
+    foes: float  # [m] how far ahead those pass for whom it waits
     begin: int  # the first control instant
     end: int  # and the one after the last
 
@@ -64,7 +66,7 @@ def stops_without_cause(
     lasting = np.append(np.diff(time), 0.0)
     for begin, end in runs(drive.ego.speed < drive.stop_speed):
         front = float(drive.front[begin:end].mean())
-        stand = _Stand(front, _sight(drive, areas, front), begin, end)
+        stand = _Stand(front, _sight(drive, areas, front), _foes(drive, front), begin, end)
         caused = np.zeros(len(time), dtype=np.bool_)
         if begin == 0:
             caused |= time <= time[0] + _STARTING
@@ -100,6 +102,21 @@ def _sight(drive: Drive, areas: Sequence[Area], front: float) -> float:
     return max([SIGHT, *rooms])
 
 
+def _foes(drive: Drive, front: float) -> float:
+    """How far ahead of its ``front`` [m] foes pass for whom the ego waits [m].
+
+    As far as the junction goes in which or before which it stands: from where a network lets
+    vehicles wait inside, it may be 17 m to where ways cross.
+    """
+    ends = [place.exit - front for place in drive.way.junctions if _at(place, front)]
+    return max([SIGHT, *ends])
+
+
+def _at(place: JunctionOnWay, front: float) -> bool:
+    """Whether the front is in a junction, or right before it."""
+    return place.entry - SIGHT <= front < place.exit
+
+
 def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple[Mask, float]]:
     """When (T,) there was a cause of a stand, and how long [s] before that it counts."""
     time, front = drive.ego.time, stand.front
@@ -112,7 +129,7 @@ def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple
     if any(halt.start - _HALT <= front <= halt.end + _HALT for halt in drive.way.halts):
         yield np.ones(len(time), dtype=np.bool_), 0.0
     yield _people_ahead(drive, stand), AHEAD
-    yield _vehicles_ahead(drive, stand, SIGHT), _FOE
+    yield _vehicles_ahead(drive, stand, stand.foes), _FOE
     yield _vehicles_ahead(drive, stand, stand.sight), 0.0
 
 
@@ -163,7 +180,7 @@ def _on_path(drive: Drive, stand: _Stand, x: Array, y: Array) -> tuple[Array, Ar
     """
     stations = drive.path.stations
     begin = max(stand.front - _ABOUT, 0.0)
-    end = min(stand.front + stand.sight + _ABOUT, stations[-1])
+    end = min(stand.front + max(stand.sight, stand.foes) + _ABOUT, stations[-1])
     between = stations[(stations > begin + _SHORTEST) & (stations < end - _SHORTEST)]
     part = EgoPath.through(drive.path.points(np.array([begin, *between, end])))
     station, lateral = part.project(np.column_stack([x.ravel(), y.ravel()]))

@@ -208,6 +208,27 @@ def test_threats_outline_when_the_safety_layer_would_act():
     assert seen[0, 1] / seen[0].sum() < 0.06  # false alarms
 
 
+def test_threats_outline_when_the_safety_layer_would_act_beside_a_sidewalk():
+    alarm = ALARM._replace(setting_out=WORST.setting_out)
+    g, layer = np.random.default_rng(1), SafetyLayer(LongitudinalModel(), SafetyParameters())
+    seen = np.zeros((2, 2))
+    for _ in range(6000):
+        v, x, y = g.uniform(1.0, 14.0), g.uniform(0.3, 12.0), g.uniform(-4.0, -1.0)
+        pace, towards = g.uniform(0.0, 2.2), g.uniform(-np.pi, np.pi)
+        w = pace * np.array([np.cos(towards), np.sin(towards)])
+        depth = g.uniform(0.05, 2.0)
+        layer.reset()
+        way, here = np.array([[0.0, 0.0, 1.0, 0.0]]), np.array([[x, y]])
+        kerbs = np.array([[0.0, 1.0, depth]])
+        acted = layer.filter(100.0 * v, v, way, 0.1, here, w[None], kerbs=kerbs).acted
+        behind = 0.0, 1.0, depth - 0.05
+        threat = is_threat(x, y, *w, outline(v, DT, alarm), WIDTH / 2, DT, alarm, behind)
+        seen[int(acted), int(threat)] += 1
+    assert seen[1].sum() > 300
+    assert seen[1, 1] / seen[1].sum() > 0.995  # of the acts
+    assert seen[0, 1] / seen[0].sum() < 0.06  # false alarms
+
+
 @pytest.mark.parametrize("name", PATHS)
 def test_whoever_stands_where_the_safety_layer_would_act_is_a_threat(name):
     """Just below a speed at which the stop takes a step less, and on either side of a bend."""

@@ -8,7 +8,7 @@ import pytest
 from controller import Decision
 from giveway.ego.leader import NO_LEADER, Leader
 from giveway.ego.seen import Seen
-from giveway.ego.standing import waits_for
+from giveway.ego.waits_for import waits_for
 from pedestrian_model import Crowd
 
 FRONT, KEPT = 40.0, 8.0  # [m]

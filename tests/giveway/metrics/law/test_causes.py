@@ -49,6 +49,16 @@ def test_a_drive_without_a_stop_has_none():
         ({"vehicles": [crosser(30.0)]}, 1),
         ({"vehicles": [crosser(5.0)]}, 1),  # was gone
         ({"vehicles": [crosser(14.0, x=45.0)]}, 1),  # elsewhere
+        # at the far end of the junction in which, or before which, it waits
+        (
+            {
+                "vehicles": [crosser(14.0, x=45.0)],
+                "junctions": (JunctionOnWay(28.0, 50.0, (30.0,)),),
+            },
+            0,
+        ),
+        ({"vehicles": [crosser(14.0, x=45.0)], "junctions": (JunctionOnWay(32.0, 50.0, ()),)}, 0),
+        ({"vehicles": [crosser(14.0, x=45.0)], "junctions": (JunctionOnWay(41.0, 50.0, ()),)}, 1),
         ({"vehicles": [car(43.0 + 4.0)], "crossings": (FAR_CROSSING,)}, 0),  # a blocked exit
         ({"vehicles": [car(44.0 + 4.0)], "crossings": (FAR_CROSSING,)}, 1),  # room enough
         ({"vehicles": [car(44.0 + 4.0)], "junctions": (JunctionOnWay(32.0, 40.0, ()),)}, 0),

@@ -1,0 +1,164 @@
+"""The kerbs beside an ego's path, and who is on the sidewalk behind them.
+
+The safety layer takes people on a sidewalk to set out for the road less suddenly than those who
+walk on it or on open ground (docs/safety.md). Beside a crossing nobody counts as being on a
+sidewalk: there people are about to step on the road.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import shapely
+
+from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.path import EgoPath
+from giveway.sumo.crossings import Crossing
+
+NO_KERBS: Array = np.zeros((0, 3))
+"""Nobody is on a sidewalk."""
+
+_NEAR = 10.0  # [m] from the path, to which kerbs are kept
+_PIECE = 2.0  # [m] of a kerb, at most
+_FACING = 0.5  # cosine: the road is less than 60 degrees from the right angle to its kerb
+_BESIDE = 0.25  # [m] from the ego's side nobody is on a sidewalk, whatever the network says
+_MOUTH = 1.5  # [m] beside and before a crossing people are about to enter it
+_DEEPEST = 4.0  # [m] from the kerb: who is farther off is no matter
+_BEHIND, _AHEAD = 10.0, 60.0  # [m] of the path from the front bumper, beside which people matter
+
+
+class Kerbs:
+    """The kerbs beside one ego's path.
+
+    Args:
+        path: the ego's.
+        width: of its body [m].
+        sidewalks: of the network, those that reach into some place.
+        crossings: of the network.
+    """
+
+    def __init__(
+        self,
+        path: EgoPath,
+        width: float,
+        sidewalks: Callable[[shapely.Geometry], shapely.Geometry],
+        crossings: Sequence[Crossing],
+    ) -> None:
+        line = shapely.LineString(path.vertices)
+        strip = line.buffer(width / 2.0 + _BESIDE, cap_style="flat")
+        area = sidewalks(line.buffer(_NEAR)).difference(strip)
+        pieces = [_pieces(np.asarray(ring.coords)[:, :2]) for ring in _rings(area)]
+        edges = np.concatenate([*pieces, np.empty((0, 4))])
+        edges = edges[line.distance(shapely.linestrings(edges.reshape(-1, 2, 2))) <= _NEAR]
+        middle = (edges[:, :2] + edges[:, 2:]) / 2.0
+        stations = shapely.line_locate_point(line, shapely.points(middle))
+        away = path.points(stations) - middle
+        away /= np.maximum(np.hypot(away[:, 0], away[:, 1]), 1e-9)[:, None]
+        along = edges[:, 2:] - edges[:, :2]
+        along /= np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-9)[:, None]
+        facing = away[:, 0] * along[:, 1] - away[:, 1] * along[:, 0]  # the area is on the left
+        order = np.argsort(stations, kind="stable")
+        self._edges = np.ascontiguousarray(edges[order])
+        self._stations = stations[order]
+        self._kerb = np.ascontiguousarray((facing >= _FACING)[order])
+        self._mouths = _mouths(crossings, line)
+
+    def __bool__(self) -> bool:
+        return bool(self._kerb.any())
+
+    def of(self, position: Array, front: float) -> Array:
+        """(n, 3) unit vectors to the kerbs of people on sidewalks, and how far [m]; 0 for others.
+
+        Args:
+            position: (n, 2) [m] of the people.
+            front: station of the ego's front bumper [m].
+        """
+        found = np.zeros((len(position), 3))
+        first, last = np.searchsorted(self._stations, (front - _BEHIND, front + _AHEAD))
+        fill_kerbs(position, self._edges[first:last], self._kerb[first:last], self._mouths, found)
+        return found
+
+
+def kerb_lines(position: Array, kerbs: Array) -> Array:
+    """(n, 3) a x + b y = c [m] of people's kerbs, if these were straight, from :meth:`Kerbs.of`."""
+    if not len(kerbs):
+        return NO_KERBS
+    lines = kerbs.copy()
+    lines[:, 2] += (kerbs[:, :2] * position).sum(axis=1)
+    return lines
+
+
+def _rings(area: shapely.Geometry) -> list[shapely.LinearRing]:
+    """The rings of an area, which is on their left."""
+    found = []
+    for polygon in getattr(area, "geoms", [area]):
+        if polygon.geom_type == "Polygon" and not polygon.is_empty:
+            oriented = shapely.geometry.polygon.orient(polygon)
+            found += [oriented.exterior, *oriented.interiors]
+    return found
+
+
+def _pieces(ring: Array) -> Array:
+    """(k, 4) x0, y0, x1, y1 [m] of a ring's segments, each at most ``_PIECE`` long."""
+    ways = np.diff(ring, axis=0)
+    counts = np.maximum(1, np.ceil(np.hypot(ways[:, 0], ways[:, 1]) / _PIECE)).astype(np.int64)
+    cut = [
+        ring[i] + np.outer(np.arange(count + 1) / count, ways[i]) for i, count in enumerate(counts)
+    ]
+    return np.concatenate([np.hstack([points[:-1], points[1:]]) for points in cut])
+
+
+def _mouths(crossings: Sequence[Crossing], line: shapely.LineString) -> Array:
+    """(k, 6) of the crossings near a path: a kerb [m], the unit vector over it, lengths [m]."""
+    rows = []
+    for crossing in crossings:
+        kerb, other = crossing.ends
+        length = float(np.hypot(*(other - kerb)))
+        if length > 0.0 and line.distance(shapely.LineString(crossing.ends)) <= _NEAR:
+            rows.append((*kerb, *(other - kerb) / length, length, crossing.width / 2.0))
+    return np.array(rows, dtype=np.float64).reshape(-1, 6)
+
+
+@kernel
+def fill_kerbs(position: Array, edges: Array, is_kerb: Array, mouths: Array, found: Array) -> None:
+    """Fill ``found`` (n, 3) as in :meth:`Kerbs.of`.
+
+    Args:
+        position: (n, 2) [m].
+        edges: (k, 4) [m] of sidewalks, which are on the left of each.
+        is_kerb: (k,) whether the road is on the right.
+        mouths: (c, 6) see :func:`_mouths`.
+        found: (n, 3).
+    """
+    for p in range(position.shape[0]):
+        x, y = position[p, 0], position[p, 1]
+        closest = nearest_kerb = np.inf
+        inside = False
+        to_x = to_y = 0.0
+        for i in range(edges.shape[0]):
+            x_0, y_0 = edges[i, 0], edges[i, 1]
+            e_x, e_y = edges[i, 2] - x_0, edges[i, 3] - y_0
+            share = ((x - x_0) * e_x + (y - y_0) * e_y) / (e_x * e_x + e_y * e_y)
+            share = min(1.0, max(0.0, share))
+            d_x, d_y = x_0 + share * e_x - x, y_0 + share * e_y - y
+            distance = np.sqrt(d_x * d_x + d_y * d_y)
+            left = e_x * d_y - e_y * d_x < 0.0
+            if distance < closest or (distance == closest and not left):
+                closest, inside = distance, left
+            if is_kerb[i] and distance < nearest_kerb:
+                nearest_kerb, to_x, to_y = distance, d_x, d_y
+        if not inside or nearest_kerb > _DEEPEST or in_mouth(x, y, mouths):
+            continue
+        found[p, 0], found[p, 1] = to_x / nearest_kerb, to_y / nearest_kerb
+        found[p, 2] = nearest_kerb
+
+
+@kernel
+def in_mouth(x: float, y: float, mouths: Array) -> bool:
+    """Whether somebody is beside, before or on a crossing."""
+    for i in range(mouths.shape[0]):
+        d_x, d_y = x - mouths[i, 0], y - mouths[i, 1]
+        u = d_x * mouths[i, 2] + d_y * mouths[i, 3]
+        w = d_y * mouths[i, 2] - d_x * mouths[i, 3]
+        if -_MOUTH <= u <= mouths[i, 4] + _MOUTH and abs(w) <= mouths[i, 5] + _MOUTH:
+            return True
+    return False

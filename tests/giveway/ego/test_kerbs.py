@@ -1,0 +1,96 @@
+"""Who is on a sidewalk beside an ego's way, and how far from its kerb."""
+
+import numpy as np
+import pytest
+import shapely
+
+from giveway.ego.kerbs import NO_KERBS, Kerbs, kerb_lines
+from giveway.ego.setting_out import SettingOut
+from giveway.geometry.path import EgoPath
+from giveway.sumo.crossings import Crossing
+
+EAST = EgoPath.through([(0.0, 0.0), (100.0, 0.0)])
+WIDTH = 2.0
+# 3 m wide, on either side of a road of two lanes of 3.5 m; the ego is on the southern one.
+SIDEWALKS = shapely.union_all(
+    [shapely.box(-5, -4.75, 105, -1.75), shapely.box(-5, 5.25, 105, 8.25)]
+)
+ZEBRA = Crossing("c", np.array([[60.0, -1.75], [60.0, 5.25]]), 4.0, True, "", -1)
+
+
+def kerbs(path=EAST, sidewalks=SIDEWALKS, crossings=(ZEBRA,)):
+    return Kerbs(path, WIDTH, lambda place: sidewalks.intersection(place), crossings)
+
+
+def test_who_is_on_a_sidewalk_has_a_kerb():
+    people = np.array([[20.0, -2.25], [21.3, -4.5], [30.0, 5.5]])
+    expected = [[0.0, 1.0, 0.5], [0.0, 1.0, 2.75], [0.0, -1.0, 0.25]]
+    assert kerbs().of(people, front=15.0) == pytest.approx(np.array(expected))
+
+
+@pytest.mark.parametrize(
+    ("where", "why"),
+    [
+        ((20.0, -1.7), "on the road, by a step"),
+        ((20.0, 0.0), "before the ego"),
+        ((20.0, -5.0), "behind the sidewalk"),
+        ((60.0, -2.0), "about to use the zebra"),
+        ((63.4, -2.0), "beside the zebra"),
+        ((60.0, 1.0), "on the zebra"),
+        ((90.0, -2.0), "too far ahead to matter"),
+    ],
+)
+def test_who_is_elsewhere_has_none(where, why):
+    assert not kerbs().of(np.array([where]), front=15.0).any(), why
+
+
+def test_behind_the_mouth_of_a_zebra_there_is_a_kerb_again():
+    found = kerbs().of(np.array([[64.0, -2.0], [60.0, -3.5]]), front=15.0)
+    assert found[:, 2] == pytest.approx([0.25, 1.75])
+
+
+def test_on_the_strip_that_the_ego_sweeps_there_is_no_sidewalk():
+    """A network in which a sidewalk reaches into the lane."""
+    over = shapely.union_all([SIDEWALKS, shapely.box(20, -4.75, 30, -0.5)])
+    found = kerbs(sidewalks=over).of(np.array([[25.0, -1.2], [25.0, -1.5]]), front=15.0)
+    assert found[0, 2] == 0.0
+    assert found[1, 2] == pytest.approx(0.25)
+
+
+def test_in_a_bend_the_kerb_is_where_it_is_nearest():
+    angles = np.linspace(0.0, np.pi / 2, 40)
+    bend = EgoPath.through([(12.0 * np.sin(a), 12.0 * (1.0 - np.cos(a))) for a in angles])
+    ring = (
+        shapely.Point(0.0, 12.0)
+        .buffer(16.0, 64)
+        .difference(shapely.Point(0.0, 12.0).buffer(13.75, 64))
+    )
+    found = kerbs(bend, ring, ()).of(
+        np.array([[14.25 * np.sin(0.7), 12.0 - 14.25 * np.cos(0.7)]]), 2.0
+    )
+    assert found[0] == pytest.approx([-np.sin(0.7), np.cos(0.7), 0.5], abs=0.02)
+
+
+def test_where_there_is_no_sidewalk_nobody_is_on_one():
+    none = kerbs(sidewalks=shapely.MultiPolygon())
+    assert not none
+    assert kerbs()
+
+
+def test_a_kerb_as_a_line_is_where_it_was():
+    people = np.array([[20.0, -2.25], [20.0, 0.0]])
+    lines = kerb_lines(people, kerbs().of(people, front=15.0))
+    assert lines == pytest.approx(np.array([[0.0, 1.0, -1.75], [0.0, 0.0, 0.0]]))
+    assert kerb_lines(people, NO_KERBS) is NO_KERBS
+
+
+def test_who_sets_out_too_suddenly_is_named_once_it_does():
+    watch = SettingOut(0.6, 0.1)
+    behind = np.array([[0.0, 1.0, 0.5], [0.0, 1.0, 0.5], [0.0, 0.0, 0.0]])
+    still, who = np.zeros((3, 2)), np.array([4, 7, 9])
+    assert not len(watch.beyond(who, still, behind))
+    gently = np.array([[1.0, 0.05], [0.0, 0.07], [0.0, 3.0]])  # 7 by 0.7 m/s^2; 9 is on the road
+    assert watch.beyond(who, gently, behind).tolist() == [7]
+    left = np.array([9, 7])  # 4 has gone, 9 is on the sidewalk now
+    assert not len(watch.beyond(left, np.array([[0.0, 9.0], [0.0, 0.07]]), behind[:2]))
+    assert watch.beyond(left, np.array([[0.0, 9.1], [0.0, 0.0]]), behind[:2]).tolist() == [9]
