@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from controller import Decision, Observation
 from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
+from giveway.ego.belief import Beliefs
 from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight
 from giveway.ego.leader import NO_LEADER, Following
@@ -110,6 +111,7 @@ class Ego:
         planner = self.config.planner
         if not waiting.controller.foresees or waiting.predictor is None:
             return None
+        way = self.path, self.corridor.half_width
         return CrowdForesight(
             waiting.predictor,
             self.path,
@@ -121,6 +123,7 @@ class Ego:
             clearance=waiting.clearance,
             braking=self.config.mpc.force_limit / self.config.vehicle.mass,
             worst=None if waiting.safety is None else waiting.safety.worst,
+            beliefs=Beliefs(*way, waiting.predictor, self._time_step) if planner.belief else None,
         )
 
     @property
@@ -189,7 +192,8 @@ class Ego:
             pedestrians = crowd if relevant is None else crowd.select(relevant)
             if foresight is not None:
                 off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
-                foresight.look(pedestrians, surroundings, poses, row, front, speed, off)
+                who = numbers if relevant is None else numbers[relevant]
+                foresight.look(pedestrians, surroundings, poses, row, front, speed, off, who)
             else:
                 predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
