@@ -183,6 +183,9 @@ class PlannerConfig(Section):
     planned_speed: bool = option(
         True, None, "people are predicted under the planned speeds; else under the present one"
     )
+    belief: bool = option(
+        True, None, "who seems to yield is expected to; else everybody to walk on by the preset"
+    )
     effort_weight: float = option(
         0.02,
         "s",

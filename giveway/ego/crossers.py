@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inlined, kernel
 from giveway.geometry.path import segment_at
 
 _REACH = 60.0  # [m] of the way beyond the horizon on which people matter
@@ -34,22 +34,8 @@ def fill_crossers(
     first, last = segment_at(stations, front), segment_at(stations, front + _REACH)
     for p in range(people.shape[0]):
         x, y, w_x, w_y, until = people[p]
-        closest, station, lateral, along, across = np.inf, 0.0, 0.0, 0.0, 0.0
-        for i in range(first, last + 1):
-            x_0, y_0 = vertices[i, 0], vertices[i, 1]
-            length = stations[i + 1] - stations[i]
-            e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
-            ahead = (x - x_0) * e_x + (y - y_0) * e_y
-            beside = (y - y_0) * e_x - (x - x_0) * e_y
-            beyond = 0.0
-            if ahead < 0.0 and i > first:
-                beyond = ahead
-            elif ahead > length and i < last:
-                beyond = ahead - length
-            distance = beside * beside + beyond * beyond
-            if distance < closest:
-                closest, station, lateral = distance, stations[i] + ahead, beside
-                along, across = w_x * e_x + w_y * e_y, w_y * e_x - w_x * e_y
+        station, lateral, e_x, e_y = abreast(vertices, stations, first, last, x, y)
+        along, across = w_x * e_x + w_y * e_y, w_y * e_x - w_x * e_y
         enters, leaves = 0.0, until
         if abs(across) > _ABREAST:
             one, other = (half_width - lateral) / across, (-half_width - lateral) / across
@@ -58,3 +44,30 @@ def fill_crossers(
             leaves = 0.0
         crossers[p, 0], crossers[p, 1] = station - front, along
         crossers[p, 2], crossers[p, 3] = enters, leaves if enters < leaves else 0.0
+
+
+@inlined
+def abreast(
+    vertices: Array, stations: Array, first: int, last: int, x: float, y: float
+) -> tuple[float, float, float, float]:
+    """Somebody beside the nearest of the segments ``first`` ... ``last``, or ahead of them.
+
+    The station [m], how far to the left of the way [m], and the direction of the segment.
+    """
+    closest, station, lateral, along_x, along_y = np.inf, 0.0, 0.0, 0.0, 0.0
+    for i in range(first, last + 1):
+        x_0, y_0 = vertices[i, 0], vertices[i, 1]
+        length = stations[i + 1] - stations[i]
+        e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
+        ahead = (x - x_0) * e_x + (y - y_0) * e_y
+        beside = (y - y_0) * e_x - (x - x_0) * e_y
+        beyond = 0.0
+        if ahead < 0.0 and i > first:
+            beyond = ahead
+        elif ahead > length and i < last:
+            beyond = ahead - length
+        distance = beside * beside + beyond * beyond
+        if distance < closest:
+            closest, station, lateral = distance, stations[i] + ahead, beside
+            along_x, along_y = e_x, e_y
+    return station, lateral, along_x, along_y

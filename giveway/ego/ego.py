@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from controller import Decision, Observation
 from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
+from giveway.ego.belief import Beliefs
 from giveway.ego.corridor import Corridor
 from giveway.ego.foresight import CrowdForesight
 from giveway.ego.kerbs import NO_KERBS, Kerbs
@@ -29,7 +30,7 @@ from giveway.geometry.path import EgoPath, Pose
 from giveway.geometry.slope import Slope
 from giveway.records.outputs import ROAD_GRADE
 from giveway.records.rows import STOP_SPEED, EgoRow
-from pedestrian_model import Crowd, Surroundings
+from pedestrian_model import Crowd, Predictor, Surroundings
 
 _BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
 _STRAIGHT = (
@@ -119,11 +120,15 @@ class Ego:
 
     def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
         """Answers the planning controller how pedestrians would react to a manoeuvre."""
-        planner = self.config.planner
-        if not waiting.controller.foresees or waiting.predictor is None:
+        planner, predictor = self.config.planner, waiting.predictor
+        if not waiting.controller.foresees or predictor is None:
             return None
+        beliefs = None
+        if planner.belief and self.config.perception.model == "vci":
+            assert isinstance(predictor, Predictor)
+            beliefs = Beliefs(self.path, self.corridor.half_width, predictor, self._time_step)
         return CrowdForesight(
-            waiting.predictor,
+            predictor,
             self.path,
             self.shape,
             horizon=waiting.horizon,
@@ -133,6 +138,7 @@ class Ego:
             clearance=waiting.clearance,
             braking=self.config.mpc.force_limit / self.config.vehicle.mass,
             worst=None if waiting.safety is None else waiting.safety.worst,
+            beliefs=beliefs,
         )
 
     @property
@@ -206,7 +212,10 @@ class Ego:
             if foresight is not None:
                 behind = kerbs[relevant] if len(kerbs) and relevant is not None else kerbs
                 off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
-                foresight.look(pedestrians, surroundings, poses, row, front, speed, off, behind)
+                who = numbers if relevant is None else numbers[relevant]
+                foresight.look(
+                    pedestrians, surroundings, poses, row, front, speed, off, behind, who
+                )
             else:
                 predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)

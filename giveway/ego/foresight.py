@@ -3,8 +3,10 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from controller import Heats, Manoeuvre, Prospect, Trials, Verdict, WorstMotion
+from giveway.ego.belief import Beliefs
 from giveway.ego.corridor import fill_poses
 from giveway.ego.crossers import fill_crossers
 from giveway.ego.kerbs import NO_KERBS, kerb_lines
@@ -74,6 +76,7 @@ class CrowdForesight:
         braking: [m/s^2] of the ego at most.
         worst: what the safety layer takes people to do; None: there is none.
         conflict_time: time to collision of a conflict [s] (FHWA-HRT-08-051).
+        beliefs: who yields; None: everybody walks on.
     """
 
     def __init__(
@@ -90,6 +93,7 @@ class CrowdForesight:
         braking: float,
         worst: WorstMotion | None,
         conflict_time: float = CRITICAL_TTC,
+        beliefs: Beliefs | None = None,
     ) -> None:
         N, M = horizon, predictor.horizon
         every = round(predictor.time_step / time_step)
@@ -112,7 +116,8 @@ class CrowdForesight:
             min(able.setting_out, able.acceleration),
         )
         self._alarm = tuple(self._limits)
-        self._clearance = clearance
+        self._clearance, self._off = clearance, 0.0
+        self._beliefs, self._soon = beliefs, np.empty(0)
         self._length = shape.length
         self._constant = np.arange(N + 1) * time_step
         self._distance, self._speed = np.empty(N + 1), np.empty(N + 1)
@@ -138,11 +143,12 @@ class CrowdForesight:
         speed: float,
         off: float = 0.0,
         kerbs: Array = NO_KERBS,
+        numbers: NDArray[np.int64] | None = None,
     ) -> None:
         """Begin an instant.
 
         Args:
-            pedestrians: to be predicted.
+            pedestrians: to be predicted; the ways of those who are believed to yield are changed.
             surroundings: the walls and lights that they heed.
             poses: (N, m, 7) of all vehicles at steps 0 ... N-1; not changed.
             row: the ego's.
@@ -150,9 +156,15 @@ class CrowdForesight:
             speed: the ego's [m/s].
             off: [m] how far people's positions are off at most, beside what the clearance has.
             kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.kerbs.Kerbs.of`.
+            numbers: (n,) one for each person, which the person keeps; None: nobody is known again.
         """
-        lines = kerb_lines(pedestrians.position, kerbs)
-        self._alarm = (*self._limits._replace(clearance=self._clearance + off)[:-1], lines)
+        if off != self._off:
+            self._off = off
+            self._limits = self._limits._replace(clearance=self._clearance + off)
+        self._alarm = (*self._limits[:-1], kerb_lines(pedestrians.position, kerbs))
+        if self._beliefs is not None and numbers is not None:
+            self._beliefs.update(pedestrians, numbers, front, self._soon)
+            self._soon = self._soon[:0]
         self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front, self._now = poses, row, front, speed
         self._copied, self._stale, self._preferred = False, True, False
@@ -253,6 +265,7 @@ class CrowdForesight:
             raise vci.divergence(self._pedestrians, lanes.bad)
         if best >= 0:
             self._winner = lanes.positions(best, n)
+            self._soon = lanes.soon(best, n)
         return lanes.verdict(best, clear, tried)
 
     def prefer(self) -> None:

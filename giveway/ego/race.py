@@ -85,6 +85,11 @@ class Lanes:
         size = M * n * 4
         return self._state[k * size : (k + 1) * size].reshape(M, n, 4)[:, :, :2]
 
+    def soon(self, k: int, n: int) -> Array:
+        """(4 n,) x, y [m], v_x, v_y [m/s] of the people after the first step, likewise."""
+        at = 4 * k * self._predicted * n
+        return self._state[at : at + 4 * n]
+
     def verdict(self, best: int, clear: bool, tried: int) -> Verdict:
         """How the race ended."""
         gap, conflicts, calm = self._prospects
