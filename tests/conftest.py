@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import hypothesis
 import pytest
 
 SUPPORT = Path(__file__).parent / "support"
@@ -21,6 +22,9 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 # Hundreds of programs are started; none shall compile our modules again, even where Python has been
 # told to keep no bytecode.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+# No test fails for having been slow.
+hypothesis.settings.register_profile("unhurried", deadline=None)
+hypothesis.settings.load_profile("unhurried")
 # Half of what numpy's import costs is the start of threads that nothing here uses.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 sys.dont_write_bytecode = False

@@ -99,7 +99,7 @@ def enumerated(flags, lattice, speed, price):
     return best
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     seed=st.integers(0, 10_000),
     price=st.sampled_from([TOUCH, 0.5, KEEP]),
@@ -123,7 +123,7 @@ def test_no_motion_is_better(seed, price, speed):
         assert cost == pytest.approx(least, rel=1e-6, abs=1e-4)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(at=st.floats(3.0, 38.0), begin=st.floats(0.0, 9.0), stay=st.floats(0.0, 6.0))
 def test_a_dearer_safe_distance_is_never_faster_and_never_longer_below(at, begin, stay):
     people = standing(at, begin, begin + stay)

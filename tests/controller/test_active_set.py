@@ -45,7 +45,7 @@ def test_the_dual_method_says_infeasible_exactly_where_the_lp_does(problems, edg
     assert min(said.values()) > 15
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(problem=small_problems(feasible=True))
 def test_the_dual_method_ends_at_the_optimum(problem):
     rows, *_, target = problem
@@ -54,7 +54,7 @@ def test_the_dual_method_ends_at_the_optimum(problem):
     assert_optimal(problem, multipliers, V)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(problem=small_problems(feasible=False))
 def test_infeasibility_is_certified_if_and_only_if_there_is_no_point(problem):
     rows, lower, upper, target = problem

@@ -26,7 +26,7 @@ def let_through(force, speed, position, velocity=None, way=EAST, **parameters):
     return layer.filter(force, speed, way, 0.25, position, velocity.reshape(-1, 2))
 
 
-relaxed = settings(max_examples=60, deadline=None)
+relaxed = settings(max_examples=60)
 forces = st.floats(-8000.0, 8000.0)
 speeds = st.one_of(st.just(0.0), st.floats(0.0, 15.0))
 ahead = st.tuples(st.floats(-6.0, 25.0), st.floats(-6.0, 6.0))

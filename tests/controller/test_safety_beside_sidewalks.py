@@ -27,7 +27,7 @@ WORST = RECORDED["recorded-99.9"]
 EAST = np.array([[0.0, 0.0, 1.0, 0.0]])
 PEOPLE = 4
 
-relaxed = settings(max_examples=60, deadline=None)
+relaxed = settings(max_examples=60)
 seeds = st.integers(0, 2**32 - 1)
 
 

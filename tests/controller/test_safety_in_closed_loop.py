@@ -23,7 +23,7 @@ SIMULATED = {"walking_acceleration": A_MAX, "walking_speed": V_MAX}
 LOOKS = 5  # in between, at each step
 SPACING = 0.1  # m
 
-relaxed = settings(max_examples=40, deadline=None)
+relaxed = settings(max_examples=40)
 seeds = st.integers(0, 2**32 - 1)
 
 

@@ -107,7 +107,7 @@ def test_driving_off_keeps_to_comfort():
 
 
 @given(gap=st.floats(3.0, 7.9), mass=st.sampled_from(MASSES))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_who_steps_in_closely_is_braked_for_hard(gap, mass):
     """Within the actuator's limits the car stops before it is at the pedestrian."""
     steps_in = lambda k, position: math.inf if k < 20 else gap + 4.0 - position  # noqa: E731
@@ -142,7 +142,7 @@ moments = st.tuples(
 
 
 @given(moments=st.lists(moments, min_size=1, max_size=40))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_the_actuators_limits_hold_whatever_is_seen(moments):
     pid, before = TunedPid(), 0.0
     for speed, gap, limit in moments:
@@ -193,7 +193,7 @@ def test_a_vehicle_stronger_in_words_than_in_deeds_does_not_wind_it_up():
 
 
 @given(speed=st.floats(0.5, 8.0), force=st.floats(-7000.0, 5000.0))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_it_takes_over_without_a_bump(speed, force):
     """After another acted its force goes on from there, no faster than the reference's jerk."""
     pid, p = TunedPid(), ReferenceParameters()

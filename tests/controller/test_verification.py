@@ -67,7 +67,7 @@ def test_junk_is_no_certificate(junk, problems):
         assert not certifies_infeasibility(*bounds(problem)[:3], *SPEEDS, np.full(56, junk))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(
     problem=small_problems(feasible=True), seed=st.integers(0, 2**16), noise=st.floats(0.0, 1e-3)
 )
@@ -86,7 +86,7 @@ def test_what_refine_verifies_is_the_optimum_whatever_it_started_from(problem, s
             np.testing.assert_allclose(W, V, atol=1e-7)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(problem=small_problems(feasible=True), seed=st.integers(0, 2**16))
 def test_nothing_certifies_that_a_feasible_problem_is_not(problem, seed):
     rows, lower, upper, _ = problem

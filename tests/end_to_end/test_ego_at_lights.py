@@ -71,7 +71,7 @@ def drive(
     gap_from=st.sampled_from(["bumper", "centre"]),
     safe_distance=st.sampled_from([2.0, 8.0, 15.0]),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_an_ego_stands_before_the_line_or_passes_and_never_halts_beyond(
     controller: str,
     speed: float,

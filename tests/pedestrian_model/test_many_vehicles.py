@@ -32,7 +32,7 @@ def traffic(m, seed, side):
     )
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seed=st.integers(0, 10**6))
 def test_the_force_is_that_of_all_vehicles(random_crowd, seed):
     crowd, vehicles = random_crowd(300, seed, density=0.02), traffic(40, seed, side=120.0)

@@ -278,7 +278,7 @@ def test_select_concatenate_and_copy_carry_passages_and_signals():
     replace(both)  # passes every check of a crowd put together by hand
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.lists(st.integers(1, 4), min_size=1, max_size=12), st.integers(0, 2**12 - 1))
 def test_a_selection_joined_with_the_others_is_everybody(lengths, bits):
     rng = np.random.default_rng(len(lengths) + bits)

@@ -28,7 +28,7 @@ def bytes_of(crowd):
     return crowd.position.tobytes() + crowd.velocity.tobytes() + crowd.waypoint_index.tobytes()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 10**6))
 def test_acceleration_and_speed_keep_their_limits(random_crowd, random_vehicles, seed):
     crowd, vehicles = random_crowd(30, seed, density=2.0), random_vehicles(seed)

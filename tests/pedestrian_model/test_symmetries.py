@@ -13,7 +13,7 @@ from pedestrian_model import Crowd, CrowdModel, Vehicles, vehicle_influence
 MODEL = CrowdModel()
 seeds = st.integers(0, 2**31 - 1)
 angles = st.floats(-10.0, 10.0)
-few = settings(max_examples=40, deadline=None)
+few = settings(max_examples=40)
 
 
 def turned(crowd, vehicles, angle=0.0, shift=(0.0, 0.0)):
@@ -128,7 +128,7 @@ point = st.tuples(coordinate, coordinate)
 slow = st.one_of(st.sampled_from([0.0, 1e-300, 1e-3]), st.floats(-3.0, 3.0))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     st.lists(st.tuples(point, st.tuples(slow, slow), point), min_size=1, max_size=12),
     st.lists(st.tuples(coordinate, coordinate, slow, st.floats(-30.0, 30.0)), max_size=3),

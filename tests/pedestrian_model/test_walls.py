@@ -86,7 +86,7 @@ def test_on_the_line_the_force_is_the_walls_normal_and_capped():
 
 @pytest.mark.parametrize("corners", [3, 4, 7, 20])
 @pytest.mark.parametrize("orientation", [1, -1])
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(seed=st.integers(0, 10**6))
 def test_the_nearest_wall_point_of_any_polygon(corners, orientation, seed):
     """A star-shaped polygon, sharp corners of both kinds, walkable inside or outside."""
@@ -264,7 +264,7 @@ def test_the_mirror_image_of_a_scene_is_its_mirror_image():
     np.testing.assert_allclose(other.position, one.position * mirror, rtol=0.0, atol=1e-6)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10**6))
 def test_among_any_walls_limits_are_kept_and_nothing_is_nan(random_crowd, random_vehicles, seed):
     """Walls anywhere, through people and each other, some without length."""

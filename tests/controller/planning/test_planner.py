@@ -68,7 +68,7 @@ def test_the_force_is_that_of_the_plain_problems_optimum(plain_problem, seed, so
 
 
 @given(speed=speeds, force=forces, room=rooms, calm=st.floats(0.0, 25.0))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_soft_corridor_always_leaves_a_plan(speed, force, room, calm):
     problem = SmoothingProblem(MODEL, FOLLOWING)
     problem.aim_at(np.full(len(problem.nodes), 4.0), speed, 0.0)
@@ -90,7 +90,7 @@ def test_a_soft_corridor_always_leaves_a_plan(speed, force, room, calm):
 
 
 @given(speed=speeds, force=forces, room=rooms)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_hard_corridor_is_refused_if_and_only_if_braking_cannot_keep_it(
     plain_problem, speed, force, room
 ):

@@ -88,7 +88,7 @@ def standing(draw):
 
 
 @given(standing())
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_with_closeness_beyond_all_else_a_stop_stays_possible(bystanders, case):
     drove = drive(bystanders, *case, closeness_weight=1e9)
     assert drove.lacking <= 1e-4
@@ -96,7 +96,7 @@ def test_with_closeness_beyond_all_else_a_stop_stays_possible(bystanders, case):
 
 
 @given(standing())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_with_the_usual_weight_some_centimetres_are_bought(bystanders, case):
     drove = drive(bystanders, *case)
     assert drove.lacking <= BOUGHT

@@ -57,7 +57,6 @@ def steady(speed, horizon):
     fastest=st.floats(0.0, 20.0),
     jerk=st.floats(1.0, 20.0),
 )
-@settings(deadline=None)
 def test_a_manoeuvre_is_the_vehicles_motion_within_the_jerk(
     speed, before, wanted, slowest, fastest, jerk
 ):
@@ -75,7 +74,6 @@ def test_a_manoeuvre_is_the_vehicles_motion_within_the_jerk(
 
 
 @given(speed=st.floats(0.0, 20.0), wanted=st.floats(0.5, 3.0), fastest=st.floats(0.0, 20.0))
-@settings(deadline=None)
 def test_driving_on_ends_at_the_wanted_speed(speed, wanted, fastest):
     m = aimed(speed, 0.0, wanted, 0.0, fastest, horizon=2000)
     assert m.speed[-1] == pytest.approx(fastest, abs=1e-3)
@@ -84,7 +82,6 @@ def test_driving_on_ends_at_the_wanted_speed(speed, wanted, fastest):
 
 
 @given(speed=st.floats(0.0, 8.0), wanted=st.floats(-6.0, -0.5), slowest=st.floats(0.0, 3.0))
-@settings(deadline=None)
 def test_braking_ends_at_the_slowest_speed(speed, wanted, slowest):
     assume(speed >= slowest)
     m = aimed(speed, 0.0, wanted, slowest, 8.0, horizon=2000)
@@ -195,7 +192,7 @@ def test_who_walks_ahead_along_the_way_is_followed():
     speed=st.floats(0.0, 14.0),
     wanted=st.floats(1.0, 14.0),
 )
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_what_is_lost_later_is_a_finite_time_and_none_is_won(crossers, speed, wanted):
     people = np.array(crossers, dtype=float).reshape(-1, 4)
     lost = time_to_go(people, speed, wanted)
@@ -259,7 +256,7 @@ def test_the_corridor_ends_where_a_stop_behind_everybody_is_possible():
     headway=st.floats(DT, 0.5),
     deceleration=st.floats(0.5, 10.0),
 )
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_an_admissible_plan_is_admissible_one_step_later(
     speeds, ahead, pace, headway, deceleration
 ):
@@ -323,7 +320,6 @@ def test_a_speed_above_the_wanted_one_is_given_up_without_a_hard_brake(wanted):
 
 
 @given(speed=st.floats(0.0, 15.0), room=st.floats(0.5, 60.0), fastest=st.floats(1.0, 15.0))
-@settings(deadline=None)
 def test_driving_up_to_the_end_of_the_way_is_a_stop_in_comfort_there(speed, room, fastest):
     assume(speed**2 / 3.0 + 0.7 * speed <= room)  # such a stop is possible
     m = Manoeuvre.empty(400)

@@ -104,7 +104,7 @@ def test_two_vehicles_do_not_know_each_other(fmu):
         assert (a.position, b.position) == (H * 1.0, H * 2.0)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.lists(st.floats(-8000.0, 8000.0), max_size=60), st.booleans(), st.booleans())
 def test_both_fmi_versions_give_the_same_bits(forces, exact, reverse):
     results = []

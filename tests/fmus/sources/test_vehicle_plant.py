@@ -72,7 +72,7 @@ def test_euler_is_the_papers_recursion_bit_by_bit_over_a_long_run(fmi_version, r
     assert np.array_equal(ours, euler(1000.0, 100.0, forces, speed=4.0, reverse=reverse))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(masses, frictions, speeds, forces, st.booleans(), st.floats(0.001, 0.2))
 def test_euler_is_bit_equal_for_any_vehicle_and_force(M, alpha, speed, forces, reverse, dt):
     expected = euler(M, alpha, forces, dt=dt, position=-3.0, speed=speed, reverse=reverse)
@@ -88,7 +88,7 @@ def test_euler_is_bit_equal_for_any_vehicle_and_force(M, alpha, speed, forces, r
 TINY = 1e-300  # numbers near the smallest have few digits
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     masses,
     st.floats(1.0, 2_000.0),
@@ -111,7 +111,7 @@ def test_without_friction_the_exact_step_is_the_parabola(fmi_version):
     assert ours[:, 1] == pytest.approx(2.0 + 2.0 * t, abs=1e-12)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(masses, st.floats(0.0, 2_000.0), speeds, st.floats(-30_000.0, 30_000.0))
 def test_an_exact_step_can_be_cut_in_pieces(M, alpha, speed, u):
     whole = run("2.0", [u], dt=0.4, speed=speed, M=M, alpha=alpha, exact=True)[-1]
@@ -132,7 +132,7 @@ def test_euler_converges_to_the_exact_solution_with_first_order(fmi_version):
 # ---- standing still ----
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(masses, frictions, speeds, forces, st.booleans())
 def test_brakes_never_drive_backwards(M, alpha, speed, forces, exact):
     states = run("2.0", forces, speed=speed, M=M, alpha=alpha, exact=exact)
@@ -147,7 +147,7 @@ def test_a_standing_car_is_held_and_drives_off_again(fmi_version, exact):
     assert states[6, 1] > 0.0
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(masses, st.floats(5.0, 2_000.0), st.floats(0.1, 40.0), st.floats(10.0, 30_000.0))
 def test_the_exact_stop_is_where_the_equation_stops(M, alpha, speed, brake):
     t, s = free_stop(M, alpha, brake, speed)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from fmus import VehicleFmu, bundled_fmu
 
-SETTINGS = settings(max_examples=100, deadline=None)
+SETTINGS = settings(max_examples=100)
 masses = st.floats(0.5, 1e5)  # [kg]
 frictions = st.one_of(st.just(0.0), st.floats(1e-9, 1e7))  # [N.s/m]
 steps = st.floats(1e-3, 1.0)  # [s]

@@ -56,7 +56,7 @@ def one_by_one(lane: np.ndarray, station: float, sight: float, people: np.ndarra
     return gap if gap <= sight else math.inf
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 10_000), st.integers(2, 12), st.floats(5.0, 120.0))
 def test_the_first_in_each_cars_way_is_found(seed: int, corners: int, sight: float) -> None:
     lanes = [winding(seed + k, corners) for k in range(3)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from giveway.config import RunConfig
@@ -26,7 +26,6 @@ def test_without_noise_there_is_no_disturbance():
     assert disturbance_of(RunConfig(crowd={"acceleration_noise": 0.1}), CrowdModel()) is not None
 
 
-@settings(deadline=None)
 @given(st.integers(0, 10**6), st.floats(0.01, 5.0))
 def test_no_step_exceeds_the_model_s_limits(seed, deviation):
     """|v' - v| <= a_max dt and |v'| <= v_max, and the way is that of constant acceleration."""

@@ -43,7 +43,7 @@ def tracker() -> Tracker:
 
 
 @given(seed=st.integers(0, 2**32 - 1))
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=20)
 def test_nobody_is_farther_off_than_it_says(seed):
     world, tracked = World(seed), tracker()
     for _ in range(60):

@@ -101,7 +101,7 @@ def test_one_from_the_side_is_expected_in_the_corridor() -> None:
 
 @pytest.mark.parametrize("half_width", [0.2, 0.5, HALF_WIDTH, 3.0])
 @given(x=numbers, y=numbers, turn=numbers)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_the_closest_point_of_a_vehicle_is_found(
     half_width: float, x: float, y: float, turn: float
 ) -> None:
@@ -142,7 +142,7 @@ def winding_paths(draw: st.DrawFn) -> EgoPath:
 
 
 @given(path=winding_paths(), share=numbers, seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_on_a_long_path_those_in_sight_are_the_same_as_on_the_whole_path(
     path: EgoPath, share: float, seed: int
 ) -> None:
@@ -165,7 +165,7 @@ def test_on_a_long_path_those_in_sight_are_the_same_as_on_the_whole_path(
     seed=st.integers(0, 2**32 - 1),
     horizon=st.sampled_from([2, 15, 200]),
 )
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_who_can_get_in_front_within_the_horizon_is_predicted(
     path: EgoPath, share: float, seed: int, horizon: int
 ) -> None:

@@ -114,7 +114,7 @@ coordinates = st.floats(-12.0, 12.0)
 velocities = st.floats(-5.0, 5.0)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(coordinates, coordinates, velocities, velocities)
 def test_contact_agrees_with_fine_sampling(x, y, w_x, w_y):
     first, last = contact_interval(x, y, w_x, w_y, 2.5, 1.0, R)
@@ -132,7 +132,7 @@ def test_contact_agrees_with_fine_sampling(x, y, w_x, w_y):
         assert touch <= R + 1e-9
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(coordinates, coordinates)
 def test_signed_distance_agrees_with_the_distance_to_the_edges(x, y):
     corners = np.array([(2.5, 1.0), (-2.5, 1.0), (-2.5, -1.0), (2.5, -1.0)])
@@ -145,7 +145,7 @@ def test_signed_distance_agrees_with_the_distance_to_the_edges(x, y):
     assert signed_distance(x, y, 2.5, 1.0) == pytest.approx(sign * nearest, abs=1e-12)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(
     st.tuples(coordinates, coordinates, velocities, velocities),
     st.floats(0.0, 10.0),

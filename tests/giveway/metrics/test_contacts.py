@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from giveway.geometry.bodies import VehicleShape
@@ -124,7 +124,6 @@ def test_records_with_a_gap_in_time_are_not_joined(driving, crowd):
 
 
 @given(st.integers(0, 10**6), st.booleans())
-@settings(deadline=None)
 def test_every_overlap_is_one_or_the_other_in_any_frame(ego, crowd, walking, seed, drives):
     """Frontal and side contacts are exactly the overlaps, and do not depend on the axes."""
     random = np.random.default_rng(seed)

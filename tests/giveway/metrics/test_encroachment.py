@@ -130,7 +130,7 @@ def brute_force(front, heading, walk, radius, finer=10):
     return DT * np.abs(fine[who] - fine[when]).min() if who.size else inf
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     st.floats(-0.3, 0.3),
     st.floats(0.5, 4.0),

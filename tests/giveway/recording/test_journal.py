@@ -50,7 +50,7 @@ def test_rows_of_a_step_that_was_not_committed_are_not_there(tmp_path: Path) -> 
     assert read_journal(tmp_path).tables["ego"].tolist() == [[1.0], [2.0]]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     steps=st.lists(
         st.tuples(st.integers(0, 700), st.lists(NAMES, max_size=4), st.booleans()), max_size=12

@@ -293,7 +293,7 @@ def tours(draw: st.DrawFn) -> list[str]:
     return [a + b if draw(st.booleans()) else b + a for a, b in pairs]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(edges=tours(), side=st.floats(-1.0, 1.0), arrival=st.floats(0.0, 100.0))
 def test_every_way_is_connected_and_stays_where_people_walk(
     grid: WalkNetwork,
@@ -313,7 +313,7 @@ def test_every_way_is_connected_and_stays_where_people_walk(
     assert grid.walkable().buffer(0.5).covers(walked(route, start))
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(edges=tours(), side=st.floats(-1.0, 1.0))
 def test_one_comes_to_each_line_from_before_it(
     grid: WalkNetwork, edges: list[str], side: float
@@ -324,7 +324,7 @@ def test_one_comes_to_each_line_from_before_it(
     assert ((steps * route.passages[:, :2]).sum(axis=1) > 0.0).all()
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     edges=st.lists(st.sampled_from(["A0A1", "B1B0", "C2C1", "A1B1", "nowhere", ":B1_c0", ""])),
     lane=st.sampled_from(["A0A1_0", ":B1_w0_0", ":B1_c1_0", ":B1_5_0", ":nowhere_0", "", "x"]),

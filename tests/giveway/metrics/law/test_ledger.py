@@ -54,7 +54,7 @@ def test_contacts_with_vehicles_are_rows():
     assert event.x == pytest.approx(16.0)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(turn=st.floats(-np.pi, np.pi), swapped=st.booleans())
 def test_neither_the_frame_nor_the_crossings_direction_matters(turn, swapped):
     crossing = ZEBRA._replace(ends=ZEBRA.ends[::-1]) if swapped else ZEBRA

@@ -104,14 +104,12 @@ def test_no_size_of_the_numbers_upsets_it(size: float) -> None:
 
 
 @given(samples, st.integers(0, MASK))
-@settings(deadline=None)
 def test_interval_lies_within_the_numbers(sample: np.ndarray, seed: int) -> None:
     found = mean_interval(sample, confidence=0.95, resamples=99, seed=seed)
     assert sample.min() <= found.low <= found.high <= sample.max()
 
 
 @given(samples, st.integers(0, MASK))
-@settings(deadline=None)
 def test_negated_numbers_have_the_negated_interval(sample: np.ndarray, seed: int) -> None:
     there = mean_interval(sample, confidence=0.95, resamples=99, seed=seed)
     back = mean_interval(-sample, confidence=0.95, resamples=99, seed=seed)
@@ -119,7 +117,7 @@ def test_negated_numbers_have_the_negated_interval(sample: np.ndarray, seed: int
 
 
 @given(samples, st.integers(-2, 6), st.integers(-100, 100))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_interval_follows_scale_and_shift(sample: np.ndarray, power: int, shift: int) -> None:
     plain = mean_interval(sample, confidence=0.9, resamples=99, seed=5)
     moved = mean_interval(sample * 2.0**power + shift, confidence=0.9, resamples=99, seed=5)

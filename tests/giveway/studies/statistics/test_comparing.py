@@ -277,7 +277,7 @@ def frames(new_study, values: np.ndarray, **swap) -> tuple:
 
 
 @given(lists, st.randoms(use_true_random=False))
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_order_of_rows_changes_nothing(new_study, values: np.ndarray, random) -> None:
     study, found = frames(new_study, values)
     random.shuffle(study.rows)
@@ -287,7 +287,7 @@ def test_order_of_rows_changes_nothing(new_study, values: np.ndarray, random) ->
 
 
 @given(lists)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_swapping_treatment_and_baseline_negates(new_study, values: np.ndarray) -> None:
     _, there = frames(new_study, values, baseline="pid")
     _, back = frames(new_study, values, baseline="mpc")
@@ -305,7 +305,7 @@ def test_swapping_treatment_and_baseline_negates(new_study, values: np.ndarray) 
 
 
 @given(lists, st.sampled_from([0.5, 2.0, 1024.0]))
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_unit_scales_means_and_intervals_and_nothing_else(
     new_study, values: np.ndarray, factor: float
 ) -> None:
@@ -318,7 +318,7 @@ def test_unit_scales_means_and_intervals_and_nothing_else(
 
 
 @given(lists, st.integers(-1000, 1000))
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_what_both_sides_have_in_common_does_not_matter(
     new_study, values: np.ndarray, shift: int
 ) -> None:

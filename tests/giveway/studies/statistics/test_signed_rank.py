@@ -5,7 +5,7 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose
@@ -82,7 +82,6 @@ def test_largest_numbers_do_not_upset_it() -> None:
 
 @pytest.mark.filterwarnings("error")
 @given(whole)
-@settings(deadline=None)
 def test_negated_differences_lean_to_the_other_side(differences: np.ndarray) -> None:
     there, back = signed_rank(differences), signed_rank(-differences)
     assert (back.statistic, back.direction) == (there.statistic, -there.direction)
@@ -91,7 +90,6 @@ def test_negated_differences_lean_to_the_other_side(differences: np.ndarray) -> 
 
 
 @given(whole, st.integers(-20, 20))
-@settings(deadline=None)
 def test_unit_does_not_matter(differences: np.ndarray, power: int) -> None:
     assert signed_rank(differences * 2.0**power) == signed_rank(differences)
 

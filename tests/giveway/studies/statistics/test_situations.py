@@ -60,7 +60,7 @@ def test_no_runs_no_rows(new_study) -> None:
 
 
 @given(arrays(np.float64, (2, 20), elements=st.sampled_from([0.0, 1.0, 3.0, np.nan])))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_every_pair_is_in_one_situation_or_lost(new_study, stops: np.ndarray) -> None:
     study = new_study({"controller": ["mpc", "pid"]})
     study.add("mpc", stops=stops[0]).add("pid", stops=stops[1])
