@@ -22,7 +22,6 @@ from typing import Any
 
 import numpy as np
 
-HARD = 3.0  # [m/s^2]
 AGAIN = 1.0  # [s] without it, and it is another braking
 NEAR = 15.0  # [m] to who is in front, a stop or a vehicle, that is a cause
 AHEAD, EVERY = 24, 3  # steps for which the ego is imagined to go on, and between looks
@@ -62,12 +61,14 @@ class Judge:
         kerbs: beside its way.
         people: what the ego's safety layer assumes; ``sidewalks`` are known to it or not.
         sidewalks: see above.
+        hard: [m/s^2] which brakings.
     """
 
-    def __init__(self, kept: dict[str, Any], kerbs: Any, sidewalks: bool) -> None:
+    def __init__(self, kept: dict[str, Any], kerbs: Any, sidewalks: bool, hard: float) -> None:
         from controller.worst_motion import RECORDED
         from giveway.ego.threats import Alarm
 
+        self._hard = hard
         self._ego, self._crowd, self._kerbs = kept["track"], kept["crowd"], kerbs
         self._departure, self._half_width = kept["way"].departure, kept["width"] / 2.0
         worst = RECORDED["recorded-99.9"]
@@ -78,7 +79,7 @@ class Judge:
     def causes(self) -> list[str]:
         """Of each braking, in the order of time."""
         ego = self._ego
-        hard = np.flatnonzero(ego.acceleration < -HARD - 1e-4)
+        hard = np.flatnonzero(ego.acceleration < -self._hard - 1e-4)
         begins = hard[np.diff(ego.time[hard], prepend=-inf) > AGAIN]
         return [self._cause(max(int(k) - 1, 0)) for k in begins]
 
@@ -116,8 +117,8 @@ class Judge:
         found = []
         for i, row in enumerate(rows.tolist()):
             kerb = float(ways[i, 0]), float(ways[i, 1]), float(to[i, 2]) - 0.05
-            place = *there[i].tolist(), *walks[i].tolist()
-            if is_threat(*place, stop, self._half_width, self._dt, alarm, kerb):
+            (x, y), (w_x, w_y) = there[i].tolist(), walks[i].tolist()
+            if is_threat(x, y, w_x, w_y, stop, self._half_width, self._dt, alarm, kerb):
                 found.append((row, bool(to[i, 2] > 0.0)))
         return found
 
@@ -131,12 +132,13 @@ class Judge:
         return bool((self._kerbs.of(where, front)[:, 2] > 0.0).all())
 
 
-def table(files: list[Path], sidewalks: bool) -> str:
+def table(files: list[Path], sidewalks: bool, hard: float) -> str:
     """The counts over all drives, and means."""
     drives = [pickle.loads(file.read_bytes()) for file in files]
     kerbs = kerbs_of(drives[0]["way"], drives[0]["width"])
-    counts = Counter(cause for kept in drives for cause in Judge(kept, kerbs, sidewalks).causes())
-    lines = [f"{len(drives)} drives, {sum(counts.values())} brakings harder than {HARD:g} m/s^2"]
+    judges = [Judge(kept, kerbs, sidewalks, hard) for kept in drives]
+    counts = Counter(cause for judge in judges for cause in judge.causes())
+    lines = [f"{len(drives)} drives, {sum(counts.values())} brakings harder than {hard:g} m/s^2"]
     lines += [f"  for {cause}: {counts[cause]}" for cause in FOUND]
     for name in KEPT:
         values = np.array([float(kept["summary"][name]) for kept in drives])
@@ -149,6 +151,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=30, help="from 1 on")
     parser.add_argument("--controller", default="mpc")
     parser.add_argument("--out", type=Path, required=True, help="folder of the drives")
+    parser.add_argument("--hard", type=float, default=3.0, help="[m/s^2] which brakings")
     parser.add_argument("--drive-only", action="store_true", help="judge nothing")
     parser.add_argument(
         "--open-ground", action="store_true", help="the layer that drove knew of no sidewalks"
@@ -160,7 +163,7 @@ def main() -> None:
         if not file.exists():
             drive(seed, options.controller, file)
     if not options.drive_only:
-        print(table(files, not options.open_ground))
+        print(table(files, not options.open_ground, options.hard))
 
 
 if __name__ == "__main__":

@@ -293,7 +293,7 @@ class SafetyConfig(Section):
         None,
         "what it takes them to do at worst: worst-case, all that the simulated ones can; "
         "recorded-99.9, 3 m/s^2, which real people near cars exceed once in 1,000 instants; "
-        "responsible, 2.2 m/s^2, once in 100",
+        "responsible, 2.2 m/s^2, once in 100; on a sidewalk these two: 0.6 m/s^2 towards the road",
         flag="--safety-people",
     )
     margin: float = option(
