@@ -2,7 +2,7 @@
 
 The order of one step, from t_k to t_k+1 (Yang & Özgüner 2019, algorithm 1):
 
-1. where SUMO has just stepped, read it: egos that depart, persons who enter or leave the zone,
+1. where SUMO has just stepped, read it: egos that depart, people who come in or change the zone,
    lights, people's priority, background vehicles and the pedestrians they yield to;
 2. for each ego: predict the crowd, solve for the force u(k);
 3. record the state at t_k and u(k);
