@@ -64,6 +64,29 @@ controller = "mpc"
 scene = "noise"
 controller = "pid-paper"
 """
+_CROWDS: Final = """scenario = "shared_space"
+[crowd]
+pedestrians = 2
+groups = 0.5
+flow_scale = 2.0
+[crowd.people]
+elderly = 0.2
+distracted = 0.2
+[[crowd.flow]]
+name = "north"
+from = [[18.0, -16.0], [36.0, -16.0]]
+to = [18.0, 14.0, 36.0, 16.0]
+via = [[[20.0, 3.0], [34.0, 3.0]], [26.0, 8.0]]
+rate = 1500.0
+begin = -60.0
+end = 30.0
+groups = 1.0
+people = { child = 0.5, hurried = 0.1 }
+[[crowd.flow]]
+from = [18.0, 14.0, 36.0, 16.0]
+to = [20.0, -12.0]
+rate = 600.0
+"""
 _PROFILE: Final = """[fmu]
 kind = "co-simulation"
 step = 0.05
@@ -220,8 +243,11 @@ class Bases:
 
     @cached_property
     def settings(self) -> dict[str, str]:
-        """Every setting of a run in each bundled scenario, as ``giveway config`` prints them."""
-        return {name: self._said("config", name) for name in SCENARIOS}
+        """Every setting of a run in each bundled scenario, as ``giveway config`` prints them.
+
+        And people who come in, which no bundled scenario has.
+        """
+        return {name: self._said("config", name) for name in SCENARIOS} | {"crowds": _CROWDS}
 
     @cached_property
     def studies(self) -> dict[str, str]:

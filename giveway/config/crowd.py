@@ -164,9 +164,9 @@ class CrowdConfig(Section):
         "the rate of every flow times this",
         flag="--flow-scale",
         ge=0,
-        le=100,
+        le=10,
         least=1e-3,
-        because="fewer come in no run",
+        because="rates themselves go up to 50,000 persons an hour",
     )
     people: PeopleConfig = PeopleConfig()
     flow: Annotated[tuple[FlowConfig, ...], BeforeValidator(read_flows)] = Field(

@@ -66,9 +66,7 @@ def _origin(value: Any) -> Place:
     """Where people come from: somewhere with room for several."""
     found = _line(value) or _box(value)
     if found is None:
-        raise _refused(
-            "expected a line [[x, y], [x, y]] or a rectangle [x_min, y_min, x_max, y_max]"
-        )
+        raise _refused("expected a line or a rectangle")
     return found
 
 
@@ -77,8 +75,7 @@ def _destination(value: Any) -> Place:
     found = _point(value) or _line(value) or _box(value)
     if found is None:
         raise _refused(
-            "expected a point [x, y], a line [[x, y], [x, y]] or a rectangle "
-            "[x_min, y_min, x_max, y_max]"
+            "expected a point, a line [[x, y], [x, y]] or a rectangle [x_min, y_min, x_max, y_max]"
         )
     return found
 
@@ -133,7 +130,7 @@ class FlowConfig(Section):
         "their way already",
         ge=-_LONGEST_BEFORE,
         le=_FARTHEST,
-        because="nobody is on the way for longer than an hour",
+        because="nobody is on the way for longer than an hour, and no run for 1e7 s",
     )
     end: float | None = option(
         None, "s", "after the run's start, when it ends; none: with the run", le=_FARTHEST

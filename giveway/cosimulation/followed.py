@@ -1,6 +1,8 @@
 """A run followed: how people and traffic get on, also when the last ego has arrived."""
 
 import math
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,15 +11,27 @@ from giveway.cosimulation.assembly import Parts
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.replayed import ReplayedLoop, Standing
 from giveway.cosimulation.traffic_notes import TrafficNotes
-from giveway.crowd.roster import Walking
+from giveway.crowd.flows import Flows
+from giveway.crowd.roster import Trait, Walking
 from giveway.ego.ego import Ego
 from giveway.geometry.kernel import Array
 from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.walk_log import WalkLog
+from pedestrian_model import Crowd
 
 LONGEST = 60.0
 """[s] after the last ego's arrival, for which people are followed at most."""
+
+
+class Beginning(NamedTuple):
+    """The people that giveway adds, as a run began."""
+
+    crowd: Crowd
+    names: tuple[str, ...]  # their ids
+    traits: Mapping[str, Trait]  # what sets them apart
+    flows: Flows | None = None  # of those who come in during the run; None: nobody does
+    substeps: int = 1  # control steps per SUMO step
 
 
 class Followed:
@@ -27,11 +41,7 @@ class Followed:
         parts: of the run, at its initial state.
 
     Attributes:
-        crowd: the people that giveway adds, as they began.
-        names: their ids.
-        traits: what sets them apart.
-        flows: of those who come in during the run; None: nobody does.
-        substeps: control steps per SUMO step.
+        beginning: the people that giveway adds, at first and later.
         secluded: nobody but they and the egos is ever there.
         walks: how they get on.
         traffic: what the background vehicles do.
@@ -42,11 +52,14 @@ class Followed:
 
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
-        self.crowd = parts.roster.crowd.copy()
-        self.names = tuple(parts.roster.ids)
-        self.traits = dict(parts.roster.traits)
-        self.flows = None if parts.arrivals is None else parts.arrivals.flows
-        self.substeps = parts.substeps
+        roster = parts.roster
+        self.beginning = Beginning(
+            roster.crowd.copy(),
+            tuple(roster.ids),
+            dict(roster.traits),
+            None if parts.arrivals is None else parts.arrivals.flows,
+            parts.substeps,
+        )
         self.secluded = parts.secluded
         self.walks = WalkLog(parts.time_step)
         self.traffic = TrafficNotes(parts.sumo)
@@ -97,7 +110,8 @@ class Followed:
             return True
         self.last = step + math.ceil(LONGEST / parts.time_step)
         if self.secluded:
-            alone = CrowdAlone(parts.roster, walking, self.walks, step, self.flows, parts.substeps)
+            flows = self.beginning.flows
+            alone = CrowdAlone(parts.roster, walking, self.walks, step, flows, parts.substeps)
             alone.go_on(self.last, self.walks.near, heartbeat)
             return True
         for name in self._parked:

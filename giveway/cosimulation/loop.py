@@ -2,7 +2,7 @@
 
 The order of one step, from t_k to t_k+1 (Yang & Özgüner 2019, algorithm 1):
 
-1. where SUMO has just stepped, read it: egos that depart, persons who enter or leave the zone,
+1. where SUMO has just stepped, read it: egos that depart, people who come in or change the zone,
    lights, people's priority, background vehicles and the pedestrians they yield to;
 2. for each ego: predict the crowd, solve for the force u(k);
 3. record the state at t_k and u(k);
@@ -28,7 +28,7 @@ from giveway.cosimulation.meetings import Meetings
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.standstill import Standstill
 from giveway.cosimulation.ways import LawRecords
-from giveway.crowd.reachable import spawn_remark, way_of
+from giveway.crowd.reachable import flow_remark, spawn_remark, way_of
 from giveway.crowd.roster import Walking
 from giveway.ego.ego import Ego
 from giveway.errors import ControlError, CrowdError, VehicleError
@@ -220,8 +220,8 @@ class Loop:
                 self._ways.append(way_of(ego.path.vertices, ego.path.stations, ego.departure, end))
                 if self.followed is not None:
                     self.followed.walks.add_way(self._ways[-1])
-            if arrivals and parts.config.crowd.pedestrians and not parts.departures.waiting:
-                self._remark_on_spawn_area()
+            if arrivals and not parts.departures.waiting:
+                self._remark_on_far_people()
         if parts.arrivals is not None:
             parts.arrivals.update(self._k)
         if parts.exchange is not None:
@@ -239,10 +239,13 @@ class Loop:
         self._record_background()
         self._recorder.ledger(self._roster.ledger)
 
-    def _remark_on_spawn_area(self) -> None:
-        """Say so if the added pedestrians start where no ego comes by."""
-        remark = spawn_remark(self._parts.config.crowd, self._ways, self._parts.net_file)
-        self.remarks += [remark] if remark else []
+    def _remark_on_far_people(self) -> None:
+        """Say so if the added pedestrians walk where no ego comes by."""
+        crowd = self._parts.config.crowd
+        remarks = [flow_remark(crowd.flow, self._ways)]
+        if crowd.pedestrians:
+            remarks.append(spawn_remark(crowd, self._ways, self._parts.net_file))
+        self.remarks += [remark for remark in remarks if remark]
 
     def _remark_on_missed_stops(self, ego: Ego) -> None:
         if ego.way.stops is not None and ego.way.stops.missed:

@@ -22,7 +22,7 @@ from giveway.config.foreign_code import code_hashes
 from giveway.config.presets import parameters_of
 from giveway.cosimulation.alone import CrowdAlone
 from giveway.cosimulation.assembly import Driven, assemble
-from giveway.cosimulation.followed import Followed
+from giveway.cosimulation.followed import Beginning, Followed
 from giveway.cosimulation.preflight import CheckedRun
 from giveway.cosimulation.replayed import ReplayedLoop
 from giveway.cosimulation.traffic_notes import TrafficNotes
@@ -83,7 +83,7 @@ def twin_of(
     """
     names, last = followed.walks.near, followed.last
     if followed.secluded:
-        alone = _crowd_alone(checked.config, followed, checked.time_step)
+        alone = _crowd_alone(checked.config, followed.beginning, checked.time_step)
         alone.go_on(last, names, heartbeat)
         return Twin(alone.walks.track.until(last), False, math.nan, among_themselves=True)
     walks = WalkLog(checked.time_step, names.__contains__)
@@ -123,29 +123,29 @@ def _again(
     return traffic if ended else None
 
 
-def _crowd_alone(config: RunConfig, followed: Followed, time_step: float) -> CrowdAlone:
+def _crowd_alone(config: RunConfig, beginning: Beginning, time_step: float) -> CrowdAlone:
     """The crowd of a run among itself, as far as it has been asked for already."""
-    key = _key(config, followed, time_step)
+    key = _key(config, beginning, time_step)
     if key in _alone:
         _alone.move_to_end(key)
         return _alone[key]
-    roster = Roster(followed.names, followed.crowd.copy(), followed.traits)
+    roster = Roster(beginning.names, beginning.crowd.copy(), beginning.traits)
     walks = WalkLog(time_step, lambda _: True)
     walking = Walking(config, model_of(config, time_step, roster), roster, walks)
-    flows = None if followed.flows is None else followed.flows.afresh(roster)
-    alone = CrowdAlone(roster, walking, walks, flows=flows, every=followed.substeps)
+    flows = None if beginning.flows is None else beginning.flows.afresh(roster)
+    alone = CrowdAlone(roster, walking, walks, 0, flows, beginning.substeps)
     _alone[key] = alone
     if len(_alone) > _KEPT:
         _alone.popitem(last=False)
     return alone
 
 
-def _key(config: RunConfig, followed: Followed, time_step: float) -> bytes:
+def _key(config: RunConfig, beginning: Beginning, time_step: float) -> bytes:
     """A hash of all that the crowd among itself depends on."""
     digest = hashlib.sha256()
-    settings, crowd = config.crowd, followed.crowd
+    settings, crowd = config.crowd, beginning.crowd
     noise = settings.acceleration_noise
-    drawn = (settings, config.seed, followed.substeps) if settings.flow else None
+    drawn = (settings, config.seed, beginning.substeps) if settings.flow else None
     for part in (
         parameters_of(settings.preset),
         (
@@ -159,8 +159,8 @@ def _key(config: RunConfig, followed: Followed, time_step: float) -> bytes:
             noise,
             config.seed if noise else None,
         ),
-        followed.names,
-        sorted(followed.traits.items()),
+        beginning.names,
+        sorted(beginning.traits.items()),
         drawn,
     ):
         digest.update(repr(part).encode())

@@ -19,7 +19,7 @@ from giveway.crowd.groups import facing, of_parties, parties_per_person, party_s
 from giveway.crowd.kinds import desired_speeds, draw_kinds
 from giveway.crowd.roster import ARRIVAL_RADIUS, Roster, Trait
 from giveway.crowd.spawn import has_room
-from giveway.crowd.ways import Gate, LitCrossing, gates_of, somewhere, with_lights
+from giveway.crowd.ways import Gate, LitCrossing, gates_of, longest_way, somewhere, with_lights
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
 
@@ -69,7 +69,9 @@ class Flow:
         parties = flow.rate * crowd.flow_scale * parties_per_person(self._groups)  # an hour
         self._headway = _HOUR / parties
         self._random = np.random.default_rng(self._seed)
-        self._next = flow.begin + self._random.exponential(self._headway)
+        # Whoever came before has arrived, and a Poisson process may begin to be looked at anywhere.
+        begin = max(flow.begin, -longest_way(flow) / crowd.desired_speed_min)
+        self._next = begin + self._random.exponential(self._headway)
         self._parties = self._persons = 0
         self._gates, self._lit = gates_of(flow), lit
         self.waiting: deque[Party] = deque()
@@ -205,7 +207,7 @@ class Flows:
                 waiting = sum(len(party.names) for party in flow.waiting)
                 found.append(
                     f"flow '{config.name}': it backed up where it enters: somebody waited "
-                    f"{longest:.0f} s for room, and {waiting} still do; a longer 'from' has more"
+                    f"{longest:.0f} s for room, and {waiting} still do; a larger 'from' has more"
                 )
         return found
 

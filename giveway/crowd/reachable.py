@@ -8,6 +8,8 @@ import shapely
 import shapely.affinity
 
 from giveway.config.crowd import ENCOUNTERS, CrowdConfig
+from giveway.config.flows import FlowConfig
+from giveway.crowd.ways import corners, middle_of
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import points_at
 from giveway.walkways import WalkNetwork, beside
@@ -40,6 +42,31 @@ def spawn_remark(config: CrowdConfig, ways: Sequence[Array], net_file: Path) -> 
         text += "there is no walkway, and "
     text += f"its pedestrians come no nearer than {apart[nearest]:.0f} m to the ego's way"
     return f"{text}; the nearest place beside it: {beside(ways[nearest], network, middle).flags}"
+
+
+def flow_remark(flows: Sequence[FlowConfig], ways: Sequence[Array]) -> str:
+    """The remark on flows none of which an ego can meet; empty if it can meet one.
+
+    Args:
+        flows: of people who come in.
+        ways: (k, 2) [m] of each ego, from its departure to where it is done.
+    """
+    if not flows:
+        return ""
+    driven = shapely.MultiLineString(list(ways))
+    apart = [
+        float(shapely.LineString([start, *through, end]).distance(driven))
+        for flow in flows
+        for through in [[middle_of(place) for place in flow.via]]
+        for start in corners(flow.start)
+        for end in corners(flow.to)
+    ]
+    if min(apart) <= _NEAR:
+        return ""
+    return (
+        f"flow '{flows[0].name}': people of flows come no nearer than {min(apart):.0f} m to the "
+        "ego's way; their 'from' and 'to' are in the network's coordinates [m]"
+    )
 
 
 def way_of(vertices: Array, stations: Array, first: float, last: float) -> Array:

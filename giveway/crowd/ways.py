@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -115,6 +116,14 @@ def with_lights(
         if gate is not None:
             yield gate
         at = goal
+
+
+def longest_way(flow: FlowConfig) -> float:
+    """[m] that nobody who walks with a flow exceeds."""
+    boxes = [np.sort(corners(place), axis=0) for place in (flow.start, *flow.via, flow.to)]
+    return sum(
+        math.hypot(*np.maximum(b[1] - a[0], a[1] - b[0])) for a, b in itertools.pairwise(boxes)
+    )
 
 
 def corners(place: Place) -> Array:

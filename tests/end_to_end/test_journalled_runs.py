@@ -42,3 +42,16 @@ def test_after_a_crash_an_ego_that_had_arrived_has_arrived(tmp_path: Path) -> No
         "near": Ending.COMPLETED,
         "far": Ending.CRASHED,
     }
+
+
+def test_after_a_crash_it_is_still_known_who_people_were(tmp_path: Path) -> None:
+    crowd = {"pedestrians": 12, "groups": 0.8, "people": {"elderly": 0.5}}
+    checked = preflight(*load([as_layer(SHORT | {"crowd": crowd})]))
+    result = run_checked(checked, results=None, journal=tmp_path)
+    pulse = Pulse(Phase.SUMO, 20, 1.0, 0, 0)
+    rescued = recover(tmp_path, Verdict(139, True, False, "SIGSEGV", pulse, "", "")).result
+    assert rescued is not None
+    told = rescued.pedestrians[["id", "kind", "group"]]
+    assert told.equals(result.pedestrians[["id", "kind", "group"]])
+    assert set(told["kind"]) == {"adult", "elderly"}
+    assert (told["group"] != "").any()

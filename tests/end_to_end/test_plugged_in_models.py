@@ -16,6 +16,7 @@ from giveway.config import RunConfig
 from giveway.config.layers import dump_toml, read_toml
 from giveway.config.loading import load
 from giveway.cosimulation import twin
+from giveway.cosimulation.followed import Beginning
 from giveway.errors import ConfigError, ControlError, CrowdError
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run
@@ -247,7 +248,8 @@ def test_a_crowd_among_itself_depends_on_its_model_and_on_no_controller(shy, ins
     crowd = Crowd.create([[0.0, 0.0]], [[0.0, 0.0]], 1.3, [[[5.0, 0.0]]])
 
     def key(**settings):
-        return twin._key(RunConfig.model_validate(settings), crowd, ("ped0",), 0.05)
+        began = Beginning(crowd, ("ped0",), {})
+        return twin._key(RunConfig.model_validate(settings), began, 0.05)
 
     assert key(controller="idle_driver:Idle") == key(controller="mpc")
     theirs = {"crowd": {"model": "shy"}}

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from giveway.config.crowd import CrowdConfig
+from giveway.config.people import PeopleConfig
 from giveway.crowd.encounters import FreeDrive
 from giveway.crowd.spawn import Spawned, spawn
 from giveway.errors import CrowdError
@@ -86,3 +87,29 @@ def test_people_need_a_drive_to_meet() -> None:
 def test_too_many_for_the_way_are_refused() -> None:
     with pytest.raises(CrowdError, match="find room"):
         drawn(400, 1, minimum_spacing=5.0)
+
+
+def test_mixed_people_meet_in_groups_that_walk_as_their_slowest_member_likes() -> None:
+    old, mixed = (
+        [
+            spawn(
+                CrowdConfig(
+                    sampler="encounters", pedestrians=48, people=PeopleConfig(elderly=share)
+                ),
+                PATH,
+                seed,
+                drive=DRIVE,
+            )
+            for seed in range(1, 21)
+        ]
+        for share in (1.0, 0.5)
+    )
+    assert {kind for crowd in old for kind in crowd.kinds} == {"elderly"}
+    assert {kind for crowd in mixed for kind in crowd.kinds} == {"adult", "elderly"}
+    speeds = [np.mean([crowd.desired_speed.mean() for crowd in crowds]) for crowds in (old, mixed)]
+    assert 0.9 < speeds[0] < speeds[1] < 1.3
+    for crowd in mixed:
+        for name in set(crowd.groups) - {""}:
+            rows = [i for i, group in enumerate(crowd.groups) if group == name]
+            assert len(rows) >= 2
+            assert np.ptp(crowd.desired_speed[rows]) == 0.0

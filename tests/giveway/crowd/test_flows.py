@@ -228,3 +228,12 @@ def test_the_ledger_counts_them_as_added() -> None:
     roster.take_in(["ann"], Crowd.create([(0, 0)], [(0, 0)], 1.0, [[(1, 1)]]))
     assert roster.ledger["taken_over"] == 1
     assert "ann" not in roster.added
+
+
+def test_a_flow_that_has_been_going_on_for_long_is_looked_at_from_the_slowest_on() -> None:
+    """Nobody who came 90 s ago is still on a way of 45 m at 0.5 m/s or more."""
+    way = {"from": [0.0, 0.0, 3.0, 2.0], "to": [0.0, 40.0, 3.0, 42.0], "rate": 50_000.0}
+    streams = [flows({**way, "begin": begin}, minimum_spacing=0.0) for begin in (-90.0, -3600.0)]
+    for stream, _ in streams:
+        stream.enter(0)
+    assert state(streams[0][1]) == state(streams[1][1])

@@ -10,7 +10,8 @@ import shapely
 
 import giveway
 from giveway.config.crowd import CrowdConfig
-from giveway.crowd.reachable import spawn_remark, way_of
+from giveway.config.flows import read_flows
+from giveway.crowd.reachable import flow_remark, spawn_remark, way_of
 from giveway.walkways import WalkNetwork, beside
 
 if TYPE_CHECKING:
@@ -83,3 +84,14 @@ def test_a_run_says_so_and_what_it_advises_brings_people_to_the_ego(small_city: 
     near = giveway.run({**settings, "crowd": {**settings["crowd"], **crowd}})
     assert [text for text in near.remarks if text.startswith("--spawn-area")] == []
     assert near.summary["minimum_clearance"] < 10.0
+
+
+def test_flows_that_no_ego_meets_are_named_unless_one_does() -> None:
+    far = {"from": [40.0, 90.0, 50.0, 95.0], "to": [[80.0, 60.0], [90.0, 60.0]], "rate": 100.0}
+    across = {"from": [40.0, 20.0, 50.0, 25.0], "to": [45.0, -20.0], "rate": 100.0}
+    back = {"from": [40.0, 90.0, 50.0, 95.0], "to": [45.0, 99.0], "rate": 1.0, "via": [[60.0, 5.0]]}
+    text = flow_remark(read_flows([far]), [WAY])
+    assert text.startswith("flow 'flow0': people of flows come no nearer than 62 m")
+    assert flow_remark(read_flows([far, across]), [WAY]) == ""
+    assert flow_remark(read_flows([back]), [WAY]) == ""  # by what it comes through
+    assert flow_remark((), [WAY]) == ""
