@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from controller._jit import Array
 
 _SHOWN = 80  # characters of what it returned
+_ROUNDING = 1e-8  # of the limit, by which a plan of a solver's may lie beyond it: ours do, too
 _FURTHEST = 10_000  # steps of prediction
 _Entry = TypeVar("_Entry", bound=np.generic)
 
@@ -78,7 +79,8 @@ class PluggedIn:
             raise self._blame(error, "") from error
         setup = self._setup
         force, reason = self._force_of(answer, observation.speed)
-        force = min(max(force, -setup.force_limit), setup.force_limit)
+        if abs(force) > setup.force_limit * (1.0 + _ROUNDING):
+            force = min(max(force, -setup.force_limit), setup.force_limit)
         reference = min(setup.reference_speed, observation.speed_limit)
         return Decision(force, "plug-in", reason or "answered", "", 0, reference, None)
 
