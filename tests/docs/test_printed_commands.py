@@ -76,7 +76,8 @@ def test_the_runner_reads_on_below_a_block_of_another_language(tmp_path: Path) -
     page.write_text(
         "```python\nimport giveway\n```\n\n"
         "```sh\n.venv/bin/giveway config street > run.toml  # all\n"
-        "cd there && giveway doctor\n```\n\n<!-- not run -->\n```sh\ngiveway run car.sumocfg\n```\n",
+        "cd there && giveway doctor\n```\n\n"
+        "<!-- not run -->\n```sh\ngiveway run car.sumocfg\n```\n",
         encoding="utf-8",
     )
     config, doctor, shown = runner.printed_on(page)
