@@ -110,7 +110,7 @@ def _run(
         Path | None, typer.Option(help="TOML file with options; flags override it.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Results folder (default results/SCENARIO_CONTROLLER_...).")
+        Path | None, typer.Option(help="Results folder (default: a new one in results/).")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the results there.")] = False,
     parquet: Annotated[

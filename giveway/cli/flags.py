@@ -61,8 +61,10 @@ def _set_flag(socket: Socket) -> Any:
 _EVERYDAY = frozenset(
     {
         ("controller",),
+        ("planner", "attitude"),
         ("seed",),
         ("time_limit",),
+        ("twin",),
         ("ego", "take_over"),
         ("ego", "none"),
         ("vehicle", "fmu"),

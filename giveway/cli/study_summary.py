@@ -145,16 +145,22 @@ def print_comparison(console: Console, study: StudyFolder) -> None:
             table = _metric_table(study, chosen.head(left))
             console.print(Padding(table, (0, 0, 0, 1)))
             left -= len(chosen)
-    if fewest < math.inf:
-        more = wanted.minimum_pairs - int(fewest)
-        console.print(
-            f"Intervals need {wanted.minimum_pairs} pairs: {more} more where there are "
-            f"{int(fewest)}; --resume --runs {_seeds_for(study, more)} adds seeds",
-            highlight=False,
-        )
+    _print_lacking(console, study, fewest)
     if missing:
         console.print(f"In no pair on both sides: {', '.join(missing)}", highlight=False)
     console.print("All metrics, situations and contexts: comparison.csv", highlight=False)
+
+
+def _print_lacking(console: Console, study: StudyFolder, fewest: float) -> None:
+    """How many pairs are missing where there are so few; infinite: none is."""
+    if fewest < math.inf:
+        wanted = study.definition.comparison.minimum_pairs
+        more = wanted - int(fewest)
+        console.print(
+            f"Intervals need {wanted} pairs: {more} more where there are "
+            f"{int(fewest)}; --resume --runs {_seeds_for(study, more)} adds seeds",
+            highlight=False,
+        )
 
 
 def _metric_table(study: StudyFolder, chosen: pd.DataFrame) -> Table:
@@ -239,6 +245,8 @@ def _print_reference(console: Console, study: StudyFolder) -> None:
         by_situation = rows.set_index("situation").to_dict("index")
         table.add_row(*labels, *(_ours_and_published(by_situation[name]) for name in situations))
     console.print(table)
+    few = frame.loc[(frame["verdict"] == "N.A.") & (frame["n"] > 0), "n"]
+    _print_lacking(console, study, few.min() if len(few) else math.inf)
 
 
 def _ours_and_published(row: Mapping[Any, Any]) -> str:
@@ -247,8 +255,9 @@ def _ours_and_published(row: Mapping[Any, Any]) -> str:
     if math.isnan(row["mean_difference"]):
         ours = "N.A."
     else:
-        interval = f"{row['ci_low']:+.2f} ... {row['ci_high']:+.2f}"
-        ours = f"[bold]{row['mean_difference']:+.2f}[/bold]\n{interval}"
+        known = not math.isnan(row["ci_low"])
+        interval = f"\n{row['ci_low']:+.2f} ... {row['ci_high']:+.2f}" if known else ""
+        ours = f"[bold]{row['mean_difference']:+.2f}[/bold]{interval}"
     return f"{ours}\nn = {row['n']:,}\npaper {published}"
 
 

@@ -115,7 +115,8 @@ def _again(
     """Go through a run again up to the control step ``last``; None: it was interrupted."""
     with ExitStack() as stack:
         parts = assemble(checked, stack, native_log=native_log, driven=driven)
-        walking = Walking(checked.config, parts.crowd_model, parts.roster, walks)
+        log = None if driven.absent else walks  # nobody asks how people got on without egos
+        walking = Walking(checked.config, parts.crowd_model, parts.roster, log)
         traffic = TrafficNotes(parts.sumo)
         absent = driven if driven.absent else None
         loop = ReplayedLoop(parts, walking, walks, traffic, heartbeat, driven=absent)

@@ -25,7 +25,7 @@ _REASONS = {
 _MANOEUVRES = {
     "clear": "nobody is in the way of driving on",
     "drive on": "driving on costs least, for all that people may answer to it",
-    "as planned": "nothing costs less than what was planned before",
+    "as planned": "it keeps to its plan: no other one costs less",
 }
 _NUMBER = r"\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 _AIMED = re.compile(rf"(?P<rate>[-+]{_NUMBER} m/s\^2) to (?P<speed>-?{_NUMBER} m/s)")

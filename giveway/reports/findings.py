@@ -207,7 +207,12 @@ def _overall(study: StudyFolder) -> list[str]:
     if not enough and not _have_ego(study):
         return ["The runs have no ego: every metric is an ego's, so there is nothing to compare."]
     if not enough:
-        return ["No situation has enough pairs for a comparison: every difference is N.A."]
+        wanted, most = study.definition.comparison.minimum_pairs, int(study.comparison["n"].max())
+        return [
+            f"Intervals need {counted(wanted, 'pair')}, and no situation has more than {most}: the "
+            f"comparison has means alone. {wanted - most} more seeds would do where every seed "
+            "gives a pair (--resume --runs)."
+        ]
     better, worse = int((verdicts == "better").sum()), int((verdicts == "worse").sum())
     rate = 100.0 * (1.0 - study.definition.comparison.confidence)
     return [

@@ -39,6 +39,7 @@ def published_numbers(study: StudyFolder) -> dict[Key, float]:
     return found
 
 
+_DIGITS = 2  # of a mean without an interval
 _WORDS = {
     "inside": "inside our interval",
     "below": "below our interval",
@@ -62,7 +63,8 @@ def published_table(frame: pd.DataFrame) -> Table:
     rows = []
     for row in frame.to_dict("records"):
         missing = not math.isfinite(row["mean_difference"])
-        digits = digits_for(row["ci_high"] - row["ci_low"])
+        width = row["ci_high"] - row["ci_low"]
+        digits = digits_for(width) if math.isfinite(width) else _DIGITS
         ours = "N.A." if missing else number(row["mean_difference"], digits)
         theirs = number(row["published"], 4)
         waits = METRIC_OF[row["situation"]] == "longest_wait"
@@ -84,7 +86,8 @@ def published_table(frame: pd.DataFrame) -> Table:
         caption=f"Mean differences MPC minus PID [s]: Table 2 of {SOURCE} beside this study",
         headings=[*headings, "our interval", "our pairs", "the published number lies"],
         rows=rows,
-        note="N.A.: too few pairs; the paper gives no number of pairs per situation.",
+        note="–: too few pairs for an interval; such a mean says little. N.A.: no pair, or no "
+        "number in the paper, which does not say how many pairs a situation has.",
     )
 
 
@@ -95,7 +98,8 @@ def agreement(frame: pd.DataFrame) -> str:
     if not known:
         return ""
     inside = int((found == "inside").sum())
-    same = int((frame["published"] * frame["mean_difference"] > 0).sum())
+    alike = frame["published"] * frame["mean_difference"] > 0
+    same = int((alike & found.isin(list(_WORDS))).sum())
     return (
         f"Of the {known} numbers of {SOURCE} that can be compared, {inside} "
         f"{'lies' if inside == 1 else 'lie'} within our intervals; {same} have the same sign."

@@ -71,6 +71,52 @@ def parse(words: list[str]) -> None:
         context = command.make_context(name, rest, parent=context)
 
 
+def test_the_runner_reads_on_below_a_block_of_another_language(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text(
+        "```python\nimport giveway\n```\n\n"
+        "```sh\n.venv/bin/giveway config street > run.toml  # all\n"
+        "cd there && giveway doctor\n```\n\n"
+        "<!-- not run -->\n```sh\ngiveway run car.sumocfg\n```\n",
+        encoding="utf-8",
+    )
+    config, doctor, shown = runner.printed_on(page)
+    assert (config.words, config.out) == (("config", "street"), "run.toml")
+    assert doctor.text == "giveway doctor"
+    assert [config.shown, shown.shown] == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        ("run encounter --seed 4 --out results/mine", ""),
+        ("run sumo_scenarios/junction/junction.sumocfg", ""),  # lies in the repository
+        ("run junction --attitude careful", ""),
+        ("run mine.sumocfg", "mine.sumocfg is not there"),
+        ("replay results/mine", "results/mine is not there"),
+        ("run --controller careful", "careful is a plug-in of the reader's"),
+        ("validate CITR_FOLDER --dataset citr", "a placeholder"),
+        ("study paper --runs 5", ""),
+        ("study paper --dry-run", ""),
+        ("study paper --runs 50", "slow: --all"),
+        ("study paper", "slow: --all"),
+    ],
+)
+def test_the_runner_says_why_it_leaves_a_command_out(
+    words: str, reason: str, tmp_path: Path
+) -> None:
+    command = runner.Printed(runner.README, tuple(words.split()), "", False)
+    assert runner.why_not(command, tmp_path, tmp_path / "readme", slow=False) == reason
+
+
+def test_the_runner_tells_a_failure(tmp_path: Path) -> None:
+    command = runner.Printed(runner.README, ("run", "nowhere"), "", False)
+    assert "nowhere" in runner.run(command, tmp_path)
+    config = runner.Printed(runner.README, ("config", "street"), "run.toml", False)
+    assert runner.run(config, tmp_path) == ""
+    assert tomllib.loads((tmp_path / "run.toml").read_text("utf-8"))["scenario"]
+
+
 def test_the_pages_print_many() -> None:
     assert len(PRINTED) > 100
 

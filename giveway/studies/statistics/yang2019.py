@@ -74,8 +74,6 @@ def _nine(ours: pd.DataFrame, factor_column: str) -> list[dict[str, object]]:
         row = rows.get((pedestrians, situation, metric), {})
         numbers = {name: row.get(name, math.nan) for name in ("mean_difference", "share")}
         low, high = row.get("ci_low", math.nan), row.get("ci_high", math.nan)
-        if math.isnan(low):
-            numbers["mean_difference"] = math.nan  # the paper has N.A. for so few
         found.append(
             {
                 "pedestrians": pedestrians,

@@ -216,7 +216,7 @@ def test_thinning_keeps_the_ends_of_every_track_and_far_people_whole() -> None:
     [
         ("clear", "nobody is in the way"),
         ("drive on", "driving on costs least"),
-        ("as planned", "what was planned before"),
+        ("as planned", "keeps to its plan"),
         ("+0 m/s^2 to 0 m/s", "keeping the speed costs least"),
         ("-2.5 m/s^2 to 1.4 m/s", "slowing down to 1.4 m/s at 2.5 m/s^2 costs least"),
         ("safety layer", "the safety layer brakes"),

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+import pytest
 from numpy.testing import assert_array_equal
 
 from giveway.studies.statistics import PUBLISHED, TABLE_2_COLUMNS, compare, table2
@@ -60,6 +61,16 @@ def test_other_factors_and_egos_have_a_table_each(new_study) -> None:
             study.add(30, speed, controller, completion_time=[1.0, 2.0, 3.0])
     found = ours(study)
     assert list(found["speed"]) == ["a"] * 9 + ["b"] * 9
+
+
+def test_of_few_pairs_there_is_a_mean_without_an_interval(new_study) -> None:
+    study = paper_study(new_study, comparison={"minimum_pairs": 30})
+    study.add(30, "mpc-paper", completion_time=[11.0, 12.0, 13.0])
+    study.add(30, "pid-paper", completion_time=[12.0, 13.0, 15.0])
+    found = ours(study).set_index(["pedestrians", "situation"]).loc[(30, "general")]
+    assert found["mean_difference"] == pytest.approx(-4.0 / 3.0)
+    assert np.isnan(found["ci_low"])
+    assert (found["n"], found["verdict"], found["agreement"]) == (3, "N.A.", "")
 
 
 def test_another_study_has_no_such_table(new_study) -> None:
