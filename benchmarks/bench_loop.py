@@ -1,6 +1,6 @@
 """The cost of the whole loop at 30 pedestrians, part by part, next to SUMO and the FMU alone.
 
-Run: python benchmarks/bench_loop.py [--pairs N] [--controller NAME]
+Run: python benchmarks/bench_loop.py [--pairs N] [--controller NAME] [--perception-model NAME]
 
 The baseline makes the same moves, SUMO steps and FMU steps as a recorded run, with nothing in
 between. Both are timed in turn in one process; the ratio is what counts.
@@ -63,9 +63,15 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=4, help="4 meets the crowd and keeps moving")
     parser.add_argument("--pairs", type=int, default=15, help="loop and baseline, in turn")
     parser.add_argument("--controller", action="append", choices=CONTROLLERS, help="these only")
+    parser.add_argument("--perception-model", default="vci", help="that is believed in")
     options = parser.parse_args()
     for controller in options.controller or CONTROLLERS:
-        checked = preflight(*load([Layer("", {"controller": controller, "seed": options.seed})]))
+        settings = {
+            "controller": controller,
+            "seed": options.seed,
+            "perception": {"model": options.perception_model},
+        }
+        checked = preflight(*load([Layer("", settings)]))
         simulate(checked)  # compiles, and warms the file cache
         results, ratios = [], []
         for _ in range(options.pairs):
