@@ -1,6 +1,6 @@
 """The cost of the whole loop at 30 pedestrians, part by part, next to SUMO and the FMU alone.
 
-Run: python benchmarks/bench_loop.py [--pairs N] [--controller NAME]
+Run: python benchmarks/bench_loop.py [--pairs N] [--controller NAME] [--perception-model NAME]
 
 The baseline makes the same moves, SUMO steps and FMU steps as a recorded run, with nothing in
 between. Both are timed in turn in one process; the ratio is what counts.
@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import statistics
 from contextlib import ExitStack
-from time import perf_counter
+from time import perf_counter, process_time
 
 import numpy as np
 
@@ -63,13 +63,21 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=4, help="4 meets the crowd and keeps moving")
     parser.add_argument("--pairs", type=int, default=15, help="loop and baseline, in turn")
     parser.add_argument("--controller", action="append", choices=CONTROLLERS, help="these only")
+    parser.add_argument("--perception-model", default="vci", help="that is believed in")
     options = parser.parse_args()
     for controller in options.controller or CONTROLLERS:
-        checked = preflight(*load([Layer("", {"controller": controller, "seed": options.seed})]))
+        settings = {
+            "controller": controller,
+            "seed": options.seed,
+            "perception": {"model": options.perception_model},
+        }
+        checked = preflight(*load([Layer("", settings)]))
         simulate(checked)  # compiles, and warms the file cache
-        results, ratios = [], []
+        results, ratios, busy = [], [], []
         for _ in range(options.pairs):
+            began = process_time()
             result = simulate(checked)
+            busy.append(process_time() - began)
             results.append(result)
             ratios.append(result.elapsed / baseline(result))
         elapsed = statistics.median(r.elapsed for r in results)
@@ -79,6 +87,7 @@ def main() -> None:
         print(f"{controller}, 30 pedestrians, {steps} steps of {seconds / steps:.2f} s")
         print(f"  loop / (SUMO moves and steps + FMU steps): {statistics.median(ratios):.2f}")
         print(f"  per step: {elapsed / steps * 1e6:.0f} us; real-time factor {factor:.0f}")
+        print(f"  of which the processor is busy at least {min(busy) / steps * 1e6:.0f} us")
         for name in Timings.NAMES[:-1]:
             share = statistics.median(r.timing_summary["shares"][name] for r in results)
             print(f"  {name:10} {100 * share:5.1f} %")

@@ -185,6 +185,9 @@ class RunConfig(Section):
             return RunConfig.model_validate(values)
         except ValidationError as error:
             first = error.errors(include_url=False)[0]
+            if not first["loc"]:  # settings that do not fit each other
+                said = first["msg"].removeprefix("Value error, ")
+                raise ValueError(f"egos[{number}]: {said}") from None
             key = ".".join(map(str, first["loc"][:2]))  # beyond: which part of the value
             field = _field_at(first["loc"])
             expected = expectation(first, field) if field is not None else first["msg"]

@@ -15,6 +15,7 @@ BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
         ("bench_loop.py", ["--pairs", "1", "--controller", "mpc"], "real-time factor"),
         ("bench_scenario.py", ["--walkers", "100", "--window", "1"], "walkers"),
         ("bench_metrics.py", ["--repetitions", "1"], "summary"),
+        ("bench_models.py", ["--people", "5", "--steps", "3"], "constant-velocity"),
     ],
 )
 def test_a_short_one_prints_its_table(

@@ -50,9 +50,12 @@ def test_on_a_road_with_signals_walls_and_cars(model):
 @NEEDED
 def test_it_is_believed_in_too():
     model = JUPEDSIM_MODELS[0]
-    settings = {"controller": "mpc-paper", "time_limit": 6.0}
-    one = drive(model, **settings, perception={"model": model}, record={"predictions": 0.05})
-    assert len(one.predictions) > 0
+    crowd = {"pedestrians": 12, "model": model, "two_sided": True}
+    settings = {"controller": "mpc-paper", "seed": 3, "crowd": crowd, "time_limit": 8.0}
+    settings |= {"perception": {"model": model}, "record": {"predictions": 0.05}}
+    ahead = giveway.run(settings, pictures=False).predictions
+    assert np.isfinite(ahead[["x", "y"]]).all(axis=None)
+    assert len(ahead) > 100
 
 
 def test_who_has_no_jupedsim_is_told_what_to_install(monkeypatch):

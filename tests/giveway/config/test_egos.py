@@ -3,6 +3,7 @@
 import tomllib
 
 import pytest
+from pydantic import ValidationError
 
 from giveway.config import RunConfig
 from giveway.config.layers import Layer, build_config, dump_toml
@@ -64,3 +65,12 @@ def test_an_ego_taken_over_leaves_nothing_of_the_scenarios_route():
     config, _ = load([Layer("user", {"scenario": "shared_space", "ego": {"take_over": ["car"]}})])
     assert config.ego.route == ()
     assert load([Layer("again", config.model_dump())])[0] == config
+
+
+def test_settings_of_one_ego_that_do_not_fit_are_told_in_one_line():
+    entry = {"ego": {"id": "b"}, "perception": {"model": "shy_people:Shy"}}
+    with pytest.raises(ValidationError) as caught:
+        RunConfig.model_validate({"egos": [entry]})
+    said = caught.value.errors()[0]["msg"]
+    assert "egos[0]: [perception] model = 'shy_people:Shy': the people walk by 'vci'" in said
+    assert len(said) < 300
