@@ -65,8 +65,10 @@ class ModelPlugIn(Protocol):
     * ``Options``, of the class: a dataclass or pydantic model of what users may set;
     * ``reset()``: forget the past.
 
-    It is made before the run and once more for the run's twin, and so starts nothing then. Who
-    keeps something of a person keeps it by ``ids``: people come, go, and come back.
+    It is made before the run, once more for the run's twin and for each ego that believes in it,
+    and so starts nothing then. Who keeps something of a person keeps it by ``ids``: people come,
+    go, and come back. Where a controller predicts by it, it is reset before each prediction, and
+    those who matter to that are numbered from 0.
     """
 
     def step(self, walkers: Walkers, /) -> Answer:
