@@ -3,7 +3,7 @@
 from math import sqrt
 from typing import NamedTuple
 
-from controller._jit import Array, kernel
+from controller._jit import Array, inner
 
 _BETWEEN = 3  # poses of the front in a bend that a box is made to hold, besides the last
 
@@ -25,7 +25,7 @@ class Limits(NamedTuple):
     margin: float  # [m]
 
 
-@kernel
+@inner
 def _strongest(i: int, force: float, commands: Array, c: Limits) -> float:
     """The largest force [N] that may act in step i: a command of the reaction time before.
 
@@ -44,7 +44,7 @@ def _strongest(i: int, force: float, commands: Array, c: Limits) -> float:
     return strongest
 
 
-@kernel
+@inner
 def _pose(way: Array, spacing: float, travel: float) -> tuple[float, float, float, float]:
     """x, y, cos, sin of the front after ``travel`` [m]."""
     last = way.shape[0] - 1
@@ -60,7 +60,7 @@ def _pose(way: Array, spacing: float, travel: float) -> tuple[float, float, floa
     return x, y, cos / size, sin / size
 
 
-@kernel
+@inner
 def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box: Array) -> None:
     """Fill ``box`` with the rectangle that holds the front from ``low`` to ``high`` of travel [m].
 
@@ -82,7 +82,7 @@ def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box
             box[6], box[7] = min(box[6], across), max(box[7], across)
 
 
-@kernel
+@inner
 def _clearance(travel: float, c: Limits) -> float:
     """What keeps a centre from the front at both ends of a step, so that in between it is R [m].
 
@@ -95,7 +95,7 @@ def _clearance(travel: float, c: Limits) -> float:
     return max(c.body_radius + c.margin, between)
 
 
-@kernel
+@inner
 def _least_travel(speed: float, after: float, dt: float) -> float:
     """What a braking step covers at least [m]: no solution slows down faster than at its start."""
     if after >= 0.0:
@@ -103,7 +103,7 @@ def _least_travel(speed: float, after: float, dt: float) -> float:
     return 0.5 * dt * speed * speed / (speed - after)
 
 
-@kernel
+@inner
 def _stop(
     force: float,
     speed: float,
@@ -142,7 +142,7 @@ def _stop(
     return -1, high
 
 
-@kernel
+@inner
 def _touches(
     box: Array, x: float, y: float, radius: float, error: float, slack: float, c: Limits
 ) -> bool:
@@ -162,7 +162,7 @@ def _touches(
     return touched
 
 
-@kernel
+@inner
 def _may_meet(
     x: float,
     y: float,
@@ -192,7 +192,7 @@ def _may_meet(
     return False
 
 
-@kernel
+@inner
 def is_safe(
     force: float,
     speed: float,

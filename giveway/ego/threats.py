@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from giveway.geometry.contact import contact_interval, to_frame
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inner
 
 _SLOW = 0.2  # [m/s] the ego is no danger (Yang & Özgüner 2019: a standing vehicle is an obstacle)
 _HALVINGS = 5  # of the interval in which the calm speed is looked for
@@ -26,7 +26,7 @@ class Alarm(NamedTuple):
     heeded: bool  # there is a safety layer that would act
 
 
-@kernel
+@inner
 def conflicts_and_calm(
     here: Array,
     before: Array,
@@ -108,7 +108,7 @@ class Outline(NamedTuple):
     farthest: float  # [m] that the front gets at most
 
 
-@kernel
+@inner
 def outline(speed: float, time_step: float, alarm: Alarm) -> Outline:
     """The outline of a full braking from ``speed`` [m/s], which acts after ``time_step`` [s]."""
     step = speed * time_step
@@ -127,7 +127,7 @@ def outline(speed: float, time_step: float, alarm: Alarm) -> Outline:
     return Outline(speed, step, stop, clear, most, farthest)
 
 
-@kernel
+@inner
 def is_threat(
     x: float,
     y: float,
