@@ -35,13 +35,15 @@ _HELP: Final = "from giveway.precompile import help_compiling; help_compiling(*a
 _PEOPLE: Final = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
 _FREE: Final[dict[str, Any]] = {"time_limit": 0.2, "crowd": {"pedestrians": 0}}
 _PLANNING: Final[dict[str, Any]] = {"time_limit": 0.2, "crowd": _PEOPLE, "twin": True}
-# In this order two processes hardly compile the same at the same time: the vehicle and its plans
-# in one, the crowd, what is measured and the other controllers in the other.
-_PLANS: Final[tuple[dict[str, Any], ...]] = (_FREE, _PLANNING)
-_OTHERS: Final[tuple[dict[str, Any], ...]] = (
+# In this order two processes hardly compile the same: the crowd, and the race, which predicts it,
+# in one; the vehicle, its plans, what is measured and the other controllers in the other.
+_WALKS: Final[tuple[dict[str, Any], ...]] = (
     {"time_limit": 0.2, "crowd": _PEOPLE, "ego": {"none": True}},
-    {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "pid-paper", "twin": True},
     {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "mpc-paper"},
+    _PLANNING,
+)
+_OTHERS: Final[tuple[dict[str, Any], ...]] = (
+    _FREE,
     {"time_limit": 1.2, "scenario": "street", "controller": "pid-paper"},
     {
         "time_limit": 0.3,
@@ -49,6 +51,7 @@ _OTHERS: Final[tuple[dict[str, Any], ...]] = (
         "controller": "pid-paper",
         "crowd": {"walls": True},
     },
+    {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "pid-paper", "twin": True},
 )
 
 
@@ -141,7 +144,7 @@ def _started() -> subprocess.Popen[bytes]:
 def help_compiling(parent: int) -> None:
     """What the process beside ``parent`` does."""
     die_with(parent)
-    for settings in _PLANS:
+    for settings in _WALKS:
         _run(settings)
 
 
