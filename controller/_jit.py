@@ -24,4 +24,4 @@ def kernel(function: _Function) -> _Function:
 
 def inner(function: _Function) -> _Function:
     """Compile ``function`` with the kernels that call it; from Python it runs uncompiled."""
-    return cast("_Function", register_jitable(**_STRICT)(function))
+    return register_jitable(**_STRICT)(function)

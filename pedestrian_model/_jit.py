@@ -28,12 +28,12 @@ def kernel(function: _Function) -> _Function:
 
 def inner(function: _Function) -> _Function:
     """Compile ``function`` with the kernels that call it; from Python it runs uncompiled."""
-    return cast("_Function", register_jitable(**_STRICT)(function))
+    return register_jitable(**_STRICT)(function)
 
 
 def inlined(function: _Function) -> _Function:
     """Compile ``function`` into its callers, so that a loop around it can be vectorised."""
-    return cast("_Function", register_jitable(forceinline=True, **_STRICT)(function))
+    return register_jitable(forceinline=True, **_STRICT)(function)
 
 
 def _fma(_typing: Any, a: Any, b: Any, c: Any) -> Any:

@@ -30,9 +30,9 @@ def inner(function: Function) -> Function:
 
     From Python it runs as it stands, uncompiled: what Python calls is a kernel.
     """
-    return cast("Function", register_jitable(**_STRICT)(function))
+    return register_jitable(**_STRICT)(function)
 
 
 def inlined(function: Function) -> Function:
     """Compile ``function`` into its callers: each array that is handed over costs a count of it."""
-    return cast("Function", register_jitable(forceinline=True, **_STRICT)(function))
+    return register_jitable(forceinline=True, **_STRICT)(function)
