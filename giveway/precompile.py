@@ -106,8 +106,8 @@ def forget_old_kernels(folder: Path) -> None:
 def _compile_all() -> None:
     """Compile in this process and in one beside it; then call everything.
 
-    The other one drives by the planning controller through people: the longest of the runs. What
-    both have compiled lies in the cache; what neither has, the last runs compile.
+    The other one walks people, and drives by the planning controller through them: the longest of
+    the runs. What both have compiled lies in the cache; what neither has, the last runs compile.
     """
     with _helper() as helper:
         if helper is not None:
@@ -145,7 +145,7 @@ def help_compiling(parent: int) -> None:
     """What the process beside ``parent`` does."""
     die_with(parent)
     for settings in _WALKS:
-        _run(settings)
+        _run(settings, measured=False)
 
 
 def _processors() -> int:
@@ -172,14 +172,15 @@ def _tiny_run() -> None:
     _come_and_go()
 
 
-def _run(settings: dict[str, Any]) -> None:
+def _run(settings: dict[str, Any], *, measured: bool = True) -> None:
     from giveway.api import run
     from giveway.records.progress import Ending
 
     result = run(settings)
     if result.ending is Ending.INTERRUPTED:
         raise KeyboardInterrupt
-    result.summary  # noqa: B018 - the metrics have kernels too
+    if measured:
+        result.summary  # noqa: B018 - the metrics have kernels too
 
 
 def _step_on_threads() -> None:
