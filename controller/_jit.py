@@ -5,13 +5,13 @@ from typing import Any, TypeVar, cast
 
 import numba
 import numpy as np
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
 _Function = TypeVar("_Function", bound="Callable[..., Any]")
 _STRICT: dict[str, Any] = {
-    "cache": True,
     "error_model": "numpy",
     "no_cfunc_wrapper": True,  # none is called from C; it would be compiled with each kernel
 }
@@ -19,4 +19,9 @@ _STRICT: dict[str, Any] = {
 
 def kernel(function: _Function) -> _Function:
     """Compile ``function`` on its first call; no fastmath, no reordered sums."""
-    return cast("_Function", numba.njit(**_STRICT)(function))
+    return cast("_Function", numba.njit(cache=True, **_STRICT)(function))
+
+
+def inner(function: _Function) -> _Function:
+    """Compile ``function`` with the kernels that call it; from Python it runs uncompiled."""
+    return register_jitable(**_STRICT)(function)

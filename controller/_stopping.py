@@ -3,7 +3,7 @@
 from math import sqrt
 from typing import NamedTuple
 
-from controller._jit import Array, kernel
+from controller._jit import Array, inner
 
 _BETWEEN = 3  # poses of the front in a bend that a box is made to hold, besides the last
 
@@ -26,7 +26,7 @@ class Limits(NamedTuple):
     margin: float  # [m]
 
 
-@kernel
+@inner
 def _strongest(i: int, force: float, commands: Array, c: Limits) -> float:
     """The largest force [N] that may act in step i: a command of the reaction time before.
 
@@ -45,7 +45,7 @@ def _strongest(i: int, force: float, commands: Array, c: Limits) -> float:
     return strongest
 
 
-@kernel
+@inner
 def _pose(way: Array, spacing: float, travel: float) -> tuple[float, float, float, float]:
     """x, y, cos, sin of the front after ``travel`` [m]."""
     last = way.shape[0] - 1
@@ -61,7 +61,7 @@ def _pose(way: Array, spacing: float, travel: float) -> tuple[float, float, floa
     return x, y, cos / size, sin / size
 
 
-@kernel
+@inner
 def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box: Array) -> None:
     """Fill ``box`` with the rectangle that holds the front from ``low`` to ``high`` of travel [m].
 
@@ -83,7 +83,7 @@ def _sweep(way: Array, spacing: float, low: float, high: float, half: float, box
             box[6], box[7] = min(box[6], across), max(box[7], across)
 
 
-@kernel
+@inner
 def _clearance(travel: float, c: Limits) -> float:
     """What keeps a centre from the front at both ends of a step, so that in between it is R [m].
 
@@ -96,7 +96,7 @@ def _clearance(travel: float, c: Limits) -> float:
     return max(c.body_radius + c.margin, between)
 
 
-@kernel
+@inner
 def _least_travel(speed: float, after: float, dt: float) -> float:
     """What a braking step covers at least [m]: no solution slows down faster than at its start."""
     if after >= 0.0:
@@ -104,7 +104,7 @@ def _least_travel(speed: float, after: float, dt: float) -> float:
     return 0.5 * dt * speed * speed / (speed - after)
 
 
-@kernel
+@inner
 def _stop(
     force: float,
     speed: float,
@@ -143,7 +143,7 @@ def _stop(
     return -1, high
 
 
-@kernel
+@inner
 def _touches(
     box: Array, x: float, y: float, radius: float, error: float, slack: float, c: Limits
 ) -> bool:
@@ -163,7 +163,7 @@ def _touches(
     return touched
 
 
-@kernel
+@inner
 def _may_meet(
     x: float,
     y: float,
@@ -204,7 +204,7 @@ def _may_meet(
     return False
 
 
-@kernel
+@inner
 def towards_kerb(t: float, pace: float, depth: float, setting_out: float, most: float) -> float:
     """How far [m] somebody on a sidewalk gets towards its kerb, and beyond it, within ``t`` [s].
 
@@ -223,7 +223,7 @@ def towards_kerb(t: float, pace: float, depth: float, setting_out: float, most: 
     return depth + fastest * rest + 0.5 * most * rest * rest
 
 
-@kernel
+@inner
 def _nearest(box: Array, to_x: float, to_y: float) -> float:
     """The least of what a box's points have in the direction (to_x, to_y) [m]."""
     along, across = to_x * box[2] + to_y * box[3], to_y * box[2] - to_x * box[3]
@@ -232,7 +232,7 @@ def _nearest(box: Array, to_x: float, to_y: float) -> float:
     return least
 
 
-@kernel
+@inner
 def is_safe(
     force: float,
     speed: float,

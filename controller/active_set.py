@@ -8,7 +8,7 @@ stop. The method also ends with a certificate when no plan exists.
 import numpy as np
 from numpy.typing import NDArray
 
-from controller._jit import Array, kernel
+from controller._jit import Array, inner
 from controller.verification import PRIMAL_TOLERANCE, equality_solve
 
 INFEASIBLE = -1
@@ -16,7 +16,7 @@ UNFINISHED = -2
 _DEPENDENT = 1e-18  # squared length of a projected unit-sized row that counts as zero
 
 
-@kernel
+@inner
 def solve_exactly(
     rows: Array, lower: Array, upper: Array, target: Array, multipliers: Array, solution: Array
 ) -> int:
@@ -36,7 +36,8 @@ def solve_exactly(
     m, N = rows.shape
     side = np.zeros(m, dtype=np.int64)
     dual = np.zeros(m)  # >= 0, of the active rows, signed by side
-    solution[:] = target
+    for j in range(len(target)):
+        solution[j] = target[j]
     violated = -1
     for iteration in range(10 * N):
         if violated < 0:
@@ -86,7 +87,7 @@ def solve_exactly(
     return UNFINISHED
 
 
-@kernel
+@inner
 def violation(row: Array, low: float, high: float, direction: int, solution: Array) -> float:
     """By how much ``solution`` misses one bound of ``row``."""
     value = 0.0
@@ -95,7 +96,7 @@ def violation(row: Array, low: float, high: float, direction: int, solution: Arr
     return value - high if direction > 0 else low - value
 
 
-@kernel
+@inner
 def most_violated(
     rows: Array, lower: Array, upper: Array, side: NDArray[np.int64], solution: Array
 ) -> tuple[int, int]:
@@ -115,7 +116,7 @@ def most_violated(
     return found, direction
 
 
-@kernel
+@inner
 def projected(
     rows: Array,
     side: NDArray[np.int64],
@@ -165,7 +166,7 @@ def projected(
     return rest
 
 
-@kernel
+@inner
 def finish(
     rows: Array,
     lower: Array,
@@ -187,7 +188,7 @@ def finish(
     return iterations
 
 
-@kernel
+@inner
 def certificate(
     side: NDArray[np.int64],
     active: NDArray[np.int64],

@@ -17,7 +17,7 @@ Forward Euler makes x_1(k+1) independent of all unknowns: its row is a test befo
 
 import numpy as np
 
-from controller._jit import Array, kernel
+from controller._jit import Array, inner, kernel
 from controller.model import LongitudinalModel
 from controller.parameters import MpcParameters
 
@@ -140,7 +140,7 @@ def fill_bounds(
     return prove_infeasible(speed, previous_force, limits, upper)
 
 
-@kernel
+@inner
 def prove_infeasible(speed: float, previous_force: float, limits: Array, upper: Array) -> int:
     """The slowest and the fastest speeds that the force limits allow, against c6 and c5.
 

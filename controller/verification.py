@@ -9,13 +9,13 @@ confirms it over the box of possible speeds.
 import numpy as np
 from numpy.typing import NDArray
 
-from controller._jit import Array, kernel
+from controller._jit import Array, inner, kernel
 
 PRIMAL_TOLERANCE = 1e-10  # [m/s] and below: rounding of sums of at most N speeds
 _PIVOT = 1e-11  # relative: below it a binding row depends on the others
 
 
-@kernel
+@inner
 def refine(
     rows: Array, lower: Array, upper: Array, target: Array, multipliers: Array, solution: Array
 ) -> int:
@@ -75,7 +75,7 @@ def refine(
     return -1
 
 
-@kernel
+@inner
 def equality_solve(
     rows: Array,
     lower: Array,
@@ -135,7 +135,7 @@ def equality_solve(
     return -1
 
 
-@kernel
+@inner
 def is_finite(values: Array) -> bool:
     """Whether all of ``values`` are finite."""
     for value in values:  # noqa: SIM110 - numba compiles no generator

@@ -21,13 +21,14 @@ from numba.core import caching, environment
 from numba.core.caching import UserProvidedCacheLocator
 from numba.core.runtime.nrt import rtsys
 
+import giveway._kernel_linking  # noqa: F401 - what is compiled is linked as it says
 from giveway._environment import user_cache
 
 FOLDERS = "kernels-*"
 _LOCK = "saving.lock"
 _HOUSE = Path(__file__).resolve().parent.parent
 _OF_KERNELS = ("controller", "pedestrian_model")  # rooms whose constants go into kernels, too
-_KERNEL = re.compile(rb"^@(?:kernel|inlined)\b|^def kernel\b", re.MULTILINE)
+_KERNEL = re.compile(rb"^@(?:kernel|inner|inlined)\b|^def kernel\b", re.MULTILINE)
 
 
 @functools.cache

@@ -35,13 +35,15 @@ _HELP: Final = "from giveway.precompile import help_compiling; help_compiling(*a
 _PEOPLE: Final = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
 _FREE: Final[dict[str, Any]] = {"time_limit": 0.2, "crowd": {"pedestrians": 0}}
 _PLANNING: Final[dict[str, Any]] = {"time_limit": 0.2, "crowd": _PEOPLE, "twin": True}
-# In this order two processes hardly compile the same at the same time: the vehicle and its plans
-# in one, the crowd, what is measured and the other controllers in the other.
-_PLANS: Final[tuple[dict[str, Any], ...]] = (_FREE, _PLANNING)
-_OTHERS: Final[tuple[dict[str, Any], ...]] = (
+# In this order two processes hardly compile the same: the crowd, and the race, which predicts it,
+# in one; the vehicle, its plans, what is measured and the other controllers in the other.
+_WALKS: Final[tuple[dict[str, Any], ...]] = (
     {"time_limit": 0.2, "crowd": _PEOPLE, "ego": {"none": True}},
-    {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "pid-paper", "twin": True},
     {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "mpc-paper"},
+    _PLANNING,
+)
+_OTHERS: Final[tuple[dict[str, Any], ...]] = (
+    _FREE,
     {"time_limit": 1.2, "scenario": "street", "controller": "pid-paper"},
     {
         "time_limit": 0.3,
@@ -49,6 +51,7 @@ _OTHERS: Final[tuple[dict[str, Any], ...]] = (
         "controller": "pid-paper",
         "crowd": {"walls": True},
     },
+    {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "pid-paper", "twin": True},
 )
 
 
@@ -103,8 +106,8 @@ def forget_old_kernels(folder: Path) -> None:
 def _compile_all() -> None:
     """Compile in this process and in one beside it; then call everything.
 
-    The other one drives by the planning controller through people: the longest of the runs. What
-    both have compiled lies in the cache; what neither has, the last runs compile.
+    The other one walks people, and drives by the planning controller through them: the longest of
+    the runs. What both have compiled lies in the cache; what neither has, the last runs compile.
     """
     with _helper() as helper:
         if helper is not None:
@@ -141,8 +144,8 @@ def _started() -> subprocess.Popen[bytes]:
 def help_compiling(parent: int) -> None:
     """What the process beside ``parent`` does."""
     die_with(parent)
-    for settings in _PLANS:
-        _run(settings)
+    for settings in _WALKS:
+        _run(settings, measured=False)
 
 
 def _processors() -> int:
@@ -169,14 +172,15 @@ def _tiny_run() -> None:
     _come_and_go()
 
 
-def _run(settings: dict[str, Any]) -> None:
+def _run(settings: dict[str, Any], *, measured: bool = True) -> None:
     from giveway.api import run
     from giveway.records.progress import Ending
 
     result = run(settings)
     if result.ending is Ending.INTERRUPTED:
         raise KeyboardInterrupt
-    result.summary  # noqa: B018 - the metrics have kernels too
+    if measured:
+        result.summary  # noqa: B018 - the metrics have kernels too
 
 
 def _step_on_threads() -> None:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pedestrian_model._jit import add_block, copy_block, fma, inlined, kernel
+from pedestrian_model._jit import add_block, copy_block, fma, inlined, inner
 from pedestrian_model._pairs import (
     COINCIDENT_2,
     PairConstants,
@@ -290,7 +290,7 @@ def _find_segments(
     return count
 
 
-@kernel
+@inner
 def add_near_pairs(
     rows: NDArray[np.float64],
     index: NDArray[np.int64],

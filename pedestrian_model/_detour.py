@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pedestrian_model._jit import inlined, kernel
+from pedestrian_model._jit import inlined, inner
 from pedestrian_model._mathematics import cosine_sine
 from pedestrian_model._rows import NVX, NX, NY, PX, PY, TX, TY
 from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
@@ -55,7 +55,7 @@ def _corner(k: int, low: float, high: float, h: float) -> tuple[float, float]:
     return (high if k == 0 or k == 3 else low), (h if k < 2 else -h)
 
 
-@kernel
+@inner
 def _way_round(
     x: float,
     y: float,

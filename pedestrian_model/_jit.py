@@ -11,12 +11,11 @@ import numba
 import numpy as np
 from llvmlite import ir
 from numba.core import types
-from numba.extending import intrinsic
+from numba.extending import intrinsic, register_jitable
 from numpy.typing import NDArray
 
 _Function = TypeVar("_Function", bound="Callable[..., Any]")
 _STRICT: dict[str, Any] = {
-    "cache": True,
     "error_model": "numpy",
     "no_cfunc_wrapper": True,  # none is called from C; it would be compiled with each kernel
 }
@@ -24,12 +23,17 @@ _STRICT: dict[str, Any] = {
 
 def kernel(function: _Function) -> _Function:
     """Compile ``function`` on its first call; the machine code is cached on disk."""
-    return cast("_Function", numba.njit(nogil=True, **_STRICT)(function))
+    return cast("_Function", numba.njit(cache=True, nogil=True, **_STRICT)(function))
+
+
+def inner(function: _Function) -> _Function:
+    """Compile ``function`` with the kernels that call it; from Python it runs uncompiled."""
+    return register_jitable(**_STRICT)(function)
 
 
 def inlined(function: _Function) -> _Function:
     """Compile ``function`` into its callers, so that a loop around it can be vectorised."""
-    return cast("_Function", numba.njit(forceinline=True, **_STRICT)(function))
+    return register_jitable(forceinline=True, **_STRICT)(function)
 
 
 def _fma(_typing: Any, a: Any, b: Any, c: Any) -> Any:

@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pedestrian_model._jit import inlined, kernel
+from pedestrian_model._jit import inlined, inner
 from pedestrian_model._mathematics import cosine_sine
 from pedestrian_model._vehicles import FRONT, HEADING, REAR, SPEED, WIDTH, X, Y
 
@@ -92,7 +92,7 @@ def _nearest(found: Array, count: int, most: int, distance: float, which: int) -
     return min(count + 1, most)
 
 
-@kernel
+@inner
 def orca_velocity(
     i: int,
     position: Array,
@@ -162,7 +162,7 @@ def orca_velocity(
     return o_x, o_y
 
 
-@kernel
+@inner
 def _closest(
     lines: Array, n: int, fastest: float, p_x: float, p_y: float, furthest: bool
 ) -> tuple[int, float, float]:
@@ -202,7 +202,7 @@ def _closest(
     return n, o_x, o_y
 
 
-@kernel
+@inner
 def _least_broken(
     lines: Array,
     n: int,

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pedestrian_model._jit import fma, inlined, kernel
+from pedestrian_model._jit import fma, inlined, inner
 from pedestrian_model._pairs import (
     COINCIDENT_2,
     PairConstants,
@@ -97,7 +97,7 @@ def _shift(
     return coincident
 
 
-@kernel
+@inner
 def add_all_pairs(
     rows: NDArray[np.float64],
     index: NDArray[np.int64],

@@ -26,7 +26,7 @@ from pedestrian_model._cells import (
     _sort,
 )
 from pedestrian_model._detour import detour
-from pedestrian_model._jit import inlined, kernel
+from pedestrian_model._jit import inlined, inner, kernel
 from pedestrian_model._pairs import add_coincident, pair_constants
 from pedestrian_model._routes import set_targets_of
 from pedestrian_model._rows import (
@@ -125,7 +125,7 @@ def lay_out(
     return FINE
 
 
-@kernel
+@inner
 def _add_pairs(
     rows: NDArray[np.float64],
     index: NDArray[np.int64],

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pedestrian_model._cells import Grid
-from pedestrian_model._jit import fma, inlined, kernel
+from pedestrian_model._jit import fma, inlined, inner
 from pedestrian_model._mathematics import cosine_sine, exponential
 from pedestrian_model._priority import felt, place_of_full_force
 from pedestrian_model._rows import BLOCK, PRIORITY, PX, PY, VFX, VFY, VX, VY, S
@@ -195,7 +195,7 @@ def add_vehicles(
         add_vehicle(rows, 0, padded, vehicles[v], travelled, relied_on, c)
 
 
-@kernel
+@inner
 def add_near_vehicles(
     rows: NDArray[np.float64],
     first: NDArray[np.int64],

@@ -34,6 +34,7 @@ _ARRIVES = 0.3  # [m] about a way-point at which somebody slows down to stop
 _NO_WALLS = np.empty((0, 4))
 _NO_WALLS.flags.writeable = False
 _Entry = TypeVar("_Entry", bound=np.generic)
+_first_insane = kernel(first_insane)
 
 
 class PluggedInModel:
@@ -92,7 +93,7 @@ class PluggedInModel:
             raise unknown_signal(crowd, surroundings)
         if not len(crowd):
             return
-        bad = first_insane(crowd.position, crowd.velocity)
+        bad = _first_insane(crowd.position, crowd.velocity)
         if bad != FINE:
             raise divergence(bad, crowd, vehicles)
         walkers = self._seen(crowd, vehicles, surroundings)

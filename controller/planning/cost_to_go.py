@@ -8,7 +8,7 @@ What it loses is added to the manoeuvre's cost (rollout, Bertsekas 2005).
 
 import numpy as np
 
-from controller._jit import Array, kernel
+from controller._jit import Array, inner
 
 _SPAN = 6.0  # [s] beyond the horizon that it drives
 _STEP = 0.25  # [s] of it
@@ -18,7 +18,7 @@ _DRIVING_OFF = 2.5  # [m/s^2] at most
 _DISTANCE = 1.0  # [m] kept to people
 
 
-@kernel
+@inner
 def time_to_go(crossers: Array, speed: float, wanted: float) -> float:
     """What is lost beyond the horizon [s].
 

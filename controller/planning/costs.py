@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from controller._jit import Array, kernel
+from controller._jit import Array, inner, kernel
 from controller.planning.cost_to_go import time_to_go
 from controller.planning.parameters import Weights
 
@@ -12,7 +12,7 @@ _BLOCKED = 2.0  # [s] beyond the horizon that a manoeuvre goes on blocking what 
 _CLEAR = 0.3  # [m] before the end of what is to be kept free it is as good as left
 
 
-@kernel
+@inner
 def stopping_need(speed: float, w: Weights) -> float:
     """The distance [m] to somebody in front from which a comfortable stop is possible."""
     need = w.minimum_distance + w.headway * speed
@@ -65,7 +65,7 @@ def cost(
     return own + time_step * others, time_step * others, missing
 
 
-@kernel
+@inner
 def own_cost(
     speeds: Array,
     accelerations: Array,
@@ -81,7 +81,7 @@ def own_cost(
     return time_step * own
 
 
-@kernel
+@inner
 def later_cost(
     crossers: Array,
     driven: float,
@@ -136,7 +136,7 @@ def cost_of_blocking(
                 costs[j] += lasts * max(0.0, 1.0 - speeds[j, i] / wanted)
 
 
-@kernel
+@inner
 def add_cost_of_others(
     others: float,
     missing: float,
@@ -179,7 +179,7 @@ def add_cost_of_others(
     return others, missing
 
 
-@kernel
+@inner
 def corridor(
     distance: Array,
     speeds: Array,

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from controller._jit import Array, kernel
+from controller._jit import Array, inner, kernel
 from controller.exact_solver import solve_verified
 from controller.planning.costs import add_cost_of_others, corridor, stopping_need
 from controller.planning.parameters import Weights
@@ -119,11 +119,14 @@ def take_over(
     weights: tuple[Any, ...],
 ) -> bool:
     """Fill the plan with the manoeuvre; whether a stop stays possible beyond it."""
-    plan[0][:], plan[1][:], plan[2][:] = best[0], best[1], best[2]
+    for i in range(len(plan[0])):
+        plan[0][i], plan[1][i] = best[0][i], best[1][i]
+    for i in range(len(plan[2])):
+        plan[2][i] = best[2][i]
     return may_hold(plan, best, prospect, time_step, weights)
 
 
-@kernel
+@inner
 def missing_of(
     plan: Motion,
     best: Motion,
@@ -148,7 +151,7 @@ def missing_of(
     return missing
 
 
-@kernel
+@inner
 def may_hold(
     plan: Motion,
     best: Motion,

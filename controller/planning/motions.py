@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from controller._jit import Array, kernel
+from controller._jit import Array, inner
 
 _EASING = 0.4  # [s] in which an acceleration is taken back before standstill or the wanted speed
 _COMFORT = 1.5  # [m/s^2] of a stop that nobody forces
@@ -11,7 +11,7 @@ _SLOWING = 3.0  # [m/s^2] with which a speed above the wanted one is given up: a
 # control does at most (ISO 15622: 3.5 m/s^2 at speed); obstacles have harder manoeuvres
 
 
-@kernel
+@inner
 def aim(
     speed: float,
     before: float,
@@ -55,7 +55,7 @@ def aim(
         v = after
 
 
-@kernel
+@inner
 def approach(
     speed: float,
     before: float,
@@ -97,7 +97,7 @@ def approach(
         v = after
 
 
-@kernel
+@inner
 def shift(
     speed: float,
     holds: bool,

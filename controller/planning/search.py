@@ -270,7 +270,8 @@ def lay_out(
     k += 1
     to = (distance[k], speeds[k], accelerations[k])
     if planned:
-        distance[k][:], speeds[k][:] = last
+        for i in range(distance.shape[1]):
+            distance[k, i], speeds[k, i] = last[0][i], last[1][i]
         shift(speed, holds, b, time_step, *to)
     else:
         aim(speed, before, 0.0, 0.0, fastest, jerk, time_step, *to)

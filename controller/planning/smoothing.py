@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from controller._jit import Array, kernel
+from controller._jit import Array, inner, kernel
 from controller.model import LongitudinalModel
 from controller.planning.parameters import PlannerParameters
 
@@ -235,7 +235,7 @@ def set_target(
         target[i] = value + of_speed[i] * speed + of_acceleration[i] * acceleration
 
 
-@kernel
+@inner
 def unfold(
     speed: float,
     at_nodes: Array,

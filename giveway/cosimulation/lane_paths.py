@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.passage import look
 from giveway.sumo.vehicles import SumoVehicles
 
@@ -144,7 +144,7 @@ class LanePaths:
             self.pool = self.pool._replace(**{name: more})
 
 
-@kernel
+@inner
 def path_from(
     front: Array,
     position: float,
@@ -227,13 +227,13 @@ def gaps_ahead(
                         gaps[i] = min(gaps[i], station)
 
 
-@kernel
+@inner
 def buckets(pedestrians: int) -> int:
     """The number of buckets into which cells are hashed."""
     return max(1, pedestrians)
 
 
-@kernel
+@inner
 def bucket(column: int, row: int, pedestrians: int) -> int:
     """The bucket into which a cell is hashed."""
     return (column * 73856093 ^ row * 19349663) % buckets(pedestrians)

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.ego.crossers import abreast
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath, segment_at
 from pedestrian_model import Crowd, Predictor
 
@@ -168,7 +168,7 @@ def _update(
                 signal[k] = -1
 
 
-@kernel
+@inner
 def shifted(odds: float, off: float, slower: float, yields: bool) -> float:
     """The log odds that somebody yields, after a look.
 

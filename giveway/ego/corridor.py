@@ -9,7 +9,7 @@ only beyond the sight of 100 m along the path, the distance is infinite.
 import numpy as np
 
 from giveway.ego.leader import Leader, vehicles_in_front
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.passage import BEHIND, SIGHT, look, window
 from giveway.geometry.path import EgoPath, body_pose
 
@@ -138,7 +138,7 @@ class Corridor:
         )
 
 
-@kernel
+@inner
 def set_pose(
     vertices: Array,
     stations: Array,
@@ -204,7 +204,7 @@ def fill_poses(
         set_pose(vertices, stations, headings, station, speeds[i], length, poses[i, row])
 
 
-@kernel
+@inner
 def closest_in_front(
     vertices: Array,
     stations: Array,
@@ -235,7 +235,7 @@ def closest_in_front(
     return closest, reachable
 
 
-@kernel
+@inner
 def closest_on_segment(
     vertices: Array, stations: Array, i: int, positions: Array, front: float, half_width: float
 ) -> float:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import shapely
 
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
 
@@ -152,7 +152,7 @@ def fill_kerbs(position: Array, edges: Array, is_kerb: Array, mouths: Array, fou
         found[p, 2] = nearest_kerb
 
 
-@kernel
+@inner
 def in_mouth(x: float, y: float, mouths: Array) -> bool:
     """Whether somebody is beside, before or on a crossing."""
     for i in range(mouths.shape[0]):

@@ -22,7 +22,7 @@ from controller import (
 from giveway.ego.corridor import set_pose
 from giveway.ego.crossers import fill_crossers
 from giveway.ego.prospects import View, assess_step, interval_of
-from giveway.geometry.kernel import Array, inlined, kernel
+from giveway.geometry.kernel import Array, inlined, inner, kernel
 from pedestrian_model import leap, start, wish
 
 Arrays = tuple[NDArray[Any], ...]
@@ -223,7 +223,7 @@ def fill_ends(state: Array, index: NDArray[np.int64], row: int, scene: Any, ends
         ends[p, 0], ends[p, 1], ends[p, 2], ends[p, 3], ends[p, 4] = x, y, w_x, w_y, until
 
 
-@kernel
+@inner
 def enter(
     k: int, distance: Array, speed: Array, steps: NDArray[np.int64], alike: NDArray[np.int64]
 ) -> None:
@@ -276,8 +276,10 @@ def advance(
             donor = other
     if donor >= 0:
         there = (donor * M + j) * n
-        state[4 * here : 4 * (here + n)] = state[4 * there : 4 * (there + n)]
-        index[here : here + n] = index[there : there + n]
+        for i in range(4 * n):
+            state[4 * here + i] = state[4 * there + i]
+        for p in range(n):
+            index[here + p] = index[there + p]
     else:
         if j == 0:
             start(people)
@@ -307,7 +309,9 @@ def advance(
         if other != k and steps[1, other] > j and alike[k, other] > end:
             donor = other
     if donor >= 0:
-        prospects[:, k, begin:end] = prospects[:, donor, begin:end]
+        for which in range(3):
+            for i in range(begin, end):
+                prospects[which, k, i] = prospects[which, donor, i]
     else:
         assess_step(
             vertices,

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.ego.waiting import WaitingEgo
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
 
@@ -136,7 +136,7 @@ def come_near(
                 mask[j] = not _farther(x, y, to_x, to_y, high - low, margin)
 
 
-@kernel
+@inner
 def _farther(x: float, y: float, to_x: float, to_y: float, length: float, margin: float) -> bool:
     """Whether a way stays farther than ``margin`` from the axis between 0 and ``length``."""
     if min(y, to_y) > margin or max(y, to_y) < -margin:
@@ -154,7 +154,7 @@ def _farther(x: float, y: float, to_x: float, to_y: float, length: float, margin
     return min(closest, _from_segment(length, 0.0, x, y, to_x, to_y)) > margin
 
 
-@kernel
+@inner
 def _from_segment(x: float, y: float, a_x: float, a_y: float, b_x: float, b_y: float) -> float:
     """The distance [m] of a point to the segment from a to b."""
     d_x, d_y = b_x - a_x, b_y - a_y

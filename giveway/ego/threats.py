@@ -7,7 +7,7 @@ import numpy as np
 from controller import towards_kerb
 from giveway.ego.kerbs import NO_KERBS
 from giveway.geometry.contact import contact_interval, to_frame
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inner
 
 _SLOW = 0.2  # [m/s] the ego is no danger (Yang & Özgüner 2019: a standing vehicle is an obstacle)
 _HALVINGS = 5  # of the interval in which the calm speed is looked for
@@ -31,7 +31,7 @@ class Alarm(NamedTuple):
     kerbs: Array = NO_KERBS  # (n, 3) a x + b y = c [m] of those on sidewalks, 0 of the others
 
 
-@kernel
+@inner
 def conflicts_and_calm(
     here: Array,
     before: Array,
@@ -120,7 +120,7 @@ class Outline(NamedTuple):
     farthest: float  # [m] that the front gets at most
 
 
-@kernel
+@inner
 def outline(speed: float, time_step: float, alarm: Alarm) -> Outline:
     """The outline of a full braking from ``speed`` [m/s], which acts after ``time_step`` [s]."""
     step = speed * time_step
@@ -139,7 +139,7 @@ def outline(speed: float, time_step: float, alarm: Alarm) -> Outline:
     return Outline(speed, step, stop, clear, most, farthest)
 
 
-@kernel
+@inner
 def is_threat(
     x: float,
     y: float,

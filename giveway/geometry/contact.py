@@ -7,19 +7,19 @@ grown by R (the Minkowski sum: a rectangle with rounded corners), so the circle 
 
 from math import hypot, inf, sqrt
 
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import inner
 
 AT_REST = 1e-12
 """[m/s] A relative speed below this counts as none: a contact would be ages away."""
 
 
-@kernel
+@inner
 def to_frame(x: float, y: float, cos: float, sin: float) -> tuple[float, float]:
     """Turn a vector of the network into the frame of a vehicle heading along (cos, sin)."""
     return x * cos + y * sin, y * cos - x * sin
 
 
-@kernel
+@inner
 def signed_distance(x: float, y: float, half_length: float, half_width: float) -> float:
     """Distance [m] of a point to the rectangle's edge, negative inside."""
     outside_x = abs(x) - half_length
@@ -29,7 +29,7 @@ def signed_distance(x: float, y: float, half_length: float, half_width: float) -
     return max(outside_x, outside_y)
 
 
-@kernel
+@inner
 def _slab(x: float, w: float, half: float) -> tuple[float, float]:
     """The times during which x + w t lies in [-half, half]; (inf, -inf) if it never does."""
     if w == 0.0:
@@ -39,7 +39,7 @@ def _slab(x: float, w: float, half: float) -> tuple[float, float]:
     return min(one, other), max(one, other)
 
 
-@kernel
+@inner
 def _disc(x: float, y: float, w_x: float, w_y: float, radius: float) -> tuple[float, float]:
     """The times during which (x, y) + (w_x, w_y) t lies in a disc about the origin."""
     speed_2 = w_x * w_x + w_y * w_y
@@ -52,7 +52,7 @@ def _disc(x: float, y: float, w_x: float, w_y: float, radius: float) -> tuple[fl
     return (middle - root) / speed_2, (middle + root) / speed_2
 
 
-@kernel
+@inner
 def contact_interval(
     x: float,
     y: float,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import segment_at
 
 SIGHT = 100.0
@@ -12,7 +12,7 @@ BEHIND = 10.0
 """[m] behind the front bumper from which on pedestrians and vehicles are looked for."""
 
 
-@kernel
+@inner
 def look(
     vertices: Array,
     stations: Array,

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from giveway.errors import ScenarioError
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inner, kernel
 
 
 class Pose(NamedTuple):
@@ -119,7 +119,7 @@ def segment_at(stations: Array, station: float) -> int:
     return min(max(i, 0), len(stations) - 2)
 
 
-@kernel
+@inner
 def point_on(vertices: Array, stations: Array, i: int, station: float) -> tuple[float, float]:
     """x, y [m] at ``station`` [m] on the line through segment i."""
     along = station - stations[i]
@@ -203,7 +203,7 @@ def headings_to_angles(headings: Array) -> Array:
     return np.mod(np.round(90.0 - np.degrees(headings), 6), 360.0)
 
 
-@kernel
+@inner
 def angle_of_velocity(v_x: float, v_y: float) -> float:
     """The navigational angle [deg] into which a velocity points."""
     return float((90.0 - np.degrees(np.arctan2(v_y, v_x))) % 360.0)

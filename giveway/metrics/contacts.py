@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.contact import contact_interval, to_frame
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import inner, kernel
 from giveway.metrics.conflicts import (
     as_floats,
     as_integers,
@@ -79,7 +79,7 @@ def contacts(
     return np.asarray(_NAMES[kinds], dtype=np.str_)
 
 
-@kernel
+@inner
 def _first_touch(
     k: int,
     r: int,

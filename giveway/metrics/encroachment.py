@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.contact import contact_interval, to_frame
-from giveway.geometry.kernel import kernel
+from giveway.geometry.kernel import inner, kernel
 from giveway.metrics.conflicts import (
     as_floats,
     as_integers,
@@ -101,7 +101,7 @@ def post_encroachment_time(
     return encroachment(ego, crowd, shape, body_radius).time
 
 
-@kernel
+@inner
 def _blocks(
     poses: NDArray[np.float64], half_length: float, half_width: float, radius: float
 ) -> NDArray[np.float64]:
@@ -122,7 +122,7 @@ def _blocks(
     return blocks
 
 
-@kernel
+@inner
 def _touch_in_step(
     k: int,
     x: float,
@@ -154,7 +154,7 @@ def _touch_in_step(
     return time[k] + max(first, 0.0) * duration, time[k] + min(last, 1.0) * duration
 
 
-@kernel
+@inner
 def _separation_in_step(
     k: int,
     t: float,
@@ -169,13 +169,13 @@ def _separation_in_step(
     return max(first - t, t - last, 0.0)
 
 
-@kernel
+@inner
 def _out_of_reach(b: int, x: float, y: float, blocks: NDArray[np.float64]) -> bool:
     """Whether the ego touches no circle at (x, y) in any step of block b."""
     return bool((x - blocks[b, 0]) ** 2 + (y - blocks[b, 1]) ** 2 > blocks[b, 2])
 
 
-@kernel
+@inner
 def _separation(
     t: float,
     x: float,
@@ -214,7 +214,7 @@ def _separation(
     return nearest
 
 
-@kernel
+@inner
 def _separation_on_the_way(
     share: float,
     k: int,
@@ -233,7 +233,7 @@ def _separation_on_the_way(
     return _separation(clock[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, body)
 
 
-@kernel
+@inner
 def _smallest_between(
     k: int,
     x: tuple[float, float],
@@ -266,7 +266,7 @@ def _smallest_between(
     return smallest
 
 
-@kernel
+@inner
 def _ego_comes_later(
     t: float,
     x: float,
@@ -296,7 +296,7 @@ def _ego_comes_later(
     return False
 
 
-@kernel
+@inner
 def _share_inside(
     k: int,
     x: tuple[float, float],

@@ -12,8 +12,11 @@ import numpy as np
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from controller._jit import kernel
 from controller.active_set import solve_exactly
 from controller.speed_problem import SLACK
+
+solve_exactly = kernel(solve_exactly)
 
 BOX = 4.0  # all variables of the small problems within -BOX ... BOX
 

@@ -12,8 +12,11 @@ from least_squares_cases import (
     small_problems,
 )
 
+from controller._jit import kernel
 from controller.active_set import INFEASIBLE, solve_exactly
 from controller.verification import certifies_infeasibility
+
+solve_exactly = kernel(solve_exactly)
 
 
 def test_the_dual_method_meets_the_optimality_conditions(problems):

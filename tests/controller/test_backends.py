@@ -12,11 +12,15 @@ import pytest
 from least_squares_cases import bounds, optimum
 
 from controller import LongitudinalModel, MpcParameters, Outcome
+from controller._jit import kernel
 from controller.active_set import solve_exactly
 from controller.daqp_backend import DaqpBackend
 from controller.osqp_backend import OsqpBackend
 from controller.speed_problem import UNDECIDED, SpeedProblem
 from controller.verification import refine
+
+solve_exactly = kernel(solve_exactly)
+refine = kernel(refine)
 
 LIMIT = MpcParameters().iteration_limit
 

@@ -9,8 +9,12 @@ from hypothesis import strategies as st
 from least_squares_cases import BOX, assert_optimal, bounds, optimum, small_problems
 
 from controller import MpcParameters
+from controller._jit import kernel
 from controller.active_set import INFEASIBLE, solve_exactly
 from controller.verification import certifies_infeasibility, refine
+
+solve_exactly = kernel(solve_exactly)
+refine = kernel(refine)
 
 PARAMETERS = MpcParameters()
 SPEEDS = (PARAMETERS.speed_min - 1.0, PARAMETERS.speed_max + 1.0)  # [m/s] that are possible

@@ -7,7 +7,7 @@ import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
-from types import ModuleType
+from types import FunctionType, ModuleType
 
 import pytest
 from filelock import FileLock, Timeout
@@ -19,6 +19,7 @@ from giveway.geometry import passage
 
 HOUSE = Path(_kernel_cache.__file__).resolve().parent.parent
 LOCATORS = "numba.config.CACHE_LOCATOR_CLASSES.count('giveway._kernel_cache.KernelLocator')"
+INNER = re.compile(r"^@(?:inner|inlined)\ndef (\w+)", re.MULTILINE)
 FOLDER = "giveway.geometry.path.project._cache.cache_path"
 
 
@@ -36,12 +37,12 @@ def elsewhere(tmp_path, monkeypatch):
 
 def test_the_same_kernels_at_another_place_are_the_same(elsewhere):
     there = KernelLocator.from_function(
-        passage.look.py_func, str(elsewhere / "giveway/geometry/passage.py")
+        passage.window.py_func, str(elsewhere / "giveway/geometry/passage.py")
     )
     assert there is not None
     assert there.get_cache_path() == str(kernel_cache() / "giveway.geometry")
-    assert there.get_cache_path() == passage.look._cache.cache_path
-    assert there.get_source_stamp() == passage.look._cache._impl.locator.get_source_stamp()
+    assert there.get_cache_path() == passage.window._cache.cache_path
+    assert there.get_source_stamp() == passage.window._cache._impl.locator.get_source_stamp()
 
 
 @pytest.mark.parametrize(
@@ -99,7 +100,7 @@ def test_a_callee_that_changes_in_another_file_is_seen_and_code_that_is_there_ne
 
 def test_code_is_saved_by_one_process_at_a_time(monkeypatch, tmp_path):
     """Numba reads a kernel's list of signatures and writes it: between them nobody else may."""
-    dispatcher = passage.look
+    dispatcher = passage.window
     saved = []
 
     def save(cache, _signature, _data):
@@ -122,16 +123,16 @@ def test_no_kernel_depends_on_a_file_that_is_not_looked_at():
     for path in sorted((HOUSE / "giveway").rglob("*.py")):
         if _kernel_cache._KERNEL.search(path.read_bytes()):
             module = import_module(".".join(path.relative_to(HOUSE).with_suffix("").parts))
-            kernels = [k for k in vars(module).values() if isinstance(k, Dispatcher)]
-            assert kernels or path.name == "kernel.py"
-            for kernel in kernels:
-                _check_origin(module, kernel)
+            kernels = [k.py_func for k in vars(module).values() if isinstance(k, Dispatcher)]
+            inner = [getattr(module, name) for name in INNER.findall(path.read_text("utf-8"))]
+            assert kernels or inner or path.name == "kernel.py"
+            for function in (*kernels, *inner):
+                _check_origin(module, function)
         else:
             assert not re.search(rb"\bn?jit\(", path.read_bytes()), path
 
 
-def _check_origin(module: ModuleType, kernel: Dispatcher) -> None:
-    function = kernel.py_func
+def _check_origin(module: ModuleType, function: FunctionType) -> None:
     if function.__module__ != module.__name__:
         return  # imported; it is looked at in its own module
     source = Path(module.__file__ or "").read_text(encoding="utf-8")

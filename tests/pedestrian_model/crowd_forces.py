@@ -33,6 +33,8 @@ from pedestrian_model._step import FINE, first_insane, gather_forces
 from pedestrian_model._walls import add_walls
 from pedestrian_model.model import divergence, unknown_signal
 
+cosine_sine = kernel(cosine_sine)
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 

@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 
 from pedestrian_model import SIM, Crowd, PlainModel, Vehicles
+from pedestrian_model._jit import kernel
 from pedestrian_model._orca import LINES, TAU, _closest, orca_velocity
+
+_closest = kernel(_closest)
+orca_velocity = kernel(orca_velocity)
 
 RADIUS, DT = SIM.body_radius, 0.05
 SCRATCH = (np.empty((LINES, 4)), np.empty((LINES, 4)), np.empty((LINES, 2)))

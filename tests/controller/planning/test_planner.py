@@ -23,8 +23,11 @@ from smoothing_cases import (
 )
 
 from controller import Planner, Prospect
+from controller._jit import kernel
 from controller.active_set import solve_exactly
 from controller.planning.smoothing import SmoothingProblem, nodes_of
+
+solve_exactly = kernel(solve_exactly)
 
 
 class Fixed:

@@ -25,10 +25,14 @@ from controller import (
     TunedPid,
     TunedPidParameters,
 )
+from controller._jit import kernel
 from controller.defaults import STANDSTILL
 from controller.planning.costs import stopping_need
 from controller.planning.motions import aim
 from controller.planning.parameters import Weights
+
+stopping_need = kernel(stopping_need)
+aim = kernel(aim)
 
 MODEL = LongitudinalModel()
 N, DT, V_R = PlannerParameters().horizon, MODEL.time_step, 4.0

@@ -11,10 +11,18 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from controller import ControllerError, Manoeuvre, ManoeuvreParameters, PlannerParameters
+from controller._jit import kernel
 from controller.planning.cost_to_go import time_to_go
 from controller.planning.costs import corridor, cost, stopping_need
 from controller.planning.motions import aim, approach, shift
 from controller.planning.parameters import Weights
+
+time_to_go = kernel(time_to_go)
+corridor = kernel(corridor)
+stopping_need = kernel(stopping_need)
+aim = kernel(aim)
+approach = kernel(approach)
+shift = kernel(shift)
 
 DT = 0.05
 FREE = np.inf

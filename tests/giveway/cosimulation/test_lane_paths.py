@@ -13,10 +13,13 @@ from hypothesis import strategies as st
 
 from giveway.cosimulation.lane_paths import LanePathPool, gaps_ahead, sort_pedestrians
 from giveway.ego.corridor import closest_in_front
+from giveway.geometry.kernel import kernel
 from giveway.geometry.path import EgoPath
 from giveway.sumo.lanes import Lanes
 from giveway.sumo.vehicles import SumoVehicles
 from sumo_scenarios import find
+
+closest_in_front = kernel(closest_in_front)
 
 HALF_WIDTH = 1.25
 

@@ -11,8 +11,11 @@ from hypothesis import strategies as st
 
 from giveway.ego.corridor import Corridor, closest_in_front
 from giveway.ego.leader import NO_LEADER, Leader
+from giveway.geometry.kernel import kernel
 from giveway.geometry.passage import SIGHT
 from giveway.geometry.path import EgoPath
+
+closest_in_front = kernel(closest_in_front)
 
 STRAIGHT = EgoPath.through([(0.0, 0.0), (300.0, 0.0)])
 IN_PIECES = EgoPath.through([(float(x), 0.0) for x in range(301)])

@@ -21,8 +21,12 @@ from giveway.ego.prospects import PASSED, View, assess
 from giveway.ego.safety import FrontPoses
 from giveway.ego.threats import Alarm, is_threat, outline
 from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import kernel
 from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, SIM, Crowd
+
+is_threat = kernel(is_threat)
+outline = kernel(outline)
 
 N, DT = 20, 0.05
 EVERY = 2  # steps of a manoeuvre in one of the prediction

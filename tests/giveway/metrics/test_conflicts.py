@@ -20,7 +20,11 @@ from hypothesis import strategies as st
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.contact import contact_interval, signed_distance
+from giveway.geometry.kernel import kernel
 from giveway.metrics import proximity
+
+contact_interval = kernel(contact_interval)
+signed_distance = kernel(signed_distance)
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27
