@@ -9,7 +9,6 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from scipy.special import stdtrit  # all of scipy.stats takes a second to load
 
 from giveway.figures.study_differences import DifferenceColumn, Differences, differences_figure
 from giveway.figures.study_distributions import DistributionColumn, distributions_figure
@@ -18,6 +17,7 @@ from giveway.figures.study_fronts import FrontPoint, fronts_figure
 from giveway.figures.study_rows import Row, level_colours
 from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
 from giveway.reports.choice import deciding_metric
+from giveway.reports.intervals import mean_interval, possible
 from giveway.reports.labels import (
     baseline_label,
     compared_labels,
@@ -346,23 +346,3 @@ def _front_point(row: Mapping[Any, Any], compared: str) -> FrontPoint:
         (float(row["people_delay_low"]), float(row["people_delay_high"])),
         bool(row["front"]),
     )
-
-
-def possible(interval: tuple[float, float], least: float = 0.0) -> tuple[float, float]:
-    """An interval of a mean without what cannot be: neither times nor clearances are below 0.
-
-    Student's interval knows no bounds. Where bodies overlapped, ``least``, the least value that was
-    measured, is below 0 and bounds it instead.
-    """
-    low, high = interval
-    return max(low, min(least, 0.0)), high
-
-
-def mean_interval(values: NDArray[np.float64], confidence: float) -> tuple[float, float]:
-    """Student's interval of a mean; the mean itself where there is one value, or all are equal."""
-    mean = float(values.mean())
-    if values.size < 2:
-        return mean, mean
-    half = float(stdtrit(values.size - 1, (1.0 + confidence) / 2.0))
-    half *= float(values.std(ddof=1)) / math.sqrt(values.size)
-    return mean - half, mean + half
