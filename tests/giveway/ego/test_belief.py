@@ -57,11 +57,11 @@ def test_who_walks_on_is_expected_to():
 
 def test_who_slows_down_before_the_way_is_found_out_before_he_stands():
     odds, ways = watch(beliefs(), lambda room: min(PACE, max(room, 0.0) / 2.0))
-    found = next(i for i, l in enumerate(odds) if l > 0.0)
-    assert found < 20
+    first = next(i for i, found in enumerate(odds) if found > 0.0)
+    assert first < 20
     assert odds[-1] > 0.0  # and so he stays
-    for l, way in zip(odds, ways, strict=True):
-        to = (18.0, 20.0) if l <= 0.0 else (18.0, -HALF - 0.05)
+    for found, way in zip(odds, ways, strict=True):
+        to = (18.0, 20.0) if found <= 0.0 else (18.0, -HALF - 0.05)
         assert way == pytest.approx(to)
 
 
