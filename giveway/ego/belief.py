@@ -30,7 +30,7 @@ _REACH = 25.0  # [m] ahead of the front
 _ASIDE = 6.0  # [m] from the edge of the way; from there on nobody slows down for it yet
 _TOWARDS = 0.3  # [m/s] of the wish towards the way, at least: others do not want to cross it
 _EDGE = 0.05  # [m] before the edge of the way is where people stop: rounding leaves nobody on it
-_NEVER = -1
+_NEVER = -1  # a look that none is
 
 
 class Beliefs:
@@ -52,7 +52,7 @@ class Beliefs:
         self._law = half_width, taken_up, walking.destination_smoothing
         every = round(predictor.time_step / time_step)
         self._way = path.vertices, path.stations
-        self._every, self._look = every, 0
+        self._every, self._look = every, every
         self._odds = np.zeros(0)
         self._told = np.zeros((0, every), dtype=np.int64)
         self._expected = np.zeros((0, every, 3))
