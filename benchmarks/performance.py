@@ -31,6 +31,7 @@ COMMANDS = (
     "bench_scenario.py",
     "bench_crowd.py",
     "bench_crowd_threads.py",
+    "bench_models.py",
     "bench_qp.py",
     "bench_fmu.py",
     "bench_controller.py",

@@ -93,8 +93,8 @@ def named_in(failure: str, config: RunConfig) -> str:
     for socket, place in _PLACES:
         names = dict.fromkeys(shown(one.name) for one in code if one.socket is socket)
         if names:
-            shown = " or ".join(f"'{name}'" for name in names)
-            failure = failure.replace(place, f"in the {socket.what} {shown} at")
+            these = " or ".join(f"'{name}'" for name in names)
+            failure = failure.replace(place, f"in the {socket.what} {these} at")
     return failure
 
 
