@@ -3,6 +3,8 @@
 Run: PYTHONPATH=BEFORE python benchmarks/paired_runs.py --write before.json [--seeds 101 221]
      PYTHONPATH=AFTER python benchmarks/paired_runs.py --write after.json [--seeds 101 221]
      python benchmarks/paired_runs.py --compare before.json after.json
+     ... --people                           # before people of other models: docs/planner.md
+     ... --options '{"planner": {"belief": false}}'     # in all of the runs
 
 Only public names are used, so that two states of the repository can be compared. A difference is
 the mean over the seeds, with its 95 % bootstrap interval. What counts is many seeds: a run in which
@@ -23,10 +25,16 @@ KINDS: dict[str, dict[str, Any]] = {
     "30 people, from both sides": {"crowd": {"pedestrians": 30, "two_sided": True}},
     "street": {"scenario": "street"},
 }
+PEOPLE: dict[str, dict[str, Any]] = {
+    f"{name}, {model}": {"scenario": scenario, "crowd": {"pedestrians": count, "model": model}}
+    for name, scenario, count in (("crowd", "shared_space", 30), ("encounter", "encounter", 24))
+    for model in ("vci", "gap-acceptance", "orca", "social-force")
+}
 SHOWN = (
     "completed",
     "completion_time",
     "total_wait",
+    "longest_wait",
     "conflicts",
     "share_below_ttc",
     "minimum_ttc_moving",
@@ -41,14 +49,16 @@ SHOWN = (
 _RESAMPLES = 2000
 
 
-def summaries(seeds: range, controller: str) -> dict[str, dict[str, float]]:
+def summaries(
+    seeds: range, kinds: dict[str, dict[str, Any]], options: dict[str, Any]
+) -> dict[str, dict[str, float]]:
     """The numbers of the summary of each run, by kind and seed."""
     import giveway
 
     found = {}
-    for name, kind in KINDS.items():
+    for name, kind in kinds.items():
         for seed in seeds:
-            result = giveway.run({"controller": controller, "seed": seed, **kind})
+            result = giveway.run({**options, "seed": seed, **kind})
             numbers = {k: v for k, v in result.summary.items() if isinstance(v, (int, float))}
             found[f"{name} / {seed}"] = numbers
     return found
@@ -57,9 +67,10 @@ def summaries(seeds: range, controller: str) -> dict[str, dict[str, float]]:
 def show(before: dict[str, dict[str, float]], after: dict[str, dict[str, float]]) -> None:
     """Print the means of both and their difference, kind by kind."""
     g = np.random.default_rng(0)
-    for name in KINDS:
+    for name in {**KINDS, **PEOPLE}:
         runs = [run for run in before if run.startswith(f"{name} / ") and run in after]
-        print(f"{name}, {len(runs)} pairs")
+        if runs:
+            print(f"{name}, {len(runs)} pairs")
         for quantity in SHOWN if runs else ():
             pairs = np.array([(before[run][quantity], after[run][quantity]) for run in runs])
             pairs = pairs.astype(np.float64)
@@ -80,9 +91,13 @@ def main() -> None:
     parser.add_argument("--compare", type=Path, nargs=2, help="two such files")
     parser.add_argument("--seeds", type=int, nargs=2, default=(1, 31), help="first, last plus one")
     parser.add_argument("--controller", default="mpc")
+    parser.add_argument("--people", action="store_true", help="of four models, two scenes each")
+    parser.add_argument("--options", type=json.loads, default={}, help="of all runs, as JSON")
     options = parser.parse_args()
     if options.write is not None:
-        found = summaries(range(*options.seeds), options.controller)
+        common = {"controller": options.controller, **options.options}
+        kinds = PEOPLE if options.people else KINDS
+        found = summaries(range(*options.seeds), kinds, common)
         options.write.write_text(json.dumps(found), encoding="utf-8")
     if options.compare is not None:
         show(*(json.loads(file.read_text(encoding="utf-8")) for file in options.compare))

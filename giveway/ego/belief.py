@@ -7,9 +7,8 @@ person beside the way who wants to cross it two hypotheses are kept:
 * *yields*: walks up to the edge of the way, and stops there.
 
 Both say how fast the person is one step of the prediction later. Seen speeds shift the log odds
-between the two (sequential probability ratio, Wald 1945; of a pedestrian's intent: Bandyopadhyay
-et al., "Intention-aware motion planning", WAFR 2012). Whoever more likely yields is predicted, and
-thereby planned for, with the edge of the way as destination.
+between the two (sequential probability ratio, Wald 1945). Whoever more likely yields is predicted,
+and thereby planned for, with the edge of the way as destination.
 """
 
 from math import exp
@@ -74,27 +73,26 @@ class Beliefs:
             expected: (4 m,) x, y [m], v_x, v_y [m/s] of the m people of the latest look, where its
                 prediction had them after a step; (0,): it made none.
         """
-        most = int(numbers.max(initial=-1)) + 1
-        if most > len(self._odds):
-            more = 2 * most - len(self._odds)
-            self._odds = np.concatenate([self._odds, np.full(more, _PRIOR)])
-            never = np.full((more, self._every), _NEVER)
-            self._told = np.concatenate([self._told, never])
-            self._expected = np.concatenate([self._expected, np.zeros((more, self._every, 3))])
         yields = np.zeros(len(numbers), dtype=np.bool_)
-        _update(
-            *self._way,
-            front,
-            (*people.state, people.desired_speed, *people.routes),
-            numbers,
-            self._look,
-            (self._numbers, self._yield, expected),
-            (self._odds, self._told, self._expected),
-            yields,
-            self._law,
-        )
+        seen = (*people.state, people.desired_speed, *people.routes)
+        latest = (self._numbers, self._yield, expected)
+        while True:
+            memory = (self._odds, self._told, self._expected)
+            new = _update(
+                *self._way, front, seen, numbers, self._look, latest, memory, yields, self._law
+            )
+            if new < 0:
+                break
+            self._grow(2 * (new + 1) - len(self._odds))
         self._numbers, self._yield = numbers, yields
         self._look += 1
+
+    def _grow(self, more: int) -> None:
+        """Make room for the numbers of more people."""
+        self._odds = np.concatenate([self._odds, np.full(more, _PRIOR)])
+        never = np.full((more, self._every), _NEVER)
+        self._told = np.concatenate([self._told, never])
+        self._expected = np.concatenate([self._expected, np.zeros((more, self._every, 3))])
 
 
 @kernel
@@ -109,8 +107,8 @@ def _update(
     memory: tuple[Array, NDArray[np.int64], Array],
     yields: NDArray[np.bool_],
     law: tuple[float, float, float],
-) -> None:
-    """As :meth:`Beliefs.update`.
+) -> int:
+    """As :meth:`Beliefs.update`; a number that the memory has no room for, and nothing done, or -1.
 
     Args:
         vertices: of the path.
@@ -128,6 +126,9 @@ def _update(
     position, velocity, index, desired_speed, waypoints, passage, signal, start = people
     odds, told, expected = memory
     half_width, taken_up, smoothing = law
+    for i in range(len(numbers)):
+        if numbers[i] >= len(odds):
+            return int(numbers[i])
     every = told.shape[1]
     before, yielded, outcome = latest
     if len(outcome) > 0:
@@ -166,6 +167,7 @@ def _update(
                 waypoints[k, 1] = y + room * to_y / far
                 passage[k, 0], passage[k, 1], passage[k, 2] = 0.0, 0.0, 0.0
                 signal[k] = -1
+    return -1
 
 
 @inner
