@@ -74,16 +74,15 @@ def ready(controller: str, seed: int, people: int = 30, believed: str = "vci") -
 
 def sixty_over_thirty(controller: str, pairs: int) -> float:
     """A control step with 60 people over one with 30, by the thread's CPU time."""
-    ratios = []
-    for seed in range(pairs + 1):
-        spent = []
-        for people in (30, 60):
-            checked = ready(controller, seed + 1, people)
-            began = thread_time()
-            result = simulate(checked)
-            spent.append((thread_time() - began) / (len(result.ego_track.time) - 1))
-        ratios.append(spent[1] / spent[0])
-    return statistics.median(ratios[1:])  # the first ones load the kernels
+    vars(loop)["perf_counter"] = thread_time
+    total, ratios = Timings.NAMES.index("total"), []
+    for seed in range(1, pairs + 1):
+        few, many = (
+            simulate(ready(controller, seed, people)).timings.seconds[1:, total].mean()
+            for people in (30, 60)
+        )
+        ratios.append(float(many / few))
+    return statistics.median(ratios)
 
 
 def longest_control(controller: str, runs: int) -> tuple[float, float]:

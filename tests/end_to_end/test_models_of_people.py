@@ -37,7 +37,7 @@ def test_on_a_road_with_signals_and_walls(model):
 
 
 def test_who_lets_the_ego_pass_is_found_out():
-    """Before people who stop for it the ego need not wait; of VCI's people none is taken for one."""
+    """Before people who stop for it the ego need not wait; nobody of VCI's is taken for one."""
     run = {"crowd": {"pedestrians": 30}, "seed": 208}
     blind = {"planner": {"belief": False}}
     yielding = run | {"crowd": {"pedestrians": 30, "model": "gap-acceptance"}}
