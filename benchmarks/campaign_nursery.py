@@ -92,7 +92,7 @@ class Nursery:
         return Ended(int(answer), *texts)
 
     def _started(self) -> subprocess.Popen[str]:
-        from giveway._kernel_cache import kernel_cache
+        from giveway._kernels.cache import kernel_cache
 
         environment = {
             **os.environ,

@@ -54,7 +54,7 @@ def user_cache() -> Path:
 
 
 def keep_kernels() -> None:
-    """Have numba keep our kernels where ``_kernel_cache`` says, whoever imports numba first.
+    """Have numba keep our kernels where ``_kernels`` says, whoever imports numba first.
 
     Numba's setting for it is documented (``NUMBA_CACHE_LOCATOR_CLASSES``); it is made in this
     process and not in the environment, since child processes need not know giveway.
@@ -79,4 +79,4 @@ class _BeforeNumba:
 def _name_locator() -> None:
     config: Any = sys.modules["numba.core.config"]
     others = config.CACHE_LOCATOR_CLASSES or ",".join(f"{name}CacheLocator" for name in _NUMBAS)
-    config.CACHE_LOCATOR_CLASSES = f"giveway._kernel_cache.KernelLocator,{others}"
+    config.CACHE_LOCATOR_CLASSES = f"giveway._kernels.cache.KernelLocator,{others}"

@@ -14,7 +14,7 @@ import numpy as np
 from llvmlite.binding import get_host_cpu_name
 
 from controller import LongitudinalModel, Mpc, MpcParameters
-from giveway._kernel_cache import FOLDERS, kernel_cache
+from giveway._kernels.cache import FOLDERS, kernel_cache
 from giveway.processes.child import die_with
 from giveway.processes.interpreter import command
 from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles

@@ -159,7 +159,7 @@ def _kernels() -> list[Finding]:
     """Check that numba compiles and can keep what it has compiled."""
     import numba
 
-    from giveway._kernel_cache import kernel_cache
+    from giveway._kernels.cache import kernel_cache
 
     try:
         if cast("Any", numba.njit)(_one_more)(1) != 2:

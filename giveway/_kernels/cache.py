@@ -21,12 +21,17 @@ from numba.core import caching, environment
 from numba.core.caching import UserProvidedCacheLocator
 from numba.core.runtime.nrt import rtsys
 
-import giveway._kernel_linking  # noqa: F401 - what is compiled is linked as it says
 from giveway._environment import user_cache
+
+LINKED = numba.version_info.short in {(0, 68)}
+"""Whether numba is of a version with which ``linking`` was tried; any other one compiles every
+function as ever, which takes twice the time and comes to the same."""
+if LINKED:
+    import giveway._kernels.linking  # noqa: F401 - what is compiled is linked as it says
 
 FOLDERS = "kernels-*"
 _LOCK = "saving.lock"
-_HOUSE = Path(__file__).resolve().parent.parent
+_HOUSE = Path(__file__).resolve().parents[2]
 _OF_KERNELS = ("controller", "pedestrian_model")  # rooms whose constants go into kernels, too
 _KERNEL = re.compile(rb"^@(?:kernel|inner|inlined)\b|^def kernel\b", re.MULTILINE)
 

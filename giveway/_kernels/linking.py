@@ -6,6 +6,7 @@ without an entry for Python is called by compiled code alone, and that has a cop
 linked with what it calls and left at that, until somebody asks for its address after all. Numba's
 own helpers are such functions, and those of ours that are ``inner`` or ``inlined``.
 
+To import this module is to do so. It reaches into numba, hence ``cache.LINKED``.
 The kernels' results do not change: whatever the optimiser sees at once, its arithmetic is strict.
 """
 
@@ -14,13 +15,6 @@ from typing import Any
 from numba.core import codegen
 
 _PYTHON = "_ZN7cpython"  # how numba calls the entry for Python, before the function's own name
-_METHODS = (
-    "_finalize_dynamic_globals",
-    "_finalize_final_module",
-    "_get_module_for_linking",
-    "_optimize_final_module",
-    "_raise_if_finalized",
-)
 
 _Library: Any = codegen.CPUCodeLibrary
 _JitLibrary: Any = codegen.JITCodeLibrary
@@ -89,9 +83,8 @@ def _translate(library: Any) -> None:
             library._codegen.set_env(variable.name, _environments.pop(variable.name))
 
 
-if all(hasattr(_Library, name) for name in _METHODS):
-    _Library.finalize = _finalize
-    _Library.serialize_using_object_code = _serialize
-    _JitLibrary.get_pointer_to_function = _address
-    _JitLibrary._finalize_specific = _translate
-    _Codegen.set_env = _set_environment
+_Library.finalize = _finalize
+_Library.serialize_using_object_code = _serialize
+_JitLibrary.get_pointer_to_function = _address
+_JitLibrary._finalize_specific = _translate
+_Codegen.set_env = _set_environment

@@ -13,12 +13,12 @@ import pytest
 from filelock import FileLock, Timeout
 from numba.core.dispatcher import Dispatcher
 
-from giveway import _kernel_cache
-from giveway._kernel_cache import KernelLocator, kernel_cache, kernel_digest
+from giveway._kernels import cache as kernels_cache
+from giveway._kernels.cache import KernelLocator, kernel_cache, kernel_digest
 from giveway.geometry import passage
 
-HOUSE = Path(_kernel_cache.__file__).resolve().parent.parent
-LOCATORS = "numba.config.CACHE_LOCATOR_CLASSES.count('giveway._kernel_cache.KernelLocator')"
+HOUSE = Path(kernels_cache.__file__).resolve().parents[2]
+LOCATORS = "numba.config.CACHE_LOCATOR_CLASSES.count('giveway._kernels.cache.KernelLocator')"
 INNER = re.compile(r"^@(?:inner|inlined)\ndef (\w+)", re.MULTILINE)
 FOLDER = "giveway.geometry.path.project._cache.cache_path"
 
@@ -29,7 +29,7 @@ def elsewhere(tmp_path, monkeypatch):
     for room in ("controller", "pedestrian_model", "giveway"):
         ignored = shutil.ignore_patterns("__pycache__")
         shutil.copytree(HOUSE / room, tmp_path / room, ignore=ignored)
-    monkeypatch.setattr(_kernel_cache, "_HOUSE", tmp_path)
+    monkeypatch.setattr(kernels_cache, "_HOUSE", tmp_path)
     kernel_digest.cache_clear()
     yield tmp_path
     kernel_digest.cache_clear()
@@ -105,10 +105,10 @@ def test_code_is_saved_by_one_process_at_a_time(monkeypatch, tmp_path):
 
     def save(cache, _signature, _data):
         with pytest.raises(Timeout):
-            FileLock(Path(cache.cache_path) / _kernel_cache._LOCK, timeout=0).acquire()
+            FileLock(Path(cache.cache_path) / kernels_cache._LOCK, timeout=0).acquire()
         saved.append(cache)
 
-    monkeypatch.setattr(_kernel_cache._Kernels, "save_as_ever", save)
+    monkeypatch.setattr(kernels_cache._Kernels, "save_as_ever", save)
     dispatcher._cache.save_overload(None, None)
     assert saved == [dispatcher._cache]
 
@@ -121,7 +121,7 @@ def test_somebody_elses_function_is_numbas_own_business():
 def test_no_kernel_depends_on_a_file_that_is_not_looked_at():
     """Constants and types that a kernel takes from elsewhere are compiled into it."""
     for path in sorted((HOUSE / "giveway").rglob("*.py")):
-        if _kernel_cache._KERNEL.search(path.read_bytes()):
+        if kernels_cache._KERNEL.search(path.read_bytes()):
             module = import_module(".".join(path.relative_to(HOUSE).with_suffix("").parts))
             kernels = [k.py_func for k in vars(module).values() if isinstance(k, Dispatcher)]
             inner = [getattr(module, name) for name in INNER.findall(path.read_text("utf-8"))]
@@ -143,7 +143,7 @@ def _check_origin(module: ModuleType, function: FunctionType) -> None:
         origin = imported[1] if imported else ""
         if origin.startswith("giveway."):
             file = Path(import_module(origin).__file__ or "")
-            assert _kernel_cache._KERNEL.search(file.read_bytes()), (module, name, origin)
+            assert kernels_cache._KERNEL.search(file.read_bytes()), (module, name, origin)
 
 
 def said(script: str, home: Path, **more: str) -> str:

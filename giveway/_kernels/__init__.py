@@ -1,0 +1,1 @@
+"""Compiled kernels: how they are linked, and where they are kept."""
