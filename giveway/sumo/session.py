@@ -15,13 +15,11 @@ import collections
 import contextlib
 import itertools
 import math
-import os
-import sys
 import tempfile
 from collections.abc import Container, Iterable, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import IO, Any, Self
+from typing import Any, Self
 
 from giveway.errors import ScenarioError, SumoError
 from giveway.geometry.path import Pose, heading_to_angle
@@ -34,6 +32,7 @@ from giveway.sumo.junctions import Junctions
 from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import direct, import_libsumo
 from giveway.sumo.persons import ScenarioPersons
+from giveway.sumo.stderr import NativeStderr, of_others
 from giveway.sumo.types import PEDESTRIAN_TYPE
 from giveway.sumo.vehicles import SumoVehicles
 
@@ -100,6 +99,7 @@ class SumoSession:
         self.junctions = Junctions(self._sumo, scenario.net_file, self.lanes)
         self.vehicles = SumoVehicles(self._sumo, self.call, self.lanes)
         self.step_length = float(self._sumo.simulation.getDeltaT())
+        self._added: set[str] = set()
         self._just_added: dict[str, tuple[float, str | None]] = {}  # when, on which lane
         self._host_lanes: dict[str, str | None] = {}  # by edge
 
@@ -143,7 +143,7 @@ class SumoSession:
     @property
     def messages(self) -> str:
         """What SUMO has printed on stderr so far: warnings, mostly."""
-        return self._stderr.text()
+        return of_others(self._stderr.text(), self._added)
 
     @property
     def expects_more(self) -> bool:
@@ -184,6 +184,7 @@ class SumoSession:
             self.call(self._sumo.person.add, name, host_edge, 0.0, _DEPART_NOW, PEDESTRIAN_TYPE)
             self.call(self._sumo.person.appendWalkingStage, name, [host_edge], -1.0)
             self._just_added[name] = self.time, self._host_lanes[host_edge]
+        self._added.update(ids)
 
     def _host_lane(self, host_edge: str) -> str | None:
         if host_edge not in self._sumo.edge.getIDList():
@@ -315,57 +316,6 @@ def _compare(
             f"{kind} '{name}' at {time:.3f} s: SUMO has it {deviation:.3g} m away from our state; "
             f"expected at most {POSITION_TOLERANCE:g} m; is it moved by somebody else?"
         )
-
-
-class NativeStderr:
-    """Redirects file descriptor 2 into a file while a native call runs.
-
-    Use the object itself as the context manager, round one call at a time; ``close`` at the end.
-
-    Args:
-        path: of the file, for whoever wants to read it after this process has died; None: a
-            temporary file without a name.
-    """
-
-    def __init__(self, path: Path | None = None) -> None:
-        self._log: IO[bytes]
-        if path is None:
-            self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the session
-        else:
-            self._log = path.open("w+b")
-        self._file_descriptor = self._log.fileno()
-        try:
-            self._saved = os.dup(2)
-        except OSError:  # closed by whoever started us: what is printed there goes nowhere
-            self._saved = os.open(os.devnull, os.O_WRONLY)
-
-    def __enter__(self) -> None:
-        if sys.stderr is not None:
-            sys.stderr.flush()
-        os.dup2(self._file_descriptor, 2)
-
-    def __exit__(self, *_: object) -> None:
-        os.dup2(self._saved, 2)
-
-    def text(self) -> str:
-        """Everything printed so far."""
-        self._log.seek(0)
-        return self._log.read().decode("utf-8", "replace")
-
-    def errors(self) -> str:
-        """The reasons in what was printed, on one line."""
-        lines = [line.strip() for line in self.text().splitlines()]
-        reasons = [
-            line.removeprefix("Error:").strip()
-            for line in lines
-            if line and not line.startswith(("Warning", "Quitting", "Loading"))
-        ]
-        return "; ".join(dict.fromkeys(reasons))
-
-    def close(self) -> None:
-        """Forget what was printed."""
-        os.close(self._saved)
-        self._log.close()
 
 
 def _calls_somebody(scenario: ScenarioFiles) -> bool:

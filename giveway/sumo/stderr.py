@@ -1,0 +1,79 @@
+"""What SUMO prints on the process's own stderr: kept, and read back."""
+
+import os
+import re
+import sys
+import tempfile
+from collections.abc import Container
+from pathlib import Path
+from typing import IO
+
+_MET = re.compile(r"^Warning: Collision of person '([^']*)' and person '([^']*)'")
+
+
+def of_others(text: str, ours: Container[str]) -> str:
+    """What SUMO has printed, without collisions among people who are where we move them.
+
+    Its books have all of them on one lane, whose beginning is where somebody new appears.
+
+    Args:
+        text: that was printed.
+        ours: ids of the persons whom giveway added.
+    """
+
+    def is_news(line: str) -> bool:
+        met = _MET.match(line)
+        return met is None or not all(name in ours for name in met.groups())
+
+    return "".join(filter(is_news, text.splitlines(keepends=True)))
+
+
+class NativeStderr:
+    """Redirects file descriptor 2 into a file while a native call runs.
+
+    Use the object itself as the context manager, round one call at a time; ``close`` at the end.
+
+    Args:
+        path: of the file, for whoever wants to read it after this process has died; None: a
+            temporary file without a name.
+    """
+
+    def __init__(self, path: Path | None = None) -> None:
+        self._log: IO[bytes]
+        if path is None:
+            self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the session
+        else:
+            self._log = path.open("w+b")
+        self._file_descriptor = self._log.fileno()
+        try:
+            self._saved = os.dup(2)
+        except OSError:  # closed by whoever started us: what is printed there goes nowhere
+            self._saved = os.open(os.devnull, os.O_WRONLY)
+
+    def __enter__(self) -> None:
+        if sys.stderr is not None:
+            sys.stderr.flush()
+        os.dup2(self._file_descriptor, 2)
+
+    def __exit__(self, *_: object) -> None:
+        os.dup2(self._saved, 2)
+
+    def text(self) -> str:
+        """Everything printed so far."""
+        self._log.seek(0)
+        return self._log.read().decode("utf-8", "replace")
+
+    def errors(self) -> str:
+        """The reasons in what was printed, on one line."""
+        lines = [line.strip() for line in self.text().splitlines()]
+        reasons = [
+            line.removeprefix("Error:").strip()
+            for line in lines
+            if line and not line.startswith(("Warning", "Quitting", "Loading"))
+        ]
+        return "; ".join(dict.fromkeys(reasons))
+
+    def close(self) -> None:
+        """Forget what was printed."""
+        os.close(self._saved)
+        self._log.close()

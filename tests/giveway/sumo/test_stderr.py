@@ -1,0 +1,13 @@
+"""What SUMO has printed, as it is told."""
+
+from giveway.sumo.stderr import of_others
+
+OURS = "Warning: Collision of person 'flow.1' and person 'flow.2', lane='gate_0', time=1.55.\n"
+MIXED = "Warning: Collision of person 'flow.1' and person 'walker', lane='gate_0', time=1.60.\n"
+OTHER = "Warning: Vehicle 'bus' performs emergency braking on lane 'a_0'.\n"
+
+
+def test_collisions_in_sumos_books_among_people_whom_we_move_are_no_news():
+    assert of_others(OTHER + OURS + MIXED, {"flow.1", "flow.2"}) == OTHER + MIXED
+    assert of_others(OURS, set()) == OURS
+    assert of_others("", {"flow.1"}) == ""
