@@ -139,7 +139,7 @@ def needs_nothing(words: list[str]) -> bool:
     """Whether a command can be typed in an empty folder, and is a matter of seconds."""
     if words[:1] in (["scenarios"], ["studies"]) or words[:2] == ["config", "street"]:
         return True
-    foreign = {"careful", "shy", "--set", "--set-model", "--config", "--vehicle", "--profile"}
+    foreign = runner.PLUG_INS | {"--set", "--set-model", "--config", "--vehicle", "--profile"}
     return (
         words[:1] == ["run"]
         and words[1:2] != []

@@ -207,7 +207,7 @@ def test_an_fmu_that_fails_at_the_start_says_so(zoo, isolated, case, fmi):
 @pytest.mark.parametrize("phase", ["terminate", "free", "unload"])
 @pytest.mark.parametrize("fault", ["segfault", "exit_0", "hang", "fatal"])
 def test_what_happens_at_the_end_no_longer_matters(zoo, isolated, fault, phase, monkeypatch):
-    monkeypatch.setattr("fmus.isolation.isolated_vehicle._END_TIMEOUT", 0.3)
+    monkeypatch.setattr("fmus.isolation.fmu_process._END_TIMEOUT", 0.3)
     if (fault, phase) == ("fatal", "unload"):
         pytest.skip("nobody asks for a status then")
     vehicle = isolated(zoo.car(behaviour=fault, phase=phase, at=0.0))
