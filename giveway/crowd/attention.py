@@ -10,13 +10,13 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.crowd.around import AroundModel
 from giveway.geometry.kernel import Array
 from pedestrian_model import (
     OPEN_GROUND,
     Crowd,
     PedestrianModel,
     Surroundings,
-    VciParameters,
     Vehicles,
 )
 
@@ -24,7 +24,7 @@ NOTICED = 2.0  # [m] between the middle of a body and a vehicle
 _NONE = Vehicles.empty()
 
 
-class Inattentive:
+class Inattentive(AroundModel):
     """A model whose distracted people notice vehicles late.
 
     Where somebody does not notice, the crowd is stepped twice: the bundled models have no memory.
@@ -35,18 +35,8 @@ class Inattentive:
     """
 
     def __init__(self, model: PedestrianModel, distracted: Callable[[], NDArray[np.bool_]]) -> None:
-        self._model = model
+        super().__init__(model)
         self._distracted = distracted
-
-    @property
-    def parameters(self) -> VciParameters:
-        """Bodies and limits."""
-        return self._model.parameters
-
-    @property
-    def time_step(self) -> float:
-        """[s]."""
-        return self._model.time_step
 
     def advance(
         self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND

@@ -12,6 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.crowd.around import AroundModel
 from giveway.crowd.disturbance import pushed
 from giveway.geometry.kernel import Array
 from pedestrian_model import (
@@ -19,7 +20,6 @@ from pedestrian_model import (
     Crowd,
     PedestrianModel,
     Surroundings,
-    VciParameters,
     Vehicles,
 )
 
@@ -30,7 +30,7 @@ _ATTRACTION = 3.0  # [m/s^2]
 _RISE = 1.0  # [m]
 
 
-class Cohesive:
+class Cohesive(AroundModel):
     """A model whose groups stay together.
 
     Args:
@@ -39,18 +39,8 @@ class Cohesive:
     """
 
     def __init__(self, model: PedestrianModel, groups: Callable[[], NDArray[np.int64]]) -> None:
-        self._model = model
+        super().__init__(model)
         self._groups = groups
-
-    @property
-    def parameters(self) -> VciParameters:
-        """Bodies and limits."""
-        return self._model.parameters
-
-    @property
-    def time_step(self) -> float:
-        """[s]."""
-        return self._model.time_step
 
     def advance(
         self, crowd: Crowd, vehicles: Vehicles, surroundings: Surroundings = OPEN_GROUND

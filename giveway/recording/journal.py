@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 ROWS_FILE = "rows"
 META_FILE = "meta.json"
-MAGIC = b"giveway1"
+MAGIC = b"giveway2"  # another number for other tables: what is written is read by its own version
 RECORD = struct.Struct("=IIQ")  # kind, table, bytes of payload; 16 bytes
 _FIRST_ROWS = 1024  # a table's first size; it doubles from there
 

@@ -53,7 +53,8 @@ def read_journal(folder: Path) -> JournalContents:
     begun = bytes(content[: len(MAGIC)]).rstrip(b"\0")  # the process may have died within it
     if not MAGIC.startswith(begun):
         raise ResultsError(
-            f"{rows_file}: is not a journal of giveway ({MAGIC.decode()} expected at its start)"
+            f"{rows_file}: is not a journal of giveway, or another version's ({MAGIC.decode()} "
+            "expected at its start); the run has to be made again"
         )
     reader = _Reader()
     try:

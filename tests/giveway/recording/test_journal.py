@@ -131,6 +131,14 @@ def test_somebody_elses_file_is_refused(tmp_path: Path) -> None:
         read_journal(tmp_path)
 
 
+def test_another_versions_journal_is_refused(tmp_path: Path) -> None:
+    three_steps(tmp_path).close()
+    file = tmp_path / ROWS_FILE
+    file.write_bytes(b"giveway1" + file.read_bytes()[8:])
+    with pytest.raises(ResultsError, match="another version's"):
+        read_journal(tmp_path)
+
+
 def test_a_run_that_died_while_loading_left_nothing_but_its_pulse(tmp_path: Path) -> None:
     Heartbeat(tmp_path).beat(Phase.LOADING)
     contents = read_journal(tmp_path)
