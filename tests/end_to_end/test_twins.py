@@ -155,7 +155,7 @@ def test_a_twin_that_fails_or_dies_loses_no_row_of_its_run(
 
     journal = tmp_path / "journal"
     journal.mkdir()
-    monkeypatch.setattr("giveway.api.twin_of", fail)
+    monkeypatch.setattr("giveway.api.simulation.twin_of", fail)
     checked = preflight(*load([as_layer(OPEN | {"twin": True})]))
     with refused(SumoError, "in the twin", "SUMO failed at 3.0 s") as caught:
         run_checked(checked, results=tmp_path / "kept", pictures=False, journal=journal)

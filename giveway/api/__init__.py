@@ -1,0 +1,7 @@
+"""The Python API: one call, one run, everything it left behind."""
+
+from giveway.api.running import in_journal, keep, run, run_checked
+from giveway.api.simulation import simulate
+from giveway.results.run_result import RunResult
+
+__all__ = ["RunResult", "in_journal", "keep", "run", "run_checked", "simulate"]

@@ -1,0 +1,157 @@
+"""What a simulation has left behind, made one result: rows, twin, remarks."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from time import perf_counter
+
+from giveway.config.foreign_code import provenance
+from giveway.cosimulation.assembly import Parts
+from giveway.cosimulation.followed import Followed
+from giveway.cosimulation.loop import Loop
+from giveway.cosimulation.twin import Twin
+from giveway.ego.vehicle import model_margin
+from giveway.measures import unreached
+from giveway.metrics import delays
+from giveway.recording.recorder import Recorder
+from giveway.records.progress import Ending
+from giveway.results import law, mismatch, vehicle_contacts
+from giveway.results.effect import Effect, who_gave_way
+from giveway.results.ego_result import EgoResult, results_of_egos
+from giveway.results.provenance import manifest
+from giveway.results.run_result import RunResult
+from giveway.sumo.road_marks import road_marks
+from sumo_scenarios import Scenario
+
+TRAFFIC_DIFFERS = (
+    "twin: traffic lights or background vehicles did something else than in the run, so that the "
+    "delays of people are not the egos' alone"
+)
+
+NO_EGO = "twin: no ego was on the road, so that there is nothing to compare with"
+
+
+def outcome(
+    parts: Parts,
+    scenario: Scenario,
+    recorder: Recorder,
+    loop: Loop,
+    ending: Ending,
+    error: Exception | None,
+    elapsed: float,
+) -> RunResult:
+    """What the loop has left behind."""
+    rows = recorder.rows()
+    egos = results_of_egos(parts.config, rows, ending, loop.endings)
+    touched = [text for text in map(vehicle_contacts.remark, egos) if text]
+    remarks = (*parts.all_remarks, *loop.remarks, *_mismatches(parts, egos), *touched)
+    crowd_track = rows.crowd_track()
+    remarks = (*remarks, *unreached(parts.config.measure, crowd_track))
+    if recorder.journal.failure:
+        remarks = (*remarks, recorder.journal.failure)
+    return RunResult(
+        config=parts.config,
+        scenario=scenario,
+        ending=ending,
+        error=error,
+        time=rows.time,
+        egos=egos,
+        crowd_track=crowd_track,
+        background_track=rows.background_track(),
+        signal_track=rows.signal_track(),
+        people_track=rows.people_track(),
+        timings=rows.timings(),
+        elapsed=elapsed,
+        facts=manifest(
+            parts.config,
+            scenario,
+            config_text=None,  # writing it takes longer than many a run of a study
+            vehicles={ego.id: ego.description | _departure(parts, ego.id) for ego in parts.egos},
+            pedestrians=parts.roster.ledger,
+            traffic={} if parts.yielding is None else parts.yielding.report,
+            sumo={"seed": parts.sumo.start.seed, "step_length": parts.sumo.step_length},
+            time_step=parts.time_step,
+            remarks=remarks,
+            ending=str(ending),
+            error=None if error is None else str(error),
+            code=provenance(parts.config),
+        ),
+        sumo_messages=parts.sumo.messages,
+        road=parts.sumo.lanes.areas(),
+        marks=road_marks(parts.sumo.lanes),
+        remarks=remarks,
+    )
+
+
+def with_twin(
+    result: RunResult,
+    followed: Followed,
+    twin: Twin | None,
+    error: Exception | None,
+    since: float,
+) -> RunResult:
+    """The result with what the egos cost the people, or with why that is not known."""
+    if error is not None:
+        error.args = (f"in the twin of the run, which is whole: {error}", *error.args[1:])
+        return replace(result, error=error, facts=result.facts | {"error": str(error)})
+    if twin is None:
+        if result.egos:
+            return replace(result, ending=Ending.INTERRUPTED)
+        remarks = (*result.remarks, NO_EGO)
+        return replace(result, remarks=remarks, facts=result.facts | {"remarks": list(remarks)})
+    walks = followed.walks.track
+    yielded = {
+        ego.id: who_gave_way(walks, twin.walks, ego.track, ego.first, ego.shape, ego.body_radius)
+        for ego in result.egos
+    }
+    found = delays(walks, twin.walks)
+    effect = Effect(
+        run=walks,
+        twin=twin.walks,
+        delays=found,
+        yielded=yielded,
+        traffic_differs=twin.traffic_differs,
+        traffic_delay=twin.traffic_delay,
+        seconds=perf_counter() - since,
+    )
+    remarks = result.remarks
+    if twin.traffic_differs:
+        remarks = (*remarks, TRAFFIC_DIFFERS)
+    about = {
+        "is": "the crowd alone" if twin.among_themselves else "a second run",
+        "until": round(walks.time_step * walks.last, 6),
+    }
+    facts = result.facts | {"remarks": list(remarks), "twin": about}
+    return replace(
+        result,
+        egos=tuple(replace(ego, effect=effect) for ego in result.egos),
+        effect=effect,
+        remarks=remarks,
+        facts=facts,
+    )
+
+
+def judged(result: RunResult) -> RunResult:
+    """The result with remarks on egos that did not keep to the law, a twin's evidence heard."""
+    judged = ((ego.id, ego.ledger) for ego in result.egos if ego.ledger is not None)
+    against = [
+        text for text in (law.remark(name, found.violations) for name, found in judged) if text
+    ]
+    remarks = (*result.remarks, *against)
+    return replace(result, remarks=remarks, facts=result.facts | {"remarks": list(remarks)})
+
+
+def _departure(parts: Parts, ego: str) -> dict[str, object]:
+    """When an inserted ego was due, which may have been drawn; of one taken over, nothing."""
+    times = parts.departures.times
+    return {"depart_time": times[ego]} if ego in times else {}
+
+
+def _mismatches(parts: Parts, egos: Sequence[EgoResult]) -> list[str]:
+    """Of vehicles that are not ours and that the controller's model does not describe."""
+    foreign = {ego.id for ego in parts.egos if not ego.description["bundled"]}
+    remarks = [
+        mismatch.remark(ego, parts.time_step, model_margin(ego.config, parts.time_step))
+        for ego in egos
+        if ego.id in foreign
+    ]
+    return [text for text in remarks if text]

@@ -1,0 +1,157 @@
+"""A run from its configuration to its folder: rows are kept whatever happens on the way."""
+
+import shlex
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from giveway.api.simulation import simulate
+from giveway.config import RunConfig
+from giveway.config.layers import dump_toml
+from giveway.config.loading import as_layer, load
+from giveway.cosimulation.preflight import CheckedRun, preflight
+from giveway.errors import GivewayError, ResultsError
+from giveway.processes.child import STDERR_FILE
+from giveway.processes.heartbeat import Phase
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.journal import Journal
+from giveway.records.progress import Watcher
+from giveway.results.folder import (
+    ARGUMENTS,
+    FLAGS,
+    Wording,
+    release_folder,
+    require_parquet,
+    sumo_folder,
+    taken_folder,
+    write_results,
+)
+from giveway.results.run_result import RunResult
+
+
+def run(
+    config: RunConfig | dict[str, Any] | str | Path,
+    *,
+    results: str | Path | None = None,
+    force: bool = False,
+    parquet: bool = False,
+    pictures: bool = True,
+    watcher: Watcher | None = None,
+) -> RunResult:
+    """Run one configuration: drive the egos through the scenario and its crowd.
+
+    The simulation runs in this process: native code that crashes (SUMO, an FMU) takes it along.
+    The command line isolates it.
+
+    Args:
+        config: the options that differ from the scenario's settings and the defaults, as a
+            ``RunConfig`` or as a dictionary with the keys of the TOML file, by tables or dotted
+            (``{"crowd.pedestrians": 30}``); or the name of a scenario, or a .toml file.
+        results: a folder to write tables, summary, manifest and pictures to; None writes nothing.
+        force: replace the results that are there.
+        parquet: also write the tables as Parquet.
+        pictures: also draw the state figure and the top view.
+        watcher: called with a ``Progress`` at every control step.
+
+    Returns:
+        The result. A run that was interrupted (Ctrl-C) returns too; see its ``ending``.
+
+    Raises:
+        GivewayError: one line that says what to do. If the run had begun, its rows are written
+            all the same and the partial result is the error's ``result`` attribute.
+    """
+    return run_checked(
+        preflight(*load([as_layer(config)])),
+        results=results,
+        wording=ARGUMENTS,
+        force=force,
+        parquet=parquet,
+        pictures=pictures,
+        watcher=watcher,
+    )
+
+
+def run_checked(
+    checked: CheckedRun,
+    *,
+    results: str | Path | None,
+    force: bool = False,
+    parquet: bool = False,
+    pictures: bool = True,
+    watcher: Watcher | None = None,
+    journal: Path | None = None,
+    wording: Wording = FLAGS,
+) -> RunResult:
+    """As :func:`run`, after the preflight.
+
+    Args:
+        checked: what is to be run.
+        results: as for :func:`run`.
+        force: as for :func:`run`.
+        parquet: as for :func:`run`.
+        pictures: as for :func:`run`.
+        watcher: as for :func:`run`.
+        journal: an empty folder for the rows, to be read should this process die.
+        wording: of the caller, for messages.
+    """
+    folder = None if results is None else Path(results)
+    if parquet:
+        require_parquet()
+    with ExitStack() as stack:
+        taken = folder is not None and stack.enter_context(
+            taken_folder(folder, force=force, wording=wording)
+        )
+        rows = Journal(journal)
+        where = None if folder is None else str(folder.absolute())
+        wanted = {"results": where, "taken": taken, "parquet": parquet, "pictures": pictures}
+        rows.write_meta({"config": dump_toml(checked.config), **wanted})
+        native_log = None if journal is None or rows.failure else journal / STDERR_FILE
+        interrupt = stack.enter_context(DeferredInterrupt())  # writing is not to be torn either
+        try:
+            result = simulate(
+                checked,
+                watcher,
+                interrupt,
+                outputs=None if folder is None else sumo_folder(folder),
+                journal=rows,
+                native_log=native_log,
+            )
+        except Exception:
+            if folder is not None and taken:
+                release_folder(folder)
+            raise
+        rows.heartbeat.beat(Phase.WRITING)
+        if folder is not None:
+            try:
+                keep(result, folder, parquet=parquet, pictures=pictures, taken=taken)
+            except ResultsError as error:
+                if journal is not None and not rows.failure:
+                    rows.heartbeat.keep()
+                    error.args = (f"{error}; {in_journal(journal)}",)
+                raise
+    if result.error is not None:
+        if isinstance(result.error, GivewayError):
+            result.error.result = result
+        raise result.error
+    return result
+
+
+def in_journal(journal: Path) -> str:
+    """What to tell a user whose rows could not be written, but are in a journal that is kept."""
+    return f"every row is kept: 'giveway recover {shlex.quote(str(journal))} --force' writes them"
+
+
+def keep(result: RunResult, folder: Path, *, parquet: bool, pictures: bool, taken: bool) -> None:
+    """Write everything into ``folder``, or free it if there is nothing to write.
+
+    Raises:
+        ResultsError: it cannot be written.
+    """
+    if len(result.time):
+        write_results(result, folder, parquet=parquet)
+        if pictures:
+            from giveway.results.pictures import write_pictures
+
+            write_pictures(result, folder)
+    elif taken:
+        release_folder(folder)

@@ -1,0 +1,110 @@
+"""One simulation: what was assembled is driven, and driven again without its effect on people."""
+
+import math
+from collections.abc import Callable
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
+from time import perf_counter
+from typing import TypeVar
+
+from giveway.api.outcome import judged, outcome, with_twin
+from giveway.cosimulation.assembly import Driven, assemble
+from giveway.cosimulation.loop import Loop
+from giveway.cosimulation.preflight import CheckedRun
+from giveway.cosimulation.twin import twin_of
+from giveway.errors import CrowdError, SumoError
+from giveway.processes.interrupts import DeferredInterrupt
+from giveway.recording.journal import Journal
+from giveway.recording.recorder import Recorder
+from giveway.records.progress import Ending, Progress, Watcher
+from giveway.results.run_result import RunResult
+from giveway.sumo.library import is_refusal
+from pedestrian_model import PedestrianModelError
+from sumo_scenarios import Scenario
+
+Result = TypeVar("Result")
+
+
+def simulate(
+    checked: CheckedRun,
+    watcher: Watcher | None = None,
+    interrupt: DeferredInterrupt | None = None,
+    *,
+    outputs: Path | None = None,
+    journal: Journal | None = None,
+    native_log: Path | None = None,
+) -> RunResult:
+    """Run one configuration; an error on the way becomes the result's ``error``.
+
+    Args:
+        checked: what is to be run.
+        watcher: called at every control step.
+        interrupt: looked at between two steps.
+        outputs: folder for SUMO's own outputs; None drops them.
+        journal: keeps the rows where a dying process cannot take them along.
+        native_log: file for what SUMO prints; None: a temporary one.
+
+    Raises:
+        GivewayError: the run could not begin.
+    """
+    interrupt = interrupt or DeferredInterrupt()  # one that is not entered requests nothing
+
+    def goes_on(clock: float) -> bool:
+        if watcher is not None:
+            watcher(Progress(0.0, clock, math.nan, math.nan, math.nan, "", 0))
+        return not interrupt.requested
+
+    with ExitStack() as stack:
+        parts = assemble(checked, stack, outputs=outputs, native_log=native_log, goes_on=goes_on)
+        recorder = Recorder(journal)
+        loop = Loop(parts, recorder, follow=checked.config.twin)
+        began = perf_counter()
+        error: Exception | None = None
+        try:
+            ending = loop.run(watcher, interrupt)
+        except Exception as failure:  # whatever it is, the rows so far are the user's
+            error, ending = _in_our_words(failure, checked.scenario), Ending.FAILED
+        elapsed = perf_counter() - began
+        result = outcome(parts, checked.scenario, recorder, loop, ending, error, elapsed)
+        if loop.followed is None or error is not None or ending is Ending.INTERRUPTED:
+            return judged(result)
+        _tell(watcher, "People go on to where they want")
+        gone_on, error = _guarded(lambda: loop.follow_up(ending, interrupt), checked.scenario)
+        tracks = {ego.id: ego.track for ego in result.egos}
+        driven = Driven(tracks, parts.horizon, float(result.time[0]))
+    twin = None
+    if gone_on and error is None and result.egos:
+        heartbeat = recorder.journal.heartbeat
+        _tell(watcher, f"Twin: the same again, nobody feels the ego (the run took {elapsed:.0f} s)")
+        make = partial(twin_of, checked, loop.followed, driven, heartbeat, interrupt, native_log)
+        twin, error = _guarded(make, checked.scenario)
+    return judged(with_twin(result, loop.followed, twin, error, began + elapsed))
+
+
+def _tell(watcher: Watcher | None, doing: str) -> None:
+    """What is done after the drive."""
+    if watcher is not None:
+        watcher(Progress(0.0, 0.0, math.nan, math.nan, math.nan, "", 0, doing))
+
+
+def _in_our_words(error: Exception, scenario: Scenario) -> Exception:
+    """What a run has failed by; SUMO's own errors with the scenario that they are about."""
+    if not is_refusal(error):
+        return error
+    reason = " ".join(str(error).split())
+    told = SumoError(f"{scenario.config_file}: SUMO failed: {reason}")
+    told.__cause__ = error
+    return told
+
+
+def _guarded(
+    call: Callable[[], Result], scenario: Scenario
+) -> tuple[Result | None, Exception | None]:
+    """What a call returns, or its failure: the run's rows are the user's in any case."""
+    try:
+        return call(), None
+    except PedestrianModelError as error:
+        return None, CrowdError(f"crowd of the twin: {error}")
+    except Exception as error:
+        return None, _in_our_words(error, scenario)
