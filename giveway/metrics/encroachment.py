@@ -1,13 +1,12 @@
 """Post-encroachment time: how narrowly ego and pedestrian missed each other in time."""
 
-from math import hypot, inf, nan
+from math import inf, nan
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.geometry.contact import contact_interval, to_frame
 from giveway.geometry.kernel import inner, kernel
 from giveway.metrics.conflicts import (
     as_floats,
@@ -17,9 +16,9 @@ from giveway.metrics.conflicts import (
     contact_body,
 )
 from giveway.metrics.groups import PedestrianGroups
+from giveway.metrics.separation import blocks_of, ego_comes_later, separation
 from giveway.records.tracks import CrowdTrack, EgoTrack
 
-BLOCK = 8  # ego instants that are ruled out together
 SECTIONS = 16  # of a control period, to find the smallest separation in it
 GOLDEN = 0.6180339887498949
 
@@ -102,119 +101,6 @@ def post_encroachment_time(
 
 
 @inner
-def _blocks(
-    poses: NDArray[np.float64], half_length: float, half_width: float, radius: float
-) -> NDArray[np.float64]:
-    """Circles that hold all that the ego touches in BLOCK steps: rows of x, y, radius^2."""
-    # A tenth more than the rectangle's own circle: room for turning by up to 49 deg in a step.
-    reach = 1.1 * (hypot(half_length, half_width) + radius)
-    steps = max(poses.shape[0] - 1, 1)
-    blocks = np.empty(((steps + BLOCK - 1) // BLOCK, 3))
-    for b in range(blocks.shape[0]):
-        start = b * BLOCK
-        stop = min(start + BLOCK, poses.shape[0] - 1)
-        middle = (start + stop) // 2
-        x, y = poses[middle, 0], poses[middle, 1]
-        farthest = 0.0
-        for k in range(start, stop + 1):
-            farthest = max(farthest, hypot(poses[k, 0] - x, poses[k, 1] - y))
-        blocks[b] = x, y, (farthest + reach) ** 2
-    return blocks
-
-
-@inner
-def _touch_in_step(
-    k: int,
-    x: float,
-    y: float,
-    time: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    body: tuple[float, float, float],
-) -> tuple[float, float]:
-    """When the ego touches a circle standing at (x, y) during step k; (inf, -inf) if it does not.
-
-    Seen from the ego the circle moves; that motion is taken as straight within a step.
-    """
-    half_length, half_width, radius = body
-    end = min(k + 1, time.size - 1)
-    p_x, p_y = to_frame(x - poses[k, 0], y - poses[k, 1], poses[k, 2], poses[k, 3])
-    q_x, q_y = to_frame(x - poses[end, 0], y - poses[end, 1], poses[end, 2], poses[end, 3])
-    long, wide = half_length + radius, half_width + radius
-    if (
-        min(p_x, q_x) > long
-        or max(p_x, q_x) < -long
-        or min(p_y, q_y) > wide
-        or max(p_y, q_y) < -wide
-    ):
-        return inf, -inf
-    first, last = contact_interval(p_x, p_y, q_x - p_x, q_y - p_y, half_length, half_width, radius)
-    if first > 1.0 or last < 0.0:
-        return inf, -inf
-    duration = time[end] - time[k]
-    return time[k] + max(first, 0.0) * duration, time[k] + min(last, 1.0) * duration
-
-
-@inner
-def _separation_in_step(
-    k: int,
-    t: float,
-    x: float,
-    y: float,
-    time: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    body: tuple[float, float, float],
-) -> float:
-    """Time between t and the ego's touch of a circle at (x, y) in step k; inf without one."""
-    first, last = _touch_in_step(k, x, y, time, poses, body)
-    return max(first - t, t - last, 0.0)
-
-
-@inner
-def _out_of_reach(b: int, x: float, y: float, blocks: NDArray[np.float64]) -> bool:
-    """Whether the ego touches no circle at (x, y) in any step of block b."""
-    return bool((x - blocks[b, 0]) ** 2 + (y - blocks[b, 1]) ** 2 > blocks[b, 2])
-
-
-@inner
-def _separation(
-    t: float,
-    x: float,
-    y: float,
-    step: int,
-    cutoff: float,
-    time: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    blocks: NDArray[np.float64],
-    body: tuple[float, float, float],
-) -> float:
-    """Time between t and the ego's nearest touch of a circle at (x, y); inf if beyond cutoff.
-
-    ``step`` is the ego's step that contains t. The search runs outwards from there and ends where
-    nothing closer in time can follow, so only near misses cost anything.
-    """
-    nearest = inf
-    steps = max(time.size - 1, 1)
-    k = min(step, steps - 1)
-    while k < steps and time[k] - t < min(nearest, cutoff):
-        b = k // BLOCK
-        if _out_of_reach(b, x, y, blocks):
-            k = (b + 1) * BLOCK
-            continue
-        nearest = min(nearest, _separation_in_step(k, t, x, y, time, poses, body))
-        k += 1
-
-    k = min(step, steps) - 1
-    while k >= 0 and t - time[k + 1] < min(nearest, cutoff):
-        b = k // BLOCK
-        if _out_of_reach(b, x, y, blocks):
-            k = b * BLOCK - 1
-            continue
-        nearest = min(nearest, _separation_in_step(k, t, x, y, time, poses, body))
-        k -= 1
-    return nearest
-
-
-@inner
 def _separation_on_the_way(
     share: float,
     k: int,
@@ -230,7 +116,7 @@ def _separation_on_the_way(
     """The separation after a ``share`` of step k, walking from (x[0], y[0]) to (x[1], y[1])."""
     t = share * (clock[k + 1] - clock[k])
     at_x, at_y = x[0] + share * (x[1] - x[0]), y[0] + share * (y[1] - y[0])
-    return _separation(clock[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, body)
+    return separation(clock[k] + t, at_x, at_y, k, cutoff, time, poses, blocks, body)
 
 
 @inner
@@ -267,36 +153,6 @@ def _smallest_between(
 
 
 @inner
-def _ego_comes_later(
-    t: float,
-    x: float,
-    y: float,
-    step: int,
-    nearest: float,
-    time: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    blocks: NDArray[np.float64],
-    body: tuple[float, float, float],
-) -> bool:
-    """Whether the ego touches a circle at (x, y) within ``nearest`` after t, not before.
-
-    Arguments as for ``_separation``.
-    """
-    steps = max(time.size - 1, 1)
-    k = min(step, steps - 1)
-    while k < steps and time[k] - t <= nearest:
-        b = k // BLOCK
-        if _out_of_reach(b, x, y, blocks):
-            k = (b + 1) * BLOCK
-            continue
-        first, _ = _touch_in_step(k, x, y, time, poses, body)
-        if t <= first <= t + nearest:
-            return True
-        k += 1
-    return False
-
-
-@inner
 def _share_inside(
     k: int,
     x: tuple[float, float],
@@ -330,7 +186,7 @@ def _smallest_separations(
 
     Pedestrian i has the records bounds[i] to bounds[i + 1].
     """
-    blocks = _blocks(poses, *body)
+    blocks = blocks_of(poses, *body)
     at_record = np.empty(x.size)
     pets = np.full(bounds.size - 1, nan)
     who = np.full(bounds.size - 1, _NEVER)
@@ -343,7 +199,7 @@ def _smallest_separations(
             # cutoff cannot lead to the smallest value.
             period = clock[k] - clock[max(k - 1, 0)]
             cutoff = nearest + 2.0 * period
-            at_record[r] = _separation(clock[k], x[r], y[r], k, cutoff, time, poses, blocks, body)
+            at_record[r] = separation(clock[k], x[r], y[r], k, cutoff, time, poses, blocks, body)
             if at_record[r] < nearest:
                 nearest = reach = at_record[r]
                 t, at_x, at_y, at = clock[k], x[r], y[r], k
@@ -369,6 +225,6 @@ def _smallest_separations(
         if nearest <= 0.0:
             who[i] = _CONTACT
         else:
-            later = _ego_comes_later(t, at_x, at_y, at, reach + 1e-9, time, poses, blocks, body)
+            later = ego_comes_later(t, at_x, at_y, at, reach + 1e-9, time, poses, blocks, body)
             who[i] = _PERSON if later else _EGO
     return pets, who
