@@ -18,12 +18,12 @@ import gc
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from controller import ControllerError
 from fmus import FmuError
 from giveway.cosimulation.assembly import Parts
 from giveway.cosimulation.followed import Followed
+from giveway.cosimulation.instants import Instants
 from giveway.cosimulation.meetings import Meetings
 from giveway.cosimulation.mirror import Mirror
 from giveway.cosimulation.standstill import Standstill
@@ -38,16 +38,6 @@ from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
 from pedestrian_model import PedestrianModelError, PlugInError
-
-
-def looks_ahead(period: float | None, time_step: float) -> int:
-    """The steps of look-ahead between two predictions that are kept; 0: none is kept.
-
-    Args:
-        period: between them [s]; None: none is kept.
-        time_step: [s].
-    """
-    return 0 if period is None else max(1, round(period / time_step))
 
 
 class Loop:
@@ -85,11 +75,7 @@ class Loop:
         self._standstill = Standstill()
         self._mirror = Mirror(parts.sumo, parts.time_step, parts.substeps, parts.horizon)
         self._meetings = Meetings(parts.sumo, parts.yielding)
-        self._far_steps = max(1, round(parts.config.record.far_period / parts.time_step))
-        self._far_background = -self._far_steps
-        self._near = parts.config.record.near
-        self._looks = looks_ahead(parts.config.record.predictions, parts.time_step)
-        self._named = 0
+        self._instants = Instants(recorder, parts.config.record, parts.time_step)
         self._fronts = np.empty((0, 2))
         self.followed = Followed(parts) if follow else None
         walks = None if self.followed is None else self.followed.walks
@@ -210,6 +196,7 @@ class Loop:
 
     def _read_sumo(self) -> None:
         parts = self._parts
+        clock = self._start + self._k * self._time_step
         if parts.departures.waiting:
             arrivals = parts.departures.due()
             self._egos += arrivals
@@ -230,13 +217,14 @@ class Loop:
             parts.priority.update(self._roster.crowd)
         self._mirror.read(self._egos, self._roster.crowd.position)
         if self._law.ruled:
-            self._law.signals(self._start + self._k * self._time_step)
+            self._law.signals(clock)
         background, meetings = self._mirror.background, self._meetings
         if background.ids or meetings.pending or any(ego.way.bounds for ego in self._egos):
             meetings.update(background, self._roster.crowd, self._egos)
         if self.followed is not None:
             self.followed.traffic.note(background)
-        self._record_background()
+        if background.ids:
+            self._instants.background(self._k, clock, background, self._places())
         self._recorder.ledger(self._roster.ledger)
 
     def _remark_on_far_people(self) -> None:
@@ -287,52 +275,22 @@ class Loop:
             recorder.hasty(ego.id, seen.hasty)
             if ego.has_outputs:
                 recorder.outputs(ego.id, *ego.outputs())
-            predicted = ego.expected(seen) if self._looks else None
+            predicted = ego.expected(seen) if self._instants.looks else None
             if predicted is not None:
-                self._record_predictions(ego.id, predicted, seen.relevant)
+                present, relevant = self._roster.present, seen.relevant
+                whom = present if relevant is None else present[relevant]
+                self._instants.predictions(ego.id, predicted, whom)
             predicting += decide_at - look_at
             controlling += controlled_at - decide_at
             acting = acting or decision.acting
-        self._record_crowd()
+        roster = self._roster
+        self._instants.crowd(self._k, roster, self._places(), everybody=not self._parts.egos)
+        if self._law.ruled:
+            self._law.walks(roster)
         self._walking.note(self._k)
         recorder.journal.commit()
         self._predicting, self._controlling = predicting, controlling
         return acting
-
-    def _record_crowd(self) -> None:
-        """Record the pedestrians near an ego, and from time to time all of them."""
-        roster = self._roster
-        if len(roster.ids) > self._named:
-            self._recorder.name_pedestrians(roster.ids[self._named :], roster.traits)
-            self._named = len(roster.ids)
-        if self._law.ruled:
-            self._law.walks(roster)
-        crowd = roster.crowd
-        everybody = not self._parts.egos or self._k % self._far_steps == 0
-        within = np.inf if everybody else self._near
-        self._recorder.crowd(roster.present, crowd.position, crowd.velocity, self._places(), within)
-
-    def _record_predictions(
-        self, ego_id: str, predicted: Array, relevant: NDArray[np.bool_] | None
-    ) -> None:
-        present = self._roster.present
-        pedestrians = present if relevant is None else present[relevant]
-        every = min(
-            self._looks, len(predicted)
-        )  # for a period beyond the horizon, the horizon's end is kept
-        kept = predicted[every - 1 :: every]
-        looks = np.arange(every, len(predicted) + 1, every, dtype=np.float64)
-        self._recorder.predictions(ego_id, pedestrians, self._time_step * looks, kept)
-
-    def _record_background(self) -> None:
-        background = self._mirror.background
-        if not background.ids:
-            return
-        within = self._near
-        if self._k - self._far_background >= self._far_steps:
-            self._far_background, within = self._k, np.inf
-        time = self._start + self._k * self._time_step
-        self._recorder.background(time, background, self._places(), within)
 
     # --- steps 4 and 5 ------------------------------------------------------------------------
 

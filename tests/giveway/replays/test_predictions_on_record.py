@@ -11,7 +11,7 @@ import pytest
 from giveway import run
 from giveway.api import run_checked
 from giveway.config.loading import as_layer, load
-from giveway.cosimulation.loop import looks_ahead
+from giveway.cosimulation.instants import looks_ahead
 from giveway.cosimulation.preflight import preflight
 from giveway.recording.journal_reader import read_journal
 from giveway.recording.recorded import RecordedRows
