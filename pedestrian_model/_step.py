@@ -12,6 +12,7 @@ from pedestrian_model._jit import borrowed, fma, inlined
 from pedestrian_model._ring import add_all_pairs
 from pedestrian_model._routes import Routes, set_targets
 from pedestrian_model._rows import (
+    BLOCK,
     FX,
     FY,
     LARGEST_RING,
@@ -117,7 +118,10 @@ def gather_forces(
 
 @inlined
 def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
-    """The next state of the first n rows: total force, limits, synchronous update."""
+    """The next state of the first n rows: total force, limits, synchronous update.
+
+    With whole blocks no row is left to a scalar loop; what comes of dummies is never read.
+    """
     m, k_des, F_2, inverse_F = c.m, c.k_des, c.F_2, c.inverse_F
     most, v_max = c.m * c.a_max, c.v_max
     x, y, vx, vy = rows[PX], rows[PY], rows[VX], rows[VY]
@@ -179,7 +183,7 @@ def march(
         add_walls(rows, n, FX, FY, walls, wall_cells, c)
         set_targets(rows, order, desired_speed, routes, waypoint_index, closed, c)
         detour(rows, n, vehicles, c)
-        _integrate(rows, n, dt, c)
+        _integrate(rows, (n + BLOCK - 1) // BLOCK * BLOCK, dt, c)
         for k in range(n):
             i = order[k]
             position[i, 0], position[i, 1] = rows[NX, k], rows[NY, k]
