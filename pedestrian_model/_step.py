@@ -194,16 +194,7 @@ def march(
 @inlined
 def parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
     """What Python has handed over as one plain tuple, by name."""
-    routes = Routes(
-        borrowed(arrays[5]), borrowed(arrays[6]), borrowed(arrays[7]), borrowed(arrays[8])
-    )
-    closed, walls, cells = borrowed(arrays[9]), borrowed(arrays[10]), borrowed(arrays[11])
-    scene = Scene(borrowed(arrays[3]), borrowed(arrays[4]), routes, closed, walls, cells)
-    state = State(borrowed(arrays[0]), borrowed(arrays[1]), borrowed(arrays[2]))
-    return (
-        state,
-        scene,
-        Scratch(
-            borrowed(arrays[12]), borrowed(arrays[13]), borrowed(arrays[14]), borrowed(arrays[15])
-        ),
-    )
+    a = borrowed(arrays)
+    routes = Routes(a[5], a[6], a[7], a[8])
+    scene = Scene(a[3], a[4], routes, a[9], a[10], a[11])
+    return State(a[0], a[1], a[2]), scene, Scratch(a[12], a[13], a[14], a[15])
