@@ -102,7 +102,7 @@ def gather_forces(
 ) -> None:
     """Fill the rows and their pair and vehicle forces from the state."""
     n = position.shape[0]
-    rows, index, buffer, back = scratch
+    rows, index, buffer = scratch
     relied_on = _anybody(priority)
     if n >= cell_list_from or n > LARGEST_RING:
         grid = add_near_pairs(rows, index, buffer, position, velocity, constants)
@@ -110,7 +110,7 @@ def gather_forces(
             _fill_priority(rows, index[0], priority)
         add_near_vehicles(rows, index[2], grid, n, vehicles, travelled, relied_on, constants)
     else:
-        add_all_pairs(rows, index, buffer, back, position, velocity, constants)
+        add_all_pairs(rows, index, buffer, position, velocity, constants)
         if relied_on:
             _fill_priority(rows, index[0], priority)
         add_vehicles(rows, n, vehicles, travelled, relied_on, constants[0])
@@ -197,4 +197,4 @@ def parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
     a = borrowed(arrays)
     routes = Routes(a[5], a[6], a[7], a[8])
     scene = Scene(a[3], a[4], routes, a[9], a[10], a[11])
-    return State(a[0], a[1], a[2]), scene, Scratch(a[12], a[13], a[14], a[15])
+    return State(a[0], a[1], a[2]), scene, Scratch(a[12], a[13], a[14])
