@@ -1,5 +1,6 @@
 """The vehicle-crowd interaction (VCI) model: a social force model of pedestrians near vehicles."""
 
+from pedestrian_model._jit import borrowed
 from pedestrian_model.conformance import Finding, check_model
 from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import (
@@ -68,6 +69,7 @@ __all__ = [
     "Walkers",
     "Walls",
     "arrived",
+    "borrowed",
     "check_model",
     "leap",
     "remaining_distance",

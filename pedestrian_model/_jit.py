@@ -10,10 +10,11 @@ from typing import Any, TypeVar, cast
 import numba
 import numpy as np
 from llvmlite import ir
-from numba.core import types
+from numba.core import cgutils, types
 from numba.extending import intrinsic, register_jitable
 from numpy.typing import NDArray
 
+_Arrays = TypeVar("_Arrays")
 _Function = TypeVar("_Function", bound="Callable[..., Any]")
 _STRICT: dict[str, Any] = {
     "error_model": "numpy",
@@ -87,19 +88,33 @@ def _add_block(_typing: Any, to_array: Any, to: Any, array: Any, at: Any) -> Any
     return types.void(to_array, to, array, at), generate
 
 
-def _borrow(_typing: Any, array: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        seen = context.make_array(signature.args[0])(context, builder, arguments[0])
+def _uncounted(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """An array, or all those of a tuple of whatever there is, without whom to tell of a use."""
+    if isinstance(kind, types.BaseTuple):
+        values = cgutils.unpack_tuple(builder, value)
+        parts = [
+            _uncounted(context, builder, part, held)
+            for part, held in zip(kind.types, values, strict=True)
+        ]
+        return context.make_tuple(builder, kind, parts)
+    if isinstance(kind, types.Array):
+        seen = context.make_array(kind)(context, builder, value)
         seen.meminfo = ir.Constant(seen.meminfo.type, None)
         seen.parent = ir.Constant(seen.parent.type, None)
         return seen._getvalue()
+    return value
 
-    return array(array), generate
+
+def _borrow(_typing: Any, arrays: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _uncounted(context, builder, signature.args[0], arguments[0])
+
+    return arrays(arrays), generate
 
 
-#: The same array without a count of its users, for kernels that hand many arrays on and on: each
-#: time would change each count. Only for arrays that somebody else keeps as long.
-borrowed = cast("Callable[[NDArray[Any]], NDArray[Any]]", intrinsic(_borrow))
+#: The same array, or tuple with arrays, without a count of its users, for kernels that hand many
+#: arrays on and on: each time would change each count. Only for what somebody else keeps as long.
+borrowed = cast("Callable[[_Arrays], _Arrays]", intrinsic(_borrow))
 #: a * b + c, rounded once: one instruction, and the same result wherever it runs.
 fma = cast("Callable[[float, float, float], float]", intrinsic(_fma))
 #: The bits of a float64 as an int64.

@@ -2,7 +2,9 @@
 
 The crowd stands in a ring; at shift m each pedestrian meets the m-th next, for m = 1 ... n/2, so
 that each pair is met once. For one m the loop over the pedestrians is contiguous on both sides and
-adds to two different rows: long vector loops without any reduction.
+adds to two different rows: long vector loops without any reduction. It reads and writes one buffer
+at fixed places only: else the processor would have to make sure before each loop, for a small crowd
+for as long as the loop takes, that none of the places overlap.
 """
 
 import math
@@ -11,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pedestrian_model._jit import fma, inlined, inner
+from pedestrian_model._jit import add_block, copy_block, fma, inlined, inner
 from pedestrian_model._pairs import (
     COINCIDENT_2,
     PairConstants,
@@ -20,6 +22,9 @@ from pedestrian_model._pairs import (
     pair_constants,
 )
 from pedestrian_model._rows import (
+    AHEAD,
+    BACK_X,
+    BACK_Y,
     BLOCK,
     BUX,
     BUY,
@@ -33,14 +38,14 @@ from pedestrian_model._rows import (
     ON_Y,
     PX,
     STRIDE,
+    SUM_X,
+    SUM_Y,
     fill,
 )
 
 
 @inlined
-def _lay_out(
-    rows: NDArray[np.float64], n: int, buffer: NDArray[np.float64], back: NDArray[np.float64]
-) -> None:
+def _lay_out(rows: NDArray[np.float64], n: int, buffer: NDArray[np.float64]) -> None:
     """Copy the rows into the buffer twice, one round after the other, and clear the forces."""
     for row in range(6):
         at = row * STRIDE
@@ -52,26 +57,27 @@ def _lay_out(
     for k in range(2 * n + 2 * BLOCK):
         buffer[ON_X + k] = 0.0
         buffer[ON_Y + k] = 0.0
-        back[k] = 0.0
-        back[STRIDE + k] = 0.0
+        buffer[SUM_X + k] = 0.0
+        buffer[SUM_Y + k] = 0.0
 
 
 @inlined
-def _shift(
-    buffer: NDArray[np.float64], back: NDArray[np.float64], m: int, count: int, c: PairConstants
-) -> int:
+def _shift(buffer: NDArray[np.float64], m: int, count: int, c: PairConstants) -> int:
     """The forces between the first ``count`` of the ring and their m-th next.
 
     Returns:
         How many of these pairs coincide and were left out.
     """
-    ahead, backs = buffer[m:], back[m:]
+    padded = (count + BLOCK - 1) // BLOCK * BLOCK
+    for row in range(0, 6 * STRIDE, STRIDE):
+        for k in range(0, padded, BLOCK):
+            copy_block(buffer, AHEAD + row + k, buffer, row + m + k)
     coincident = 0
-    for k in range((count + BLOCK - 1) // BLOCK * BLOCK):
-        dx = ahead[BX + k] - buffer[BX + k]
-        dy = ahead[BY + k] - buffer[BY + k]
-        wx = buffer[BVX + k] - ahead[BVX + k]
-        wy = buffer[BVY + k] - ahead[BVY + k]
+    for k in range(padded):
+        dx = buffer[AHEAD + BX + k] - buffer[BX + k]
+        dy = buffer[AHEAD + BY + k] - buffer[BY + k]
+        wx = buffer[BVX + k] - buffer[AHEAD + BVX + k]
+        wy = buffer[BVY + k] - buffer[AHEAD + BVY + k]
         r_2 = fma(dx, dx, dy * dy)
         r = math.sqrt(r_2)
         apart = r_2 >= COINCIDENT_2
@@ -85,15 +91,18 @@ def _shift(
             wy,
             buffer[BUX + k],
             buffer[BUY + k],
-            ahead[BUX + k],
-            ahead[BUY + k],
+            buffer[AHEAD + BUX + k],
+            buffer[AHEAD + BUY + k],
             (r_2 <= c.r_max_2) & apart & (k < count),
             c,
         )
         buffer[ON_X + k] += f[0]
         buffer[ON_Y + k] += f[1]
-        backs[k] += f[2]
-        backs[STRIDE + k] += f[3]
+        buffer[BACK_X + k] = f[2]
+        buffer[BACK_Y + k] = f[3]
+    for k in range(0, padded, BLOCK):
+        add_block(buffer, SUM_X + m + k, buffer, BACK_X + k)
+        add_block(buffer, SUM_Y + m + k, buffer, BACK_Y + k)
     return coincident
 
 
@@ -102,7 +111,6 @@ def add_all_pairs(
     rows: NDArray[np.float64],
     index: NDArray[np.int64],
     buffer: NDArray[np.float64],
-    back: NDArray[np.float64],
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
     constants: NDArray[Any],
@@ -114,14 +122,14 @@ def add_all_pairs(
     for i in range(n):
         order[i] = i
     fill(rows, order, position, velocity)
-    _lay_out(rows, n, buffer, back)
+    _lay_out(rows, n, buffer)
     coincident = 0
     for m in range(1, n // 2 + 1):
         # halfway round, the second half would meet the first half again
-        coincident += _shift(buffer, back, m, n if 2 * m < n else n // 2, c)
+        coincident += _shift(buffer, m, n if 2 * m < n else n // 2, c)
     for k in range(n):
-        rows[FX, k] = buffer[ON_X + k] + (back[k] + back[n + k])
-        rows[FY, k] = buffer[ON_Y + k] + (back[STRIDE + k] + back[STRIDE + n + k])
+        rows[FX, k] = buffer[ON_X + k] + (buffer[SUM_X + k] + buffer[SUM_X + n + k])
+        rows[FY, k] = buffer[ON_Y + k] + (buffer[SUM_Y + k] + buffer[SUM_Y + n + k])
     if coincident > 0:
         for i in range(n - 1):
             add_coincident(rows, order, i, n, c)

@@ -39,6 +39,8 @@ STRIDE = 680
 LARGEST_RING = (STRIDE - 2 * BLOCK) // 2
 #: Offsets of the buffer's rows: as PX ... UY above, then forces on the one and on the others.
 BX, BY, BVX, BVY, BUX, BUY, ON_X, ON_Y, BACK_X, BACK_Y = (k * STRIDE for k in range(10))
+#: Of the ring besides: as BX ... BUY the ones ahead, and sums of the forces on these.
+AHEAD, SUM_X, SUM_Y = (k * STRIDE for k in (10, 16, 17))
 
 #: The cell list never has more cells than this times the number of pedestrians (plus 62).
 CELLS_PER_PEDESTRIAN = 16
@@ -51,8 +53,17 @@ class Scratch(NamedTuple):
 
     rows: NDArray[np.float64]  # (ROWS, padded n)
     sorting: NDArray[np.int64]  # (3, cells): order of the pedestrians, cell of each, first of each
-    buffer: NDArray[np.float64]  # (10 STRIDE,) of the pair loops
-    back: NDArray[np.float64]  # (2 STRIDE,) likewise
+    buffer: NDArray[np.float64]  # (18 STRIDE,) of the pair loops
+
+
+def aligned(size: int) -> NDArray[np.float64]:
+    """(size,) zeros, the first of which begins a line of the processor's memory.
+
+    Where each block of eight lies across two lines, the pair loops take twice the time.
+    """
+    memory = np.zeros(size + BLOCK)
+    skipped = -memory.ctypes.data % (8 * BLOCK) // 8
+    return memory[skipped : skipped + size]
 
 
 class Workspace:
@@ -66,16 +77,17 @@ class Workspace:
 
     def __init__(self) -> None:
         self.capacity = -1
-        self._buffers = np.zeros(10 * STRIDE), np.zeros(2 * STRIDE)
+        self._buffer = aligned(18 * STRIDE)
         self.reserve(64)
 
     def reserve(self, n: int) -> None:
         """Have room for n pedestrians."""
         if n > self.capacity:
             self.capacity = max(n, 2 * self.capacity)
-            rows = np.zeros((ROWS, self.capacity + 2 * BLOCK))
+            columns = (self.capacity + BLOCK - 1) // BLOCK * BLOCK + 2 * BLOCK
+            rows = aligned(ROWS * columns).reshape(ROWS, columns)
             index = np.zeros((3, CELLS_PER_PEDESTRIAN * self.capacity + 64), dtype=np.int64)
-            self.arrays = tuple(Scratch(rows, index, *self._buffers))
+            self.arrays = tuple(Scratch(rows, index, self._buffer))
 
 
 @inlined

@@ -41,6 +41,7 @@ from pedestrian_model._rows import (
     STRIDE,
     Arrays,
     Workspace,
+    aligned,
     fill_some,
 )
 from pedestrian_model._step import FINE, _anybody, _integrate, first_insane, parts
@@ -63,7 +64,7 @@ class ShareMemory:
     arrays: Arrays
 
     def __init__(self) -> None:
-        self._buffer = np.zeros(10 * STRIDE)
+        self._buffer = aligned(10 * STRIDE)
         self._segments = np.zeros((4, 16), dtype=np.int64)
         self._capacity = -1
 
@@ -72,7 +73,8 @@ class ShareMemory:
         if workspace.capacity > self._capacity:
             self._capacity = workspace.capacity
             columns = workspace.arrays[0].shape[1]
-            self.arrays = (np.zeros((ROWS + 1, columns)), self._buffer, self._segments)
+            rows = aligned((ROWS + 1) * columns).reshape(ROWS + 1, columns)
+            self.arrays = (rows, self._buffer, self._segments)
 
 
 def layout_memory(threads: int) -> NDArray[np.float64]:

@@ -12,6 +12,7 @@ from pedestrian_model._jit import borrowed, fma, inlined
 from pedestrian_model._ring import add_all_pairs
 from pedestrian_model._routes import Routes, set_targets
 from pedestrian_model._rows import (
+    BLOCK,
     FX,
     FY,
     LARGEST_RING,
@@ -101,7 +102,7 @@ def gather_forces(
 ) -> None:
     """Fill the rows and their pair and vehicle forces from the state."""
     n = position.shape[0]
-    rows, index, buffer, back = scratch
+    rows, index, buffer = scratch
     relied_on = _anybody(priority)
     if n >= cell_list_from or n > LARGEST_RING:
         grid = add_near_pairs(rows, index, buffer, position, velocity, constants)
@@ -109,7 +110,7 @@ def gather_forces(
             _fill_priority(rows, index[0], priority)
         add_near_vehicles(rows, index[2], grid, n, vehicles, travelled, relied_on, constants)
     else:
-        add_all_pairs(rows, index, buffer, back, position, velocity, constants)
+        add_all_pairs(rows, index, buffer, position, velocity, constants)
         if relied_on:
             _fill_priority(rows, index[0], priority)
         add_vehicles(rows, n, vehicles, travelled, relied_on, constants[0])
@@ -117,7 +118,10 @@ def gather_forces(
 
 @inlined
 def _integrate(rows: NDArray[np.float64], n: int, dt: float, c: Any) -> None:
-    """The next state of the first n rows: total force, limits, synchronous update."""
+    """The next state of the first n rows: total force, limits, synchronous update.
+
+    With whole blocks no row is left to a scalar loop; what comes of dummies is never read.
+    """
     m, k_des, F_2, inverse_F = c.m, c.k_des, c.F_2, c.inverse_F
     most, v_max = c.m * c.a_max, c.v_max
     x, y, vx, vy = rows[PX], rows[PY], rows[VX], rows[VY]
@@ -179,7 +183,7 @@ def march(
         add_walls(rows, n, FX, FY, walls, wall_cells, c)
         set_targets(rows, order, desired_speed, routes, waypoint_index, closed, c)
         detour(rows, n, vehicles, c)
-        _integrate(rows, n, dt, c)
+        _integrate(rows, (n + BLOCK - 1) // BLOCK * BLOCK, dt, c)
         for k in range(n):
             i = order[k]
             position[i, 0], position[i, 1] = rows[NX, k], rows[NY, k]
@@ -190,16 +194,7 @@ def march(
 @inlined
 def parts(arrays: Arrays) -> tuple[State, Scene, Scratch]:
     """What Python has handed over as one plain tuple, by name."""
-    routes = Routes(
-        borrowed(arrays[5]), borrowed(arrays[6]), borrowed(arrays[7]), borrowed(arrays[8])
-    )
-    closed, walls, cells = borrowed(arrays[9]), borrowed(arrays[10]), borrowed(arrays[11])
-    scene = Scene(borrowed(arrays[3]), borrowed(arrays[4]), routes, closed, walls, cells)
-    state = State(borrowed(arrays[0]), borrowed(arrays[1]), borrowed(arrays[2]))
-    return (
-        state,
-        scene,
-        Scratch(
-            borrowed(arrays[12]), borrowed(arrays[13]), borrowed(arrays[14]), borrowed(arrays[15])
-        ),
-    )
+    a = borrowed(arrays)
+    routes = Routes(a[5], a[6], a[7], a[8])
+    scene = Scene(a[3], a[4], routes, a[9], a[10], a[11])
+    return State(a[0], a[1], a[2]), scene, Scratch(a[12], a[13], a[14])

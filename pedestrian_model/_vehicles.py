@@ -161,19 +161,25 @@ def add_vehicle(
     nose_x, nose_y = (-cos, -sin) if u < 0.0 else (cos, sin)
     v = _Vehicle(x_v, y_v, cos, sin, nose_x, nose_y, u_x, u_y, _contour(vehicle, c))
     law = _Law(c.R, c.A, c.b, c.a_v, c.b_v, c.cap)
-    x, y, vx, vy = rows[PX], rows[PY], rows[VX], rows[VY]
-    f_x, f_y, s_min = rows[VFX], rows[VFY], rows[S]
+    # Sliced and counted from 0: of an index that could be negative no vector loop is made.
+    x, y, vx, vy = (
+        rows[PX, start:stop],
+        rows[PY, start:stop],
+        rows[VX, start:stop],
+        rows[VY, start:stop],
+    )
+    f_x, f_y, s_min = rows[VFX, start:stop], rows[VFY, start:stop], rows[S, start:stop]
     if relied_on:
-        priority = rows[PRIORITY]
+        priority = rows[PRIORITY, start:stop]
         full = place_of_full_force(vehicle[REAR] if u < 0.0 else vehicle[FRONT], u)
-        for k in range(start, stop):
+        for k in range(stop - start):
             one_x, one_y, s, ahead = _force(x[k], y[k], vx[k], vy[k], v, law)
             share = felt(ahead, full, priority[k])
             f_x[k] += share * one_x
             f_y[k] += share * one_y
             s_min[k] = min(s_min[k], s)
         return
-    for k in range(start, stop):
+    for k in range(stop - start):
         one_x, one_y, s, _ = _force(x[k], y[k], vx[k], vy[k], v, law)
         f_x[k] += one_x
         f_y[k] += one_y

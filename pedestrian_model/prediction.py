@@ -163,12 +163,13 @@ def start(arrays: Arrays) -> tuple[Ahead, Scene, Scratch]:
         arrays: those of :meth:`Predictor.arrays`.
     """
     state, scene, scratch = parts(arrays[:-4])
-    ahead = State(borrowed(arrays[-4]), borrowed(arrays[-3]), borrowed(arrays[-2]))
+    memory = borrowed(arrays[-4:])
+    ahead = State(memory[0], memory[1], memory[2])
     for i in range(state.position.shape[0]):
         ahead.position[i, 0], ahead.position[i, 1] = state.position[i, 0], state.position[i, 1]
         ahead.velocity[i, 0], ahead.velocity[i, 1] = state.velocity[i, 0], state.velocity[i, 1]
         ahead.waypoint_index[i] = state.waypoint_index[i]
-    return Ahead(ahead, borrowed(arrays[-1])), scene, scratch
+    return Ahead(ahead, memory[3]), scene, scratch
 
 
 @inlined
@@ -246,7 +247,7 @@ def wish(x: float, y: float, target: int, i: int, scene: Scene) -> tuple[float, 
 def fill_wishes(arrays: Arrays, wishes: NDArray[np.float64]) -> None:
     """Fill ``wishes`` (n, 3) with those at the end of the latest prediction."""
     scene = parts(arrays[:-4])[1]
-    x, at = borrowed(arrays[-4]), borrowed(arrays[-2])
+    x, _, at, _ = borrowed(arrays[-4:])
     for i in range(x.shape[0]):
         wishes[i, 0], wishes[i, 1], wishes[i, 2] = wish(x[i, 0], x[i, 1], at[i], i, scene)
 

@@ -15,8 +15,7 @@ _SLOWING = 3.0  # [m/s^2] with which a speed above the wanted one is given up: a
 def aim(
     speed: float,
     before: float,
-    wanted: float,
-    slowest: float,
+    goals: Array,
     fastest: float,
     jerk: float,
     time_step: float,
@@ -24,35 +23,39 @@ def aim(
     speeds: Array,
     accelerations: Array,
 ) -> None:
-    """Fill a manoeuvre that goes over to the acceleration ``wanted``, up to rest or ``fastest``.
+    """Fill manoeuvres that go over to the accelerations wanted, up to rest or ``fastest``.
+
+    All of them step by step: no step of one waits for another's, and the processor overlaps them.
 
     Args:
         speed: now [m/s].
         before: the acceleration before [m/s^2].
-        wanted: [m/s^2].
-        slowest: [m/s] where braking ends.
+        goals: (k, 2) the acceleration wanted [m/s^2], and the speed at which braking ends [m/s].
         fastest: [m/s] not exceeded by driving on.
         jerk: [m/s^3] of changes.
         time_step: [s].
-        distance: (N + 1,) [m] receives the manoeuvre.
-        speeds: (N + 1,) [m/s] likewise.
-        accelerations: (N + 1,) [m/s^2] likewise.
+        distance: (k or more, N + 1) [m] receives the manoeuvres.
+        speeds: [m/s] likewise.
+        accelerations: [m/s^2] likewise.
     """
-    s, v, a = 0.0, speed, before
-    most = jerk * time_step
-    for i in range(len(speeds)):
-        distance[i], speeds[i] = s, v
-        if wanted > 0.0 or v > fastest:
-            goal = min(wanted, max((fastest - v) / _EASING, -_SLOWING))
-        else:
-            goal = max(wanted, min(0.0, (slowest - v) / _EASING))
-        a += min(max(goal - a, -most), most)
-        after = max(v + time_step * a, 0.0)
-        if after > fastest:
-            after = max(fastest, min(after, v))
-        accelerations[i] = (after - v) / time_step
-        s += time_step * v
-        v = after
+    most, count, last = jerk * time_step, goals.shape[0], speeds.shape[1] - 1
+    asked_for = np.full(count, before)
+    for k in range(count):
+        distance[k, 0], speeds[k, 0] = 0.0, speed
+    for i in range(last + 1):
+        for k in range(count):
+            wanted, v, a = goals[k, 0], speeds[k, i], asked_for[k]
+            if wanted > 0.0 or v > fastest:
+                goal = min(wanted, max((fastest - v) / _EASING, -_SLOWING))
+            else:
+                goal = max(wanted, min(0.0, (goals[k, 1] - v) / _EASING))
+            a += min(max(goal - a, -most), most)
+            after = max(v + time_step * a, 0.0)
+            if after > fastest:
+                after = max(fastest, min(after, v))
+            asked_for[k], accelerations[k, i] = a, (after - v) / time_step
+            if i < last:
+                distance[k, i + 1], speeds[k, i + 1] = distance[k, i] + time_step * v, after
 
 
 @inner

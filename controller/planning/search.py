@@ -261,9 +261,7 @@ def lay_out(
     speed, before, fastest, end, jerk, b, time_step = state
     distance, speeds, accelerations = motions
     k = goals.shape[0]
-    for j in range(k):
-        to = (distance[j], speeds[j], accelerations[j])
-        aim(speed, before, goals[j, 0], goals[j, 1], fastest, jerk, time_step, *to)
+    aim(speed, before, goals, fastest, jerk, time_step, distance, speeds, accelerations)
     if np.isfinite(end):
         to = (distance[k], speeds[k], accelerations[k])
         approach(speed, before, goals[0, 0], end, fastest, jerk, time_step, *to)
@@ -274,4 +272,5 @@ def lay_out(
             distance[k, i], speeds[k, i] = last[0][i], last[1][i]
         shift(speed, holds, b, time_step, *to)
     else:
-        aim(speed, before, 0.0, 0.0, fastest, jerk, time_step, *to)
+        keeping = distance[k:], speeds[k:], accelerations[k:]
+        aim(speed, before, np.zeros((1, 2)), fastest, jerk, time_step, *keeping)

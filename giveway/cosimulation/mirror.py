@@ -125,9 +125,14 @@ class Mirror:
             raise VehicleError(msg)
 
     def place(self, egos: Sequence[Ego]) -> None:
-        """Fill the egos' rows from where they are now."""
+        """Fill the egos' rows from where they are now, ahead only if anybody looks at them there.
+
+        An ego that foresees the crowd does so under motions of its own.
+        """
+        unseen = len(egos) == 1 and egos[0].foresees
+        poses = self.poses[:1] if unseen else self.poses
         for row, ego in enumerate(egos):
-            ego.corridor.fill_poses(self.poses, row, ego.front, ego.vehicle.speed)
+            ego.corridor.fill_poses(poses, row, ego.front, ego.vehicle.speed)
 
     def drop(self, row: int) -> None:
         """Remove the ego in ``row`` from the vehicles; possible at every control step."""

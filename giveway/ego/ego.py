@@ -142,6 +142,11 @@ class Ego:
         )
 
     @property
+    def foresees(self) -> bool:
+        """Whether it predicts the crowd under each of its manoeuvres."""
+        return self._foresight is not None
+
+    @property
     def front(self) -> float:
         """Station of the front bumper [m]."""
         return self.departure + self.vehicle.position

@@ -23,7 +23,7 @@ from giveway.ego.corridor import set_pose
 from giveway.ego.crossers import fill_crossers
 from giveway.ego.prospects import View, assess_step, interval_of
 from giveway.geometry.kernel import Array, inlined, inner, kernel
-from pedestrian_model import leap, start, wish
+from pedestrian_model import borrowed, leap, start, wish
 
 Arrays = tuple[NDArray[Any], ...]
 
@@ -136,6 +136,8 @@ def run_race(
         wanted: the speed [m/s] that time is lost against.
         weights: of the cost.
     """
+    path, people, trials, memory = borrowed((path, people, trials, memory))
+    poses, alarm, entrants, allowed = borrowed((poses, alarm, entrants, allowed))
     distance, speed, acceleration, handicap = trials
     sums, steps, alike, _, ends, crossers, bad = memory[3:]
     M, time_step = poses.shape[0], View(*view).time_step

@@ -60,7 +60,9 @@ def conflicts_and_calm(
         return 0.0, np.inf
     c, s = np.cos(heading), np.sin(heading)
     turn = braking_heading - heading
-    c_b, s_b = np.cos(turn), np.sin(turn)
+    c_b, s_b = 1.0, 0.0
+    if turn != 0.0:
+        c_b, s_b = np.cos(turn), np.sin(turn)
     soon = conflict_time + _FADING
     far = 2.0 * half_length + half_width + soon * (speed + alarm.walking_speed)
     conflicts, calm, braking = 0.0, speed, outline(speed, time_step, alarm)

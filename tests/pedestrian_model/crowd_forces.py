@@ -195,7 +195,7 @@ def _fill_targets(
     out: Array,
 ) -> None:
     c, n = constants[0], position.shape[0]
-    rows, index, _, _ = scratch
+    rows, index, _ = scratch
     closed, walls, wall_cells = surroundings
     for i in range(n):
         index[0, i] = i

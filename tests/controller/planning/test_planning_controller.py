@@ -77,7 +77,8 @@ def room_for_a_stop(speed, weights):
     """The least gap [m] at which the search's hardest braking is admissible."""
     m = Manoeuvre.empty(N)
     hardest = min(ManoeuvreParameters().accelerations)
-    aim(speed, 0.0, hardest, 0.0, V_R, 8.0, DT, m.distance, m.speed, m.acceleration)
+    motion = (m.distance[None], m.speed[None], m.acceleration[None])
+    aim(speed, 0.0, np.array([[hardest, 0.0]]), V_R, 8.0, DT, *motion)
     return max(s + stopping_need(v, weights) for s, v in zip(m.distance, m.speed, strict=True))
 
 

@@ -35,7 +35,8 @@ def weights(*, terminal=True, **changes):
 
 def aimed(speed, before, wanted, slowest, fastest, *, jerk=8.0, horizon=60):
     m = Manoeuvre.empty(horizon)
-    aim(speed, before, wanted, slowest, fastest, jerk, DT, m.distance, m.speed, m.acceleration)
+    motion = (m.distance[None], m.speed[None], m.acceleration[None])
+    aim(speed, before, np.array([[wanted, slowest]]), fastest, jerk, DT, *motion)
     return m
 
 
@@ -321,8 +322,7 @@ def test_a_planner_that_cannot_be_is_refused_by_name(changes):
 
 @pytest.mark.parametrize("wanted", [2.5, 0.0])
 def test_a_speed_above_the_wanted_one_is_given_up_without_a_hard_brake(wanted):
-    m = Manoeuvre.empty(60)
-    aim(13.9, 0.0, wanted, 0.0, 4.0, 8.0, 0.05, m.distance, m.speed, m.acceleration)
+    m = aimed(13.9, 0.0, wanted, 0.0, 4.0)
     assert -3.0 - 1e-9 <= m.acceleration.min() < -2.9
     assert m.speed[-1] < 6.0
 
