@@ -28,6 +28,9 @@ from controller.planning.smoothing import SmoothingProblem
 from controller.protocol import Decision, Observation
 from controller.tuned_pid import TunedPid
 
+_SLOW = 4.0  # [m/s] of the reference speed: where it is more, calm speeds are kept to for longer,
+_SOFT = 4.0  # [m/s^2] so that braking from it asks for no more
+
 
 class Plan(NamedTuple):
     """The force for the next step, and how it came about."""
@@ -76,7 +79,9 @@ class Planner:
             problem.speeds_of,
             problem.gradients,
         )
-        self._soon = round(parameters.manoeuvres.calm_time / model.time_step)
+        faster = max(0.0, parameters.reference_speed - _SLOW)
+        calm_time = parameters.manoeuvres.calm_time + faster / _SOFT
+        self._soon = round(calm_time / model.time_step)
         self._plan = Manoeuvre.empty(N)
         self._corridor, self._any_speed = np.empty(N), np.full(N, inf)
 

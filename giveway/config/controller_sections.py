@@ -264,7 +264,8 @@ class PlannerConfig(Section):
     calm_time: float = option(
         0.5,
         "s",
-        "of the plan in which nobody may be able to force an emergency stop",
+        "of the plan in which nobody may be able to force an emergency stop; "
+        "above v_r = 4 m/s longer by (v_r - 4 m/s)/(4 m/s²)",
         ge=0,
         le=10,
         because="no plan is longer",

@@ -300,7 +300,7 @@ class Ego:
         vehicle_ahead = limit = math.inf
         lanes = None
         if not free:
-            vehicle_ahead = self._following.station(leader, seen.to_clear)
+            vehicle_ahead = self._following.station(leader, front, seen.to_clear)
             limit = self._following.speed_limit(leader, seen.stop, front, seen.to_clear)
         if self._profile is not None:
             limit = min(limit, self._profile.limit(front, vehicle.speed))

@@ -59,26 +59,33 @@ class Following:
         self._firmly = 2.0 * FIRM if tuned else inf
         self._spare = max(0.0, safe_distance + origin - CLOSEST)
 
-    def closes_up(self, to_clear: float) -> float:
+    def closes_up(self, station: float, front: float, to_clear: float) -> float:
         """How much [m] of the safe distance it gives up, rather than block a place.
 
         Args:
-            to_clear: [m] to be driven on to leave it.
+            station: of the vehicle in front [m].
+            front: station of the front bumper [m].
+            to_clear: [m] to be driven on to leave the place.
         """
-        return min(to_clear, self._spare)
+        if to_clear <= 0.0:
+            return 0.0
+        left = station - front - to_clear - _APPROACHED  # where it would have left it
+        return min(max(0.0, self._spare + CLOSEST - left), self._spare)
 
     def given_up(
         self, leader: Leader, ahead: Array, front: float, speed: float, to_clear: float
     ) -> float:
         """What a plan may give up of the safe distance [m]; arguments of :func:`given_up`."""
-        spared = self.closes_up(to_clear)
+        station = min(leader.station, float(ahead.min(initial=inf)))
+        spared = self.closes_up(station, front, to_clear)
         if not self._plans:
             return spared
         return max(spared, given_up(leader, ahead, front, speed, self._safe_distance, self._origin))
 
-    def station(self, leader: Leader, to_clear: float) -> float:
+    def station(self, leader: Leader, front: float, to_clear: float) -> float:
         """The station [m] of the vehicle in front that a controller is to keep its distance to."""
-        return leader.station + leader.speed**2 / self._firmly + self.closes_up(to_clear)
+        spared = self.closes_up(leader.station, front, to_clear)
+        return leader.station + leader.speed**2 / self._firmly + spared
 
     def speed_limit(self, leader: Leader, stop: float, front: float, to_clear: float) -> float:
         """The speed [m/s] that comfortable braking allows before a stop or behind a leader.
@@ -95,7 +102,7 @@ class Following:
         if leader.station < inf:
             v = leader.speed
             room = leader.station - front - self._origin - self._safe_distance - _APPROACHED
-            room += self.closes_up(to_clear)
+            room += self.closes_up(leader.station, front, to_clear)
             if room <= 0.0:
                 behind = v + room / _RECOVERY
             else:

@@ -9,13 +9,14 @@ from giveway.sumo.lane_path import Light
 RED = frozenset("rRu")  # red, red with yellow
 _ARROW = frozenset("s")  # red with a green arrow: after a stop one may go
 YELLOW = frozenset("yY")
+_SLOWED = 0.8  # of the speed at which it goes on at yellow; slower, it stops if it can at all
 
 
 class Lights:
     """Watches the lights on one ego's path.
 
-    At yellow the ego stops if it can with the comfortable deceleration, and goes on if not; at
-    red it stops if it can at all.
+    At yellow the ego stops if it can with the comfortable deceleration, and goes on if not, as
+    long as nobody makes it brake; at red it stops if it can at all.
 
     Args:
         lights: in the order of the path.
@@ -39,7 +40,7 @@ class Lights:
         self._comfortable = comfortable
         self._hardest = hardest
         self._colours = ["g"] * len(lights)
-        self._passing = [False] * len(lights)  # decided at yellow
+        self._passing = [0.0] * len(lights)  # [m/s] when that was decided at yellow; 0: it was not
         self._red = RED if arrows else RED | _ARROW
         self._next = 0
         self.systems = frozenset(light.system for light in self._lights)
@@ -56,10 +57,13 @@ class Lights:
             light = self._lights[i]
             state = states.get(light.system, "")
             colour = state[light.link] if light.link < len(state) else "O"
-            if colour in YELLOW and self._colours[i] not in YELLOW:
-                self._passing[i] = self._needed(i, front, speed) > self._comfortable
-            elif colour not in YELLOW:
-                self._passing[i] = False
+            needed = self._needed(i, front, speed)
+            if colour not in YELLOW:
+                self._passing[i] = 0.0
+            elif self._colours[i] not in YELLOW:
+                self._passing[i] = speed if needed > self._comfortable else 0.0
+            elif speed < _SLOWED * self._passing[i] and needed <= self._hardest:
+                self._passing[i] = 0.0  # who had to brake for somebody comes too late
             self._colours[i] = colour
 
     def stop_at(self, front: float, speed: float) -> float:
@@ -68,7 +72,7 @@ class Lights:
             self._next += 1
         for i in range(self._next, len(self._lights)):
             colour = self._colours[i]
-            stops = colour in self._red or (colour in YELLOW and not self._passing[i])
+            stops = colour in self._red or (colour in YELLOW and self._passing[i] == 0.0)
             if stops and self._needed(i, front, speed) <= self._hardest:
                 return self._lights[i].station - STOP_BEFORE
         return math.inf

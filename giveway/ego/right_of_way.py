@@ -39,6 +39,7 @@ _GOING = 0.3  # [s] to whoever passes after it, for an ego that has decided to g
 _STAYS = 3.0  # [s] after which one who stands and need not will go on standing
 _BOXED_IN = 1.0  # [s] the same for one who has no room to go on
 _CLOSE = 3.0  # [m] behind who stands ahead, from which on there is none
+_BRIEFLY = 1.0  # [s] in which one who crawls up to there is as good as there
 _STANDING = 0.2  # [m/s]
 _AT_LINE = 4.0  # [m] before the line a vehicle stands at it
 _DECIDED = 10.0  # [m] before the line the ego keeps to its decision to go
@@ -230,10 +231,10 @@ class RightOfWay:
     def _stays(
         self, place: PathJunction, other: Approach, states: Mapping[str, str], traffic: Traffic
     ) -> bool:
-        """Whether it could have gone on for some time and has not, or cannot for who is ahead."""
+        """Whether it could have gone on for some time and has not, or cannot, behind who stands."""
         if other.standing <= 0.0:
             self._staying.discard(other.name)
-            return False
+            return other.speed < CRAWLING and _is_boxed_in(place, other, traffic)
         movement = place.movements[other.number]
         stood = other.standing
         if movement.system:
@@ -311,7 +312,7 @@ def _is_boxed_in(place: PathJunction, other: Approach, traffic: Traffic) -> bool
     return any(
         ahead.standing > _BOXED_IN
         and ahead.distance < other.distance
-        and other.distance - ahead.distance - ahead.length < _CLOSE
+        and other.distance - ahead.distance - ahead.length < _CLOSE + _BRIEFLY * other.speed
         and place.movements[ahead.number].source == source
         for ahead in traffic.get(place.movement.junction, ())
     )

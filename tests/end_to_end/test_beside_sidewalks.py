@@ -13,16 +13,21 @@ def drive(seed, **changes):
     return giveway.run({"scenario": "crossings", "seed": seed, "time_limit": 18.0} | changes)
 
 
+def beside_the_sidewalk(result):
+    """The crowd's records of those less than 1.3 m from the kerb beside whom the ego is."""
+    ego, crowd = result.egos[0].track, result.egos[0].crowd
+    beside = np.abs(crowd.x - ego.front_x[crowd.step]) < 2.0
+    return beside & (crowd.y < -3.6) & (crowd.y > -4.8) & (crowd.x > -55.0) & (crowd.x < -12.0)
+
+
 def passed_on_the_sidewalk(result):
-    """How many people, less than 1.3 m from the kerb, the ego has passed at 5 m/s or more."""
+    """How many people beside it the ego has passed at 5 m/s or more."""
     ego, crowd = result.egos[0].track, result.egos[0].crowd
     fast = ego.speed[crowd.step] > 5.0
-    beside = np.abs(crowd.x - ego.front_x[crowd.step]) < 2.0
-    on_it = (crowd.y < -3.6) & (crowd.y > -4.8) & (crowd.x > -55.0) & (crowd.x < -12.0)
-    return len(set(crowd.pedestrian[fast & beside & on_it].tolist()))
+    return len(set(crowd.pedestrian[fast & beside_the_sidewalk(result)].tolist()))
 
 
-@pytest.mark.parametrize("seed", [9, 15])
+@pytest.mark.parametrize("seed", [6, 23])
 def test_who_stays_on_the_sidewalk_is_passed_without_hard_braking(seed):
     result = drive(seed)
     assert passed_on_the_sidewalk(result) >= 2
@@ -32,8 +37,13 @@ def test_who_stays_on_the_sidewalk_is_passed_without_hard_braking(seed):
 
 
 def test_the_worst_case_knows_no_sidewalk():
-    """There everybody may lunge at the ego from wherever they are."""
-    assert drive(15, **{"safety.people": "worst-case"}).summary["peak_deceleration"] > HARD
+    """There everybody may lunge at the ego from wherever they are: it passes them slowly."""
+    known, unknown = drive(6), drive(6, **{"safety.people": "worst-case"})
+    slowest = [
+        result.egos[0].track.speed[result.egos[0].crowd.step[beside_the_sidewalk(result)]].min()
+        for result in (known, unknown)
+    ]
+    assert slowest[1] < 5.0 < 6.0 < slowest[0]
 
 
 def test_who_sets_out_more_suddenly_than_assumed_is_counted():

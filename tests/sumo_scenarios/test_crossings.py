@@ -99,9 +99,14 @@ def test_a_bus_halts_on_the_egos_lane_and_people_wait_for_it(
     assert len(routes.findall(f"personFlow/walk[@busStop='{stop.attrib['id']}']")) == 2
 
 
-def test_everybody_but_the_group_departs_by_sumos_seed(xml_of: Xml, settings: Settings) -> None:
+def test_everybody_but_the_group_and_buses_departs_by_sumos_seed(
+    xml_of: Xml, settings: Settings
+) -> None:
     routes = xml_of("crossings", "rou.xml")
     flows = [*routes.findall("flow"), *routes.findall("personFlow")]
+    (bus,) = (flow for flow in flows if flow.get("type") == "bus")
+    assert float(bus.attrib["period"]) > 2.0 * float(bus.find("stop").attrib["duration"])
+    flows.remove(bus)
     assert len(flows) > 15
     assert all(flow.attrib["period"].startswith("exp(") for flow in flows)
     assert settings(find("crossings"))["sumo"]["seed"] == "run"

@@ -180,9 +180,9 @@ def drive(track, *people, crossings=(ZEBRA,), lights=(), vehicles=(), turn=0.0, 
 def traffic(vehicles, turn=0.0):
     """The rows of other vehicles."""
     rows = sorted(
-        (float(t), name, float(x), float(y), heading)
+        (float(t), name, float(x), float(y), heading, float(speed))
         for name, times, xs, ys, heading in vehicles
-        for t, x, y in zip(*np.broadcast_arrays(times, xs, ys), strict=True)
+        for t, x, y, speed in zip(times, *driven(times, xs, ys), strict=True)
     )
     time = np.array([row[0] for row in rows])
     x, y = turned([row[2] for row in rows], [row[3] for row in rows], turn)
@@ -195,7 +195,15 @@ def traffic(vehicles, turn=0.0):
         x,
         y,
         heading,
-        np.full(count, 4.0),
+        np.array([row[5] for row in rows], dtype=float),
         np.full(count, 4.0),
         np.full(count, 2.0),
     )
+
+
+def driven(times, xs, ys):
+    """Places and speeds of one vehicle."""
+    _, x, y = np.broadcast_arrays(times, xs, ys)
+    if len(x) < 2:
+        return x, y, np.full(len(x), 4.0)
+    return x, y, np.hypot(np.gradient(x, times), np.gradient(y, times))

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array
@@ -23,10 +24,13 @@ AFTER = 2.0
 SIGHT = 10.0
 """[m] A cause counts this far in front of the ego."""
 
+_BRIEF = 0.5  # [s] a stand that is shorter is no stop
 _ASIDE = 0.5  # [m] beside the ego's way people are on it as well
 _FOE = 9.0  # [s] before another vehicle comes by: the largest critical gap, and time to start
 _ROOM = 3.5  # [m] that the ego wants behind a crossing or a junction, besides its own length
-_ABOUT, _SHORTEST = 20.0, 0.01  # [m] of path before and beyond what is looked at; a segment
+_BEHIND = 40.0  # [m] from which on who follows it is no foe
+_ABOUT, _SHORTEST = 20.0, 0.01  # [m] of path beyond what is looked at; a segment
+_APART = 0.5  # [m] between points of its way
 _STARTING = 3.0  # [s] in which an ego drives off that departs standing
 _HALT = 1.0  # [m] about a scheduled stop
 _POINTS = 5  # of a vehicle's middle line, front to rear
@@ -65,6 +69,8 @@ def stops_without_cause(
     time, found = drive.ego.time, []
     lasting = np.append(np.diff(time), 0.0)
     for begin, end in runs(drive.ego.speed < drive.stop_speed):
+        if lasting[begin:end].sum() < _BRIEF:
+            continue
         front = float(drive.front[begin:end].mean())
         stand = _Stand(front, _sight(drive, areas, front), _foes(drive, front), begin, end)
         caused = np.zeros(len(time), dtype=np.bool_)
@@ -129,8 +135,8 @@ def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple
     if any(halt.start - _HALT <= front <= halt.end + _HALT for halt in drive.way.halts):
         yield np.ones(len(time), dtype=np.bool_), 0.0
     yield _people_ahead(drive, stand), AHEAD
-    yield _vehicles_ahead(drive, stand, stand.foes), _FOE
-    yield _vehicles_ahead(drive, stand, stand.sight), 0.0
+    yield _foes_ahead(drive, stand), 0.0
+    yield _vehicles_ahead(drive, stand), 0.0
 
 
 def _people_ahead(drive: Drive, stand: _Stand) -> Mask:
@@ -148,22 +154,64 @@ def _people_ahead(drive: Drive, stand: _Stand) -> Mask:
     return there
 
 
-def _vehicles_ahead(drive: Drive, stand: _Stand, sight: float) -> Mask:
-    """(T,) when another vehicle was on the ego's way up to ``sight`` [m] ahead of it."""
-    others, time, front = drive.vehicles, drive.ego.time, stand.front
-    x, y, _ = drive.path.pose(front)
+def _vehicles_ahead(drive: Drive, stand: _Stand) -> Mask:
+    """(T,) when another vehicle was on the ego's way as far ahead of it as it looks."""
+    rows = _during(drive, stand, drive.vehicles.time)
+    ahead, _ = _on_way(drive, stand, rows, stand.sight)
+    return _at_instants(drive, rows[ahead])
+
+
+def _foes_ahead(drive: Drive, stand: _Stand) -> Mask:
+    """(T,) when another vehicle was about to come onto the ego's way ahead, not from behind it.
+
+    It did so within ``_FOE``, or would have if it had driven straight on at its speed.
+    """
+    others = drive.vehicles
     rows = _during(drive, stand, others.time)
-    reach = sight + others.length[rows] + others.width[rows]
-    rows = rows[np.hypot(others.x[rows] - x, others.y[rows] - y) <= reach]
+    ahead, behind = _on_way(drive, stand, rows, stand.foes)
+    coming = ahead | (_straight_on(drive, stand, rows) & ~behind)
+    for name in np.unique(others.id[rows[ahead]]):
+        mine = np.flatnonzero(others.id[rows] == name)
+        coming[mine] |= spread(others.time[rows[mine]], ahead[mine], _FOE, 0.0) & ~behind[mine]
+    return _at_instants(drive, rows[coming])
+
+
+def _at_instants(drive: Drive, rows: NDArray[np.intp]) -> Mask:
+    """(T,) the instants of some rows of other vehicles."""
+    there = np.zeros(len(drive.ego.time), dtype=np.bool_)
+    there[drive.instants(drive.vehicles.time[rows])] = True
+    return there
+
+
+def _on_way(drive: Drive, stand: _Stand, rows: NDArray[np.intp], sight: float) -> tuple[Mask, Mask]:
+    """(n,) which vehicles are on the ego's way up to ``sight`` [m] ahead; (n,) behind its front."""
+    others, front = drive.vehicles, stand.front
+    ahead, behind = np.zeros((2, len(rows)), dtype=np.bool_)
+    x, y, _ = drive.path.pose(front)
+    reach = max(sight, _BEHIND) + others.length[rows] + others.width[rows]
+    near = np.flatnonzero(np.hypot(others.x[rows] - x, others.y[rows] - y) <= reach)
+    rows = rows[near]
     back = np.linspace(0.0, 1.0, _POINTS) * others.length[rows, None]
     p_x = others.x[rows, None] - back * np.cos(others.heading[rows, None])
     p_y = others.y[rows, None] - back * np.sin(others.heading[rows, None])
     station, aside = (each.reshape(back.shape) for each in _on_path(drive, stand, p_x, p_y))
     on = aside <= (drive.shape.width + others.width[rows, None]) / 2
-    on &= (station > front) & (station <= front + sight)
-    there = np.zeros(len(time), dtype=np.bool_)
-    there[drive.instants(others.time[rows[on.any(axis=1)]])] = True
-    return there
+    ahead[near] = (on & (station > front) & (station <= front + sight)).any(axis=1)
+    behind[near] = (on & (station <= front)).any(axis=1)
+    return ahead, behind & ~ahead
+
+
+def _straight_on(drive: Drive, stand: _Stand, rows: NDArray[np.intp]) -> Mask:
+    """(n,) which vehicles would come onto the ego's way ahead, driving straight on for a while."""
+    others, front = drive.vehicles, stand.front
+    at = np.arange(front, front + stand.foes + _APART, _APART)
+    way = shapely.LineString(drive.path.points(at)).buffer(drive.shape.width / 2, cap_style="flat")
+    x, y, far = others.x[rows], others.y[rows], _FOE * others.speed[rows]
+    c, s = np.cos(others.heading[rows]), np.sin(others.heading[rows])
+    lines = shapely.linestrings(
+        np.stack([x, y, x + far * c, y + far * s], axis=1).reshape(-1, 2, 2)
+    )
+    return np.asarray(shapely.intersects(way, lines))
 
 
 def _during(drive: Drive, stand: _Stand, time: Array) -> NDArray[np.intp]:
@@ -179,7 +227,7 @@ def _on_path(drive: Drive, stand: _Stand, x: Array, y: Array) -> tuple[Array, Ar
     A way may come by twice: the rest of it is not looked at.
     """
     stations = drive.path.stations
-    begin = max(stand.front - _ABOUT, 0.0)
+    begin = max(stand.front - _BEHIND, 0.0)
     end = min(stand.front + max(stand.sight, stand.foes) + _ABOUT, stations[-1])
     between = stations[(stations > begin + _SHORTEST) & (stations < end - _SHORTEST)]
     part = EgoPath.through(drive.path.points(np.array([begin, *between, end])))

@@ -26,8 +26,10 @@ post-encroachment time that SSAM looks at (Gettman & Head 2003, FHWA)."""
 PULL_AWAY = 2.0
 """[m/s^2] with which it could come."""
 
-TOUCHES = 2.0
-"""[m] from its body an ego that stands may still push somebody; one that drives may anywhere."""
+TOUCHES, NOSE = 2.0, 1.4
+"""[m] and [s]: nearer to its body than the one, and the way that it drives in the other, the ego
+may push somebody. Farther off the model's vehicles act with less than 30 N (docs/law.md).
+"""
 
 ABOUT = 2.0
 """[s] before and after it what happens in the twin is the same event."""
@@ -106,8 +108,8 @@ def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:
 def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
     """How far somebody with priority went back where the ego may have pushed them, if at all.
 
-    What others on foot or SUMO's vehicles do to them while the ego stands away does not count, nor
-    what happens to them in the run's twin as well.
+    What others on foot or SUMO's vehicles do to them while the ego is far does not
+    count, nor what happens to them in the run's twin as well.
 
     Args:
         drive: the ego's.
@@ -149,15 +151,15 @@ def _goes_back_anyway(drive: Drive, area: Area, walk: Walk, first: int, last: in
 
 
 def _may_push(drive: Drive, walk: Walk) -> NDArray[np.bool_]:
-    """(m,) whether the ego drives, or stands right beside a person."""
+    """(m,) whether the ego is near enough to a person."""
     ego, k = drive.ego, walk.steps
     c, s = np.cos(ego.heading[k]), np.sin(ego.heading[k])
     d_x, d_y = walk.x - ego.front_x[k], walk.y - ego.front_y[k]
     ahead, aside = d_x * c + d_y * s, np.abs(d_y * c - d_x * s)
     beyond = np.maximum(np.maximum(ahead, -ahead - drive.shape.length), 0.0)
     beside = np.maximum(aside - drive.shape.width / 2, 0.0)
-    near = np.hypot(beyond, beside) <= TOUCHES + drive.body_radius
-    return np.asarray(near | (ego.speed[k] >= drive.stop_speed))
+    reach = TOUCHES + NOSE * ego.speed[k] + drive.body_radius
+    return np.asarray(np.hypot(beyond, beside) <= reach)
 
 
 def waiting_time(drive: Drive, found: Encounter) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from giveway.ego.leader import NO_LEADER, Leader, given_up, vehicles_in_front
+from giveway.ego.leader import NO_LEADER, Following, Leader, given_up, vehicles_in_front
 from giveway.geometry.path import EgoPath
 
 DT = 0.05  # [s]
@@ -80,3 +80,17 @@ def test_who_pulls_away_nearby_is_no_wall() -> None:
 def test_a_quarter_of_the_safe_distance_is_kept_however_hard_the_braking() -> None:
     assert kept(Leader(43.0, 0.0), 6.0) == 2.0
     assert kept(Leader(41.0, 0.0), 1.0) == 1.0  # it is nearer: not yet nearer
+
+
+@pytest.mark.parametrize("origin", [0.0, -2.5])
+def test_it_closes_up_until_it_has_left_what_it_would_block(origin: float) -> None:
+    """It drives up to where it may: not slower on the way, as what is left gets less."""
+    following = Following(8.0 - origin, origin, 2.0, plans=True, tuned=False)
+    leader, cleared = Leader(50.0, 0.0), 47.0
+    for front in (40.0, 44.0, 46.0, 46.9):
+        spared = following.closes_up(leader.station, front, cleared - front)
+        assert 8.0 - spared == pytest.approx(2.5)  # it comes to a stand half a metre before
+        assert following.speed_limit(leader, np.inf, front, cleared - front) > 0.0
+    assert following.closes_up(leader.station, cleared, 0.0) == 0.0
+    assert following.closes_up(60.0, 44.0, 3.0) == 0.0  # there is room enough
+    assert following.closes_up(48.0, 44.0, 3.0) == 6.0  # it comes no nearer than 2 m

@@ -45,10 +45,19 @@ def test_at_yellow_only_who_can_stop_in_comfort_stops() -> None:
 def test_the_decision_at_yellow_holds_while_it_is_yellow() -> None:
     watch = lights()
     assert stop("y", 76.0, 10.0, watch) == math.inf
-    assert stop("y", 80.0, 6.0, watch) == math.inf  # it could stop by now, but goes on
+    assert stop("y", 80.0, 9.0, watch) == math.inf  # it could stop by now, but goes on
     braking = lights()
     assert stop("y", 74.0, 10.0, braking) == STOP
     assert stop("y", 76.5, 10.0, braking) == STOP  # a little late with its brakes
+
+
+def test_who_goes_on_at_yellow_and_has_to_brake_for_somebody_stops_after_all() -> None:
+    watch = lights()
+    assert stop("y", 76.0, 10.0, watch) == math.inf
+    assert stop("y", 90.0, 7.9, watch) == STOP  # 3.1 m/s^2
+    late = lights()
+    assert stop("y", 76.0, 10.0, late) == math.inf
+    assert stop("y", 97.0, 7.9, late) == math.inf  # 10.4 m/s^2
 
 
 def test_a_light_that_has_been_passed_is_forgotten_and_the_next_one_counts() -> None:

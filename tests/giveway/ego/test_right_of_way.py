@@ -177,6 +177,9 @@ def test_who_stands_behind_somebody_who_turns_is_not_waited_for() -> None:
     assert stop(turn, 53.0, 0.0, turner, behind) == math.inf
     gone_on = turner._replace(distance=-8.0)
     assert stop(turn, 53.0, 0.0, gone_on, behind) == 53.0
+    assert stop(turn, 53.0, 0.0, turner, other(3.0, 1.5)) == math.inf  # nor who crawls up to there
+    assert stop(turn, 53.0, 0.0, turner, other(5.5, 1.5)) == 53.0
+    assert stop(turn, 53.0, 0.0, turner, other(3.0, 2.5)) == 53.0
     driving = turner._replace(speed=3.0, standing=0.0)
     assert stop(turn, 53.0, 0.0, driving, behind) == 53.0
 

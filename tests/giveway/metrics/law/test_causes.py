@@ -25,6 +25,18 @@ def crosser(at, x=36.0):
     return ("foe", ALWAYS, np.full(len(ALWAYS), x), -1.75 + 2.0 + 8.0 * (ALWAYS - at), np.pi / 2)
 
 
+def hesitant(at, waits):
+    """A car that would cross as above, but waits 6 m before for so long [s]."""
+    stands = at - 1.0
+    y = np.interp(ALWAYS, [0.0, stands, stands + waits, 60.0], [-8.0 * stands, 0.0, 0.0, 250.0])
+    return ("foe", ALWAYS, np.full(len(ALWAYS), 36.0), -9.0 + y, np.pi / 2)
+
+
+def follower():
+    """A car that comes to stand 3 m behind the ego and follows it."""
+    return ("foe", ALWAYS, np.interp(ALWAYS, [0, 8, 13, 40], [0, 22, 22, 150]), -1.75, 0.0)
+
+
 def test_a_stop_for_nothing_is_found_once():
     found = judged()
     assert [event.kind for event in found.violations] == ["stop without cause"]
@@ -32,6 +44,12 @@ def test_a_stop_for_nothing_is_found_once():
     (event,) = found.violations
     assert event.time == pytest.approx(8.45, abs=0.06)
     assert event.value == pytest.approx(4.2, abs=0.1)
+
+
+@pytest.mark.parametrize(("lasts", "stops"), [(0.2, 0), (0.6, 1)])
+def test_who_only_slows_down_for_a_moment_has_not_stopped(lasts, stops):
+    track = to_a_stand(30.0, (lasts, 0.0), (6.0, 1.5))
+    assert judged(track=track).summary.stops_without_cause == stops
 
 
 def test_a_drive_without_a_stop_has_none():
@@ -48,6 +66,9 @@ def test_a_drive_without_a_stop_has_none():
         ({"vehicles": [crosser(14.0)]}, 0),  # comes by within 6 s from each instant
         ({"vehicles": [crosser(30.0)]}, 1),
         ({"vehicles": [crosser(5.0)]}, 1),  # was gone
+        ({"vehicles": [hesitant(12.0, 20.0)]}, 0),  # would have come, and has to wait for others
+        ({"vehicles": [hesitant(6.0, 20.0)]}, 1),  # waits already
+        ({"vehicles": [follower()]}, 1),  # comes by as soon as the ego has gone on
         ({"vehicles": [crosser(14.0, x=45.0)]}, 1),  # elsewhere
         # at the far end of the junction in which, or before which, it waits
         (

@@ -210,14 +210,14 @@ def test_each_person_counts_once():
 def test_who_is_pushed_back_is_found(back, rows):
     """Somebody walks to the middle of the northern lane, goes back and stays there."""
     t = np.arange(270) * 0.05
-    y = np.interp(t, [0.0, 3.0, 4.0, 9.0], [4.4, 1.0, 1.0 + back, 1.0 + back])
+    y = np.interp(t, [0.0, 4.0, 5.0, 9.0], [4.4, 1.0, 1.0 + back, 1.0 + back])
     person = Person(np.column_stack([np.full(270, 22.0), y]), way=((22.0, -20.0),))
     found = judged(WAITS, person)
     assert found.summary.pushed_back == pytest.approx(back)
     assert kinds(found) == ["pushed back"] * rows
     if rows:
         (event,) = found.violations
-        assert event.time == pytest.approx(3.0)
+        assert event.time == pytest.approx(4.0)
         assert (event.other, event.y, event.value) == ("ped0", pytest.approx(1.0), 0.5)
 
 
@@ -233,10 +233,10 @@ def test_only_people_with_priority_are_pushed_back_and_only_by_an_ego_that_is_ne
 
 @pytest.mark.parametrize(
     ("front", "speed", "rows"),
-    [(14.0, 0.0, 0), (14.0, 1.0, 1), (19.0, 0.0, 1)],
+    [(14.0, 0.0, 0), (15.0, 1.0, 1), (13.0, 1.0, 0), (2.0, 4.0, 1), (-4.0, 4.0, 0), (19.0, 0.0, 1)],
 )
-def test_an_ego_that_stands_away_from_them_pushes_nobody_back(front, speed, rows):
-    """Others do, as the ego stands 7 m away; not if it drives, or stands right before them."""
+def test_an_ego_that_is_away_from_them_pushes_nobody_back(front, speed, rows):
+    """Others do, as the ego stands 7 m away, or as its speed brings it no nearer than 2 m soon."""
     t = np.arange(120) * 0.05
     y = np.interp(t, [0.0, 3.0, 4.0, 9.0], [4.4, -0.2, 0.5, 0.5])
     person = Person(np.column_stack([np.full(120, 21.0), y]), way=((21.0, -20.0),))
@@ -251,9 +251,9 @@ def test_an_ego_that_stands_away_from_them_pushes_nobody_back(front, speed, rows
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_what_happens_in_the_twin_as_well_is_not_the_egos_doing(back, later, pushed, side):
     t = np.arange(270) * 0.05
-    y = side * np.interp(t, [0.0, 3.0, 4.0, 9.0], [4.4, 1.0, 1.5, 1.5])
+    y = side * np.interp(t, [0.0, 4.0, 5.0, 9.0], [4.4, 1.0, 1.5, 1.5])
     person = Person(np.column_stack([np.full(270, 22.0), y]), way=((22.0, -20.0 * side),))
-    there = side * np.interp(t - later, [0.0, 3.0, 4.0, 9.0], [4.4, 1.0, 1.0 + back, 1.0 + back])
+    there = side * np.interp(t - later, [0.0, 4.0, 5.0, 9.0], [4.4, 1.0, 1.0 + back, 1.0 + back])
     twin = Undisturbed(np.arange(270), np.zeros(270, dtype=np.int64), np.full(270, 22.0), there)
     found = ledger(replace(drive(WAITS, person), undisturbed=twin))
     assert found.summary.pushed_back == pytest.approx(pushed)
