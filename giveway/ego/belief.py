@@ -4,11 +4,12 @@ A planner that believes in one model of people is wrong about those who walk by 
 person beside the way who wants to cross it two hypotheses are kept:
 
 * *walks on*, as the model says;
-* *yields*: walks up to the edge of the way, and stops there.
+* *yields*: walks up to the edge of the way, or where their pace says that they stop, and stands
+  there, whatever the ego does.
 
 Both say how fast the person is one step of the prediction later. Seen speeds shift the log odds
 between the two (sequential probability ratio, Wald 1945). Whoever more likely yields is predicted,
-and thereby planned for, with the edge of the way as destination.
+and thereby planned for, with that place as destination.
 """
 
 from math import exp
@@ -18,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.ego.crossers import abreast
-from giveway.geometry.kernel import Array, inner, kernel
+from giveway.geometry.kernel import Array, inlined, inner, kernel
 from giveway.geometry.path import EgoPath, segment_at
 from pedestrian_model import Crowd, Predictor
 
@@ -29,6 +30,7 @@ _REACH = 25.0  # [m] ahead of the front
 _ASIDE = 6.0  # [m] from the edge of the way; from there on nobody slows down for it yet
 _TOWARDS = 0.3  # [m/s] of the wish towards the way, at least: others do not want to cross it
 _EDGE = 0.05  # [m] before the edge of the way is where people stop: rounding leaves nobody on it
+_SWAY = 0.1  # [m] farther than their pace says people may yet come: who stands is not pinned
 _NEVER = -1  # a look that none is
 
 
@@ -49,6 +51,7 @@ class Beliefs:
         # People take up a wish v_d as by f_d = k_des (v_d - v).
         taken_up = 1.0 - exp(-predictor.time_step * walking.destination_gain / walking.mass)
         self._law = half_width, taken_up, walking.destination_smoothing
+        self._step = predictor.time_step
         every = round(predictor.time_step / time_step)
         self._way = path.vertices, path.stations
         self._every, self._look = every, every
@@ -60,6 +63,11 @@ class Beliefs:
     def odds(self, number: int) -> float:
         """The log odds that a person yields."""
         return float(self._odds[number]) if number < len(self._odds) else _PRIOR
+
+    @property
+    def halting(self) -> tuple[NDArray[np.bool_], float, float, float]:
+        """Who yields, as of the latest look, and what :func:`walk_up` needs of the model."""
+        return self._yield, *self._law[1:], self._step
 
     def update(
         self, people: Crowd, numbers: NDArray[np.int64], front: float, expected: Array
@@ -162,12 +170,46 @@ def _update(
             odds[n] = shifted(odds[n], off, slower, was[2] > 0.0)
         if odds[n] > 0.0:
             yields[i] = True
+            pace = max((velocity[i, 0] * to_x + velocity[i, 1] * to_y) / far, 0.0)
+            missing = desired_speed[i] * desired_speed[i] - pace * pace
+            if missing > 0.0:  # slowing down as VCI does towards a destination; where is that?
+                room = min(room, _SWAY + smoothing * pace / np.sqrt(missing))
             for k in range(at, start[i + 1]):
                 waypoints[k, 0] = x + room * to_x / far
                 waypoints[k, 1] = y + room * to_y / far
                 passage[k, 0], passage[k, 1], passage[k, 2] = 0.0, 0.0, 0.0
                 signal[k] = -1
     return -1
+
+
+@inlined
+def walk_up(
+    halting: tuple[Any, ...], at: int, state: Array, scene: Any, position: Array, velocity: Array
+) -> None:
+    """Let those who yield go on for a step as by their wish alone; in place.
+
+    Nobody's push, the ego's least of all, makes room that who stands at the edge does not give.
+
+    Args:
+        halting: see :attr:`Beliefs.halting`.
+        at: where in ``state`` the step before begins.
+        state: by person: x, y [m], v_x, v_y [m/s].
+        scene: of the prediction.
+        position: (n, 2) [m] of everybody after the step.
+        velocity: (n, 2) [m/s].
+    """
+    yields, taken_up, smoothing, dt = halting
+    waypoints, _, _, begin = scene.routes
+    for p in range(position.shape[0]):
+        if not yields[p]:
+            continue
+        base, last = at + 4 * p, begin[p + 1] - 1
+        to_x, to_y = waypoints[last, 0] - state[base], waypoints[last, 1] - state[base + 1]
+        gain = scene.desired_speed[p] / np.sqrt(to_x * to_x + to_y * to_y + smoothing * smoothing)
+        v_x, v_y = state[base + 2], state[base + 3]
+        v_x, v_y = v_x + taken_up * (gain * to_x - v_x), v_y + taken_up * (gain * to_y - v_y)
+        velocity[p, 0], velocity[p, 1] = v_x, v_y
+        position[p, 0], position[p, 1] = state[base] + dt * v_x, state[base + 1] + dt * v_y
 
 
 @inner

@@ -165,6 +165,9 @@ class CrowdForesight:
         if self._beliefs is not None and numbers is not None:
             self._beliefs.update(pedestrians, numbers, front, self._soon)
             self._soon = self._soon[:0]
+            self._halting = self._beliefs.halting
+        else:
+            self._halting = np.zeros(len(pedestrians), dtype=np.bool_), 0.0, 1.0, 0.0
         self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front, self._now = poses, row, front, speed
         self._copied, self._stale, self._preferred = False, True, False
@@ -247,7 +250,7 @@ class CrowdForesight:
         best, clear, tried = run_race(
             (path.vertices, path.stations, path.headings),
             vci.arrays(self._pedestrians, self._surroundings),
-            vci.law,
+            (*vci.law, self._halting),
             self._poses,
             self._row,
             self._front,

@@ -19,6 +19,7 @@ from controller import (
     later_cost,
     own_cost,
 )
+from giveway.ego.belief import walk_up
 from giveway.ego.corridor import set_pose
 from giveway.ego.crossers import fill_crossers
 from giveway.ego.prospects import View, assess_step, interval_of
@@ -122,7 +123,7 @@ def run_race(
     Args:
         path: vertices, stations and headings of the ego's.
         people: what :func:`pedestrian_model.start` takes.
-        law: the numbers of the model.
+        law: the numbers of the model, and :attr:`Beliefs.halting`.
         poses: (M, m, 7) of all vehicles; the ego's row is changed.
         row: the ego's.
         front: its front bumper's station [m].
@@ -295,9 +296,11 @@ def advance(
         station = front + 0.5 * (distance[k, step] + distance[k, late])
         pace = 0.5 * (speed[k, step] + speed[k, late])
         set_pose(vertices, stations, headings, station, pace, View(*view).length, poses[j, row])
-        bad = leap(ahead, scene, poses[j], scratch, *law)
+        bad = leap(ahead, scene, poses[j], scratch, *law[:-1])
         if bad != _FINE:
             return bad
+        if j > 0:  # the first step tells who yields: it is the model's
+            walk_up(law[-1], 4 * (here - n), state, scene, x, v)
         for p in range(n):
             base = 4 * (here + p)
             state[base], state[base + 1] = x[p, 0], x[p, 1]
