@@ -22,7 +22,7 @@ from smoothing_cases import (
     speeds,
 )
 
-from controller import Planner, Prospect
+from controller import Planner, PlannerParameters, Prospect
 from controller._jit import kernel
 from controller.active_set import solve_exactly
 from controller.planning.smoothing import SmoothingProblem, nodes_of
@@ -133,3 +133,33 @@ def test_lanes_speeds_are_kept_to_whatever_the_manoeuvre(crowd):
         speed = MODEL.decay * speed + MODEL.speed_per_force * force
         assert speed <= falling[0] + 1e-3
     assert speed > 5.5
+
+
+class StepsOut:
+    """Somebody for whose sake the ego has to be slow for a while, from 1.2 s ahead on."""
+
+    def __init__(self, horizon, calm):
+        self.nobody = np.full(horizon, np.inf), np.zeros(horizon)
+        self.calm = np.full(horizon, np.inf)
+        self.calm[24:30] = calm
+
+    def prospect(self, manoeuvre):
+        return Prospect(*self.nobody, self.calm)
+
+    def prefer(self):
+        pass
+
+
+@pytest.mark.parametrize(("speed", "heeds"), [(4.0, False), (8.0, True), (12.0, True)])
+def test_the_faster_a_road_is_the_earlier_calm_speeds_are_kept_to(speed, heeds):
+    """At 4 m/s half a second before is soon enough."""
+    parameters = PlannerParameters(reference_speed=speed)
+    parameters = replace(parameters, manoeuvres=replace(parameters.manoeuvres, threat_weight=0.0))
+    horizon = parameters.horizon
+    planner, freely = Planner(MODEL, parameters), MODEL.friction * speed
+    plan = planner.plan(
+        speed, freely, speed, np.full(horizon, np.inf), StepsOut(horizon, speed / 2)
+    )
+    assert plan.found
+    slowest = planner._plan.speed[24:31].min()
+    assert slowest == pytest.approx(speed / 2 if heeds else speed, rel=0.05)
