@@ -292,13 +292,7 @@ class CrowdForesight:
             raise vci.divergence(people, lanes.bad)
         return ended
 
-    def _hedge(
-        self,
-        lanes: Lanes,
-        trials: Trials,
-        heats: Heats,
-        judged: _Judged,
-    ) -> Heats:
+    def _hedge(self, lanes: Lanes, trials: Trials, heats: Heats, judged: _Judged) -> Heats:
         """Of all trials the one that is best where either hypothesis may be true."""
         other = self._otherwise
         assert other is not None
