@@ -27,6 +27,7 @@ from controller.planning import (
     PlannerParameters,
     PlanningController,
     add_cost_of_others,
+    branch_off,
     later_cost,
     own_cost,
 )
@@ -90,6 +91,7 @@ __all__ = [
     "Verdict",
     "WorstMotion",
     "add_cost_of_others",
+    "branch_off",
     "check_controller",
     "later_cost",
     "own_cost",

@@ -1,6 +1,7 @@
 """The planning MPC: a search over manoeuvres, and a QP that smooths the one chosen."""
 
 from controller.planning.costs import add_cost_of_others, later_cost, own_cost
+from controller.planning.motions import branch_off
 from controller.planning.parameters import (
     ATTITUDES,
     AttitudeName,
@@ -18,6 +19,7 @@ __all__ = [
     "PlannerParameters",
     "PlanningController",
     "add_cost_of_others",
+    "branch_off",
     "later_cost",
     "own_cost",
 ]

@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from controller._jit import Array, inner
+from controller._jit import Array, inner, kernel
 
 _EASING = 0.4  # [s] in which an acceleration is taken back before standstill or the wanted speed
 _COMFORT = 1.5  # [m/s^2] of a stop that nobody forces
 _CREEPING = 0.6  # [s] the last of the way, so that the stop has no jolt
+_JERK = 8.0  # [m/s^3] of a branch
 _SLOWING = 3.0  # [m/s^2] with which a speed above the wanted one is given up: as adaptive cruise
 # control does at most (ISO 15622: 3.5 m/s^2 at speed); obstacles have harder manoeuvres
 
@@ -98,6 +99,34 @@ def approach(
         accelerations[i] = (after - v) / time_step
         s += time_step * v
         v = after
+
+
+@kernel
+def branch_off(
+    distance: Array,
+    speeds: Array,
+    accelerations: Array,
+    first: int,
+    braking: float,
+    fastest: float,
+    time_step: float,
+) -> None:
+    """Let a manoeuvre brake from a step on, in place.
+
+    Args:
+        distance: (N + 1,) [m] of it.
+        speeds: (N + 1,) [m/s].
+        accelerations: (N + 1,) [m/s^2].
+        first: the step, > 0.
+        braking: [m/s^2] < 0, down to rest.
+        fastest: [m/s] not exceeded.
+        time_step: [s].
+    """
+    driven, before = distance[first], accelerations[first - 1]
+    tail = distance[first:], speeds[first:], accelerations[first:]
+    aim(speeds[first], before, braking, 0.0, fastest, _JERK, time_step, *tail)
+    for i in range(first, len(distance)):
+        distance[i] += driven
 
 
 @inner

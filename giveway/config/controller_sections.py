@@ -186,6 +186,9 @@ class PlannerConfig(Section):
     belief: bool = option(
         True, None, "who seems to yield is expected to; else everybody to walk on by the preset"
     )
+    contingency: bool = option(
+        True, None, "where it is open who yields, a plan counts with either; else with the likelier"
+    )
     effort_weight: float = option(
         0.02,
         "s",

@@ -13,7 +13,7 @@ and thereby planned for, with that place as destination.
 """
 
 from math import exp
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,18 @@ _ASIDE = 6.0  # [m] from the edge of the way; from there on nobody slows down fo
 _TOWARDS = 0.3  # [m/s] of the wish towards the way, at least: others do not want to cross it
 _EDGE = 0.05  # [m] before the edge of the way is where people stop: rounding leaves nobody on it
 _SWAY = 0.1  # [m] farther than their pace says people may yet come: who stands is not pinned
+_OPEN = 2.0  # log odds nearer to 0 than this leave somebody's intent open
 _NEVER = -1  # a look that none is
+
+Halting = tuple[NDArray[np.bool_], float, float, float]
+
+
+class Otherwise(NamedTuple):
+    """People of whom some do the less likely of two things."""
+
+    people: Crowd  # the ways of those who then yield are changed
+    halting: Halting  # as of :class:`Beliefs`
+    likely: float  # how likely the other hypothesis is, the more likely one
 
 
 class Beliefs:
@@ -42,16 +53,24 @@ class Beliefs:
         half_width: of its corridor [m], the way.
         predictor: of the model by which people walk on.
         time_step: [s] between two looks; the predictor's is some of them.
+        contingency: the other hypothesis about those whose intent is open is told too.
     """
 
     def __init__(
-        self, path: EgoPath, half_width: float, predictor: Predictor, time_step: float
+        self,
+        path: EgoPath,
+        half_width: float,
+        predictor: Predictor,
+        time_step: float,
+        *,
+        contingency: bool = True,
     ) -> None:
         walking = predictor.parameters
         # People take up a wish v_d as by f_d = k_des (v_d - v).
         taken_up = 1.0 - exp(-predictor.time_step * walking.destination_gain / walking.mass)
         self._law = half_width, taken_up, walking.destination_smoothing
         self._step = predictor.time_step
+        self._contingency = contingency
         every = round(predictor.time_step / time_step)
         self._way = path.vertices, path.stations
         self._every, self._look = every, every
@@ -65,9 +84,35 @@ class Beliefs:
         return float(self._odds[number]) if number < len(self._odds) else _PRIOR
 
     @property
-    def halting(self) -> tuple[NDArray[np.bool_], float, float, float]:
+    def halting(self) -> Halting:
         """Who yields, as of the latest look, and what :func:`walk_up` needs of the model."""
         return self._yield, *self._law[1:], self._step
+
+    def weigh(
+        self, people: Crowd, numbers: NDArray[np.int64], front: float, expected: Array
+    ) -> Otherwise | None:
+        """As :meth:`update`; and what if those whose intent is open do the less likely?
+
+        None: nobody's is, or that is no other expectation.
+        """
+        known = self._contingency and len(numbers) and numbers.max() < len(self._odds)
+        intent = np.abs(self._odds[numbers]) < _OPEN if known else np.zeros(1, dtype=np.bool_)
+        other = people.select(np.ones(len(people), dtype=np.bool_)) if intent.any() else None
+        self.update(people, numbers, front, expected)
+        if other is None:
+            return None
+        odds, yields = self._odds.copy(), np.zeros(len(numbers), dtype=np.bool_)
+        odds[numbers[intent]] *= -1.0
+        seen = (*other.state, other.desired_speed, *other.routes)
+        none = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_), np.zeros(0)
+        memory = odds, self._told, self._expected
+        _update(*self._way, front, seen, numbers, _NEVER, none, memory, yields, self._law)
+        differ = yields != self._yield
+        if not differ.any():
+            return None
+        least = float(np.abs(odds[numbers[differ]]).min())
+        halting = yields, *self._law[1:], self._step
+        return Otherwise(other, halting, 1.0 / (1.0 + exp(-least)))
 
     def update(
         self, people: Crowd, numbers: NDArray[np.int64], front: float, expected: Array

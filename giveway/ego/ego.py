@@ -126,7 +126,8 @@ class Ego:
         beliefs = None
         if planner.belief and self.config.perception.model == "vci":
             assert isinstance(predictor, Predictor)
-            beliefs = Beliefs(self.path, self.corridor.half_width, predictor, self._time_step)
+            way = self.path, self.corridor.half_width
+            beliefs = Beliefs(*way, predictor, self._time_step, contingency=planner.contingency)
         return CrowdForesight(
             predictor,
             self.path,

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller import Heats, Manoeuvre, Prospect, Trials, Verdict, WorstMotion
-from giveway.ego.belief import Beliefs
+from giveway.ego.belief import Beliefs, Halting, Otherwise
+from giveway.ego.contingency import hedged
 from giveway.ego.corridor import fill_poses
 from giveway.ego.crossers import fill_crossers
 from giveway.ego.kerbs import NO_KERBS, kerb_lines
@@ -29,6 +30,8 @@ from pedestrian_model import (
 )
 
 _STEP = 0.1  # [s] of the crowd under a manoeuvre, at most: twice the one in which it is simulated
+
+_Judged = tuple[Array, float, tuple[Any, ...]]  # what is allowed, the speed wanted, the weights
 
 
 def steps_at_once(time_step: float, horizon: int) -> int:
@@ -126,6 +129,7 @@ class CrowdForesight:
         self._best = np.empty((M, 0, 2))
         self._poses = np.empty((M, 0, 7))
         self._copied, self._stale, self._preferred = False, True, False
+        self._otherwise: Otherwise | None = None
         self._winner: Array | None = None
         self._lanes: Lanes | None = None
         # Under one speed for all there is one prediction for all: there is nothing to save. Other
@@ -163,10 +167,10 @@ class CrowdForesight:
             self._limits = self._limits._replace(clearance=self._clearance + off)
         self._alarm = (*self._limits[:-1], kerb_lines(pedestrians.position, kerbs))
         if self._beliefs is not None and numbers is not None:
-            self._beliefs.update(pedestrians, numbers, front, self._soon)
-            self._soon = self._soon[:0]
-            self._halting = self._beliefs.halting
+            self._otherwise = self._beliefs.weigh(pedestrians, numbers, front, self._soon)
+            self._halting, self._soon = self._beliefs.halting, self._soon[:0]
         else:
+            self._otherwise = None
             self._halting = np.zeros(len(pedestrians), dtype=np.bool_), 0.0, 1.0, 0.0
         self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front, self._now = poses, row, front, speed
@@ -239,18 +243,40 @@ class CrowdForesight:
         Raises:
             DivergenceError: a predicted state is not finite.
         """
-        vci = self._vci
-        assert vci is not None  # else there is no race
         if not self._copied:
             self._copy()
-        path, n = self._path, len(self._pedestrians)
+        n = len(self._pedestrians)
         lanes = self._lanes
         if lanes is None or lanes.people < n or lanes.count < len(trials.handicap):
             lanes = self._lanes = Lanes(len(trials.handicap), len(allowed), len(self._poses), n)
-        best, clear, tried = run_race(
+        judged = allowed, wanted, weights
+        if self._otherwise is not None:
+            heats, lead = self._hedge(lanes, trials, heats, judged), False
+        best, clear, tried = self._run(
+            lanes, trials, heats, lead, judged, self._pedestrians, self._halting
+        )
+        if best >= 0:
+            self._winner = lanes.positions(best, n)
+            self._soon = lanes.soon(best, n)
+        return lanes.verdict(best, clear, tried)
+
+    def _run(
+        self,
+        lanes: Lanes,
+        trials: Trials,
+        heats: Heats,
+        lead: bool,
+        judged: _Judged,
+        people: Crowd,
+        halting: Halting,
+    ) -> tuple[int, bool, int]:
+        """As :func:`run_race`, with people who do as either hypothesis says."""
+        vci, path = self._vci, self._path
+        assert vci is not None  # else there is no race
+        ended: tuple[int, bool, int] = run_race(
             (path.vertices, path.stations, path.headings),
-            vci.arrays(self._pedestrians, self._surroundings),
-            (*vci.law, self._halting),
+            vci.arrays(people, self._surroundings),
+            (*vci.law, halting),
             self._poses,
             self._row,
             self._front,
@@ -260,16 +286,27 @@ class CrowdForesight:
             lanes.arrays,
             lanes.line_up(heats),
             lead,
-            allowed,
-            wanted,
-            weights,
+            *judged,
         )
         if lanes.bad >= 0:
-            raise vci.divergence(self._pedestrians, lanes.bad)
-        if best >= 0:
-            self._winner = lanes.positions(best, n)
-            self._soon = lanes.soon(best, n)
-        return lanes.verdict(best, clear, tried)
+            raise vci.divergence(people, lanes.bad)
+        return ended
+
+    def _hedge(self, lanes: Lanes, trials: Trials, heats: Heats, judged: _Judged) -> Heats:
+        """Of all trials the one that is best where either hypothesis may be true."""
+        other = self._otherwise
+        assert other is not None
+        time_step = View(*self._view).time_step
+
+        def cost(trials: Trials, row: int, otherwise: bool) -> float:
+            people = other.people if otherwise else self._pedestrians
+            halting = other.halting if otherwise else self._halting
+            self._run(lanes, trials, Heats([row], [], []), False, judged, people, halting)
+            own, others = lanes.arrays[3][:2, row]
+            return float(own + time_step * others + trials.handicap[row])
+
+        rows = list(dict.fromkeys([*heats.first, *heats.content, *heats.wanting]))
+        return Heats([hedged(cost, trials, rows, other.likely, judged[1], time_step)], [], [])
 
     def prefer(self) -> None:
         """Keep the positions under the latest manoeuvre as those of the preferred one."""
