@@ -10,7 +10,7 @@ from typing import Any, TypeVar, cast
 import numba
 import numpy as np
 from llvmlite import ir
-from numba.core import cgutils, types
+from numba.core import types
 from numba.extending import intrinsic, register_jitable
 from numpy.typing import NDArray
 
@@ -90,12 +90,10 @@ def _add_block(_typing: Any, to_array: Any, to: Any, array: Any, at: Any) -> Any
 
 def _uncounted(context: Any, builder: Any, kind: Any, value: Any) -> Any:
     """An array, or all those of a tuple of whatever there is, without whom to tell of a use."""
-    if isinstance(kind, types.BaseTuple):
-        values = cgutils.unpack_tuple(builder, value)
-        parts = [
-            _uncounted(context, builder, part, held)
-            for part, held in zip(kind.types, values, strict=True)
-        ]
+    is_tuple = isinstance(kind, types.BaseTuple)
+    if is_tuple:
+        held = enumerate(kind.types)
+        parts = [_uncounted(context, builder, k, builder.extract_value(value, i)) for i, k in held]
         return context.make_tuple(builder, kind, parts)
     if isinstance(kind, types.Array):
         seen = context.make_array(kind)(context, builder, value)
