@@ -123,8 +123,10 @@ def branch_off(
         time_step: [s].
     """
     driven, before = distance[first], accelerations[first - 1]
-    tail = distance[first:], speeds[first:], accelerations[first:]
-    aim(speeds[first], before, braking, 0.0, fastest, _JERK, time_step, *tail)
+    goals, alone = np.array([[braking, 0.0]]), (1, len(distance) - first)
+    x, v, a = distance[first:], speeds[first:], accelerations[first:]
+    tail = x.reshape(alone), v.reshape(alone), a.reshape(alone)
+    aim(speeds[first], before, goals, fastest, _JERK, time_step, *tail)
     for i in range(first, len(distance)):
         distance[i] += driven
 
