@@ -95,12 +95,12 @@ class Beliefs:
 
         None: nobody's is, or that is no other expectation.
         """
-        known = self._contingency and len(numbers) and numbers.max() < len(self._odds)
-        intent = np.abs(self._odds[numbers]) < _OPEN if known else np.zeros(1, dtype=np.bool_)
-        other = people.select(np.ones(len(people), dtype=np.bool_)) if intent.any() else None
-        self.update(people, numbers, front, expected)
-        if other is None:
+        if not (self._contingency and _is_open(self._odds, numbers)):
+            self.update(people, numbers, front, expected)
             return None
+        intent = np.abs(self._odds[numbers]) < _OPEN
+        other = people.select(np.ones(len(people), dtype=np.bool_))
+        self.update(people, numbers, front, expected)
         odds, yields = self._odds.copy(), np.zeros(len(numbers), dtype=np.bool_)
         odds[numbers[intent]] *= -1.0
         seen = (*other.state, other.desired_speed, *other.routes)
@@ -225,6 +225,17 @@ def _update(
                 passage[k, 0], passage[k, 1], passage[k, 2] = 0.0, 0.0, 0.0
                 signal[k] = -1
     return -1
+
+
+@kernel
+def _is_open(odds: Array, numbers: NDArray[np.int64]) -> bool:
+    """Whether anybody's intent is open, and all are known."""
+    some = False
+    for n in numbers:
+        if n >= odds.size:
+            return False
+        some |= abs(odds[n]) < _OPEN
+    return some
 
 
 @inlined
