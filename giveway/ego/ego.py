@@ -9,9 +9,8 @@ from numpy.typing import NDArray
 from controller import Decision, Observation
 from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
-from giveway.ego.belief import Beliefs
 from giveway.ego.corridor import Corridor
-from giveway.ego.foresight import CrowdForesight
+from giveway.ego.foreseeing import foresight_of
 from giveway.ego.kerbs import NO_KERBS, Kerbs
 from giveway.ego.leader import NO_LEADER, Following
 from giveway.ego.path_view import PathView
@@ -30,12 +29,10 @@ from giveway.geometry.path import EgoPath, Pose
 from giveway.geometry.slope import Slope
 from giveway.records.outputs import ROAD_GRADE
 from giveway.records.rows import STOP_SPEED, EgoRow
-from pedestrian_model import Crowd, Predictor, Surroundings
+from pedestrian_model import Crowd, Surroundings
 
 _BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
-_STRAIGHT = (
-    1.0  # [s] for which other vehicles are predicted straight on; beyond it the road may bend
-)
+_STRAIGHT = 1.0  # [s] for which other vehicles are predicted straight on; then the road may bend
 _LIKELY = 0.75  # of what positions are off at most, as plans count with it: the layer with all
 
 
@@ -70,14 +67,9 @@ class Ego:
     ) -> None:
         config = waiting.config
         self._controller, self._predictor = waiting.controller, waiting.predictor
-        self.config = config
-        self.id = waiting.id
-        self.path = path
-        self.departure = departure
-        self.shape = shape
-        self.way = way
-        self._profile = profile
-        self._slope = slope
+        self.config, self.id, self.shape = config, waiting.id, shape
+        self.path, self.departure, self.way = path, departure, way
+        self._profile, self._slope = profile, slope
         self.has_outputs = bool(waiting.vehicle.record) or slope is not None
         self._time_step = time_step
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
@@ -105,7 +97,7 @@ class Ego:
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
         self._kerbs = kerbs if self._guard is not None else None
         self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
-        self._foresight = self._foresee(waiting)
+        self._foresight = foresight_of(waiting, path, shape, self.corridor.half_width, time_step)
         self._force = 0.0
         self._eases_off = False  # a brake, or drives off
         self._pose: Pose | None = None  # asked for several times at each instant
@@ -116,30 +108,6 @@ class Ego:
             config.regulation.comfortable_deceleration,
             plans=waiting.controller.foresees,
             tuned=config.controller == "pid-tuned",
-        )
-
-    def _foresee(self, waiting: WaitingEgo) -> CrowdForesight | None:
-        """Answers the planning controller how pedestrians would react to a manoeuvre."""
-        planner, predictor = self.config.planner, waiting.predictor
-        if not waiting.controller.foresees or predictor is None:
-            return None
-        beliefs = None
-        if planner.belief and self.config.perception.model == "vci":
-            assert isinstance(predictor, Predictor)
-            way = self.path, self.corridor.half_width
-            beliefs = Beliefs(*way, predictor, self._time_step, contingency=planner.contingency)
-        return CrowdForesight(
-            predictor,
-            self.path,
-            self.shape,
-            horizon=waiting.horizon,
-            time_step=self._time_step,
-            half_width=self.corridor.half_width,
-            planned_speed=planner.planned_speed,
-            clearance=waiting.clearance,
-            braking=self.config.mpc.force_limit / self.config.vehicle.mass,
-            worst=None if waiting.safety is None else waiting.safety.worst,
-            beliefs=beliefs,
         )
 
     @property
