@@ -24,7 +24,7 @@ AFTER = 2.0
 SIGHT = 10.0
 """[m] A cause counts this far in front of the ego."""
 
-_BRIEF = 0.5  # [s] a stand that is shorter is no stop
+_BRIEF, _ROUNDING = 0.5, 1e-6  # [s] who stands without cause for less has only rolled on late
 _ASIDE = 0.5  # [m] beside the ego's way people are on it as well
 _FOE = 9.0  # [s] before another vehicle comes by: the largest critical gap, and time to start
 _ROOM = 3.5  # [m] that the ego wants behind a crossing or a junction, besides its own length
@@ -69,8 +69,6 @@ def stops_without_cause(
     time, found = drive.ego.time, []
     lasting = np.append(np.diff(time), 0.0)
     for begin, end in runs(drive.ego.speed < drive.stop_speed):
-        if lasting[begin:end].sum() < _BRIEF:
-            continue
         front = float(drive.front[begin:end].mean())
         stand = _Stand(front, _sight(drive, areas, front), _foes(drive, front), begin, end)
         caused = np.zeros(len(time), dtype=np.bool_)
@@ -79,8 +77,8 @@ def stops_without_cause(
         for there, before in _causes(drive, stand, owed):
             caused |= spread(time, there, before + BEFORE, AFTER)
         wrong = ~caused[begin:end]
-        if wrong.any():
-            duration = float(lasting[begin:end][wrong].sum())
+        duration = float(lasting[begin:end][wrong].sum())
+        if duration > _BRIEF - _ROUNDING:
             found.append(Uncaused(begin + int(np.argmax(wrong)), duration))
     return found
 
