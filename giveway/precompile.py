@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from llvmlite.binding import get_host_cpu_name
 
-from controller import LongitudinalModel, Mpc, MpcParameters
+from controller import LongitudinalModel, Mpc, MpcParameters, branch_off
 from giveway._kernels.cache import FOLDERS, kernel_cache
 from giveway.processes.child import die_with
 from giveway.processes.interpreter import command
@@ -169,6 +169,7 @@ def _tiny_run() -> None:
     ):
         _run(settings)
     _solve_without_solution()
+    _branch_off()
     _come_and_go()
 
 
@@ -197,6 +198,12 @@ def _solve_without_solution() -> None:
     mpc = Mpc(LongitudinalModel(), MpcParameters())
     ahead = np.full(mpc.parameters.horizon, mpc.parameters.safe_distance + 0.21)
     mpc.solve(0.0, 1.0, 0.0, ahead)
+
+
+def _branch_off() -> None:
+    """A manoeuvre brakes on the way, as where it is open whether somebody yields."""
+    distance, speed, acceleration = np.zeros((3, 4))
+    branch_off(distance, speed, acceleration, 1, -1.0, 4.0, 0.05)
 
 
 def _come_and_go() -> None:
