@@ -122,7 +122,7 @@ def show(controller: str, seed: int, pairs: int, believed: str) -> None:
     print(f"{controller}, 30 pedestrians, {steps} steps of {seconds / steps:.2f} s")
     print(f"  loop / (SUMO moves and steps + FMU steps): {statistics.median(ratios):.2f}")
     print(f"  per step: {elapsed / steps * 1e6:.0f} us; real-time factor {factor:.0f}")
-    print(f"  of which the processor is busy at least {min(busy) / steps * 1e6:.0f} us")
+    print(f"  processor time, start included: {min(busy) / steps * 1e6:.0f} us per step at least")
     for name in Timings.NAMES[:-1]:
         share = statistics.median(r.timing_summary["shares"][name] for r in results)
         print(f"  {name:10} {100 * share:5.1f} %")
