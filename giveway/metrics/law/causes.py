@@ -24,7 +24,6 @@ AFTER = 2.0
 SIGHT = 10.0
 """[m] A cause counts this far in front of the ego."""
 
-_BRIEF, _ROUNDING = 0.5, 1e-6  # [s] who stands without cause for less has only rolled on late
 _ASIDE = 0.5  # [m] beside the ego's way people are on it as well
 _FOE = 9.0  # [s] before another vehicle comes by: the largest critical gap, and time to start
 _ROOM = 3.5  # [m] that the ego wants behind a crossing or a junction, besides its own length
@@ -77,8 +76,8 @@ def stops_without_cause(
         for there, before in _causes(drive, stand, owed):
             caused |= spread(time, there, before + BEFORE, AFTER)
         wrong = ~caused[begin:end]
-        duration = float(lasting[begin:end][wrong].sum())
-        if duration > _BRIEF - _ROUNDING:
+        if wrong.any():
+            duration = float(lasting[begin:end][wrong].sum())
             found.append(Uncaused(begin + int(np.argmax(wrong)), duration))
     return found
 

@@ -46,10 +46,9 @@ def test_a_stop_for_nothing_is_found_once():
     assert event.value == pytest.approx(4.2, abs=0.1)
 
 
-@pytest.mark.parametrize(("lasts", "stops"), [(0.2, 0), (0.6, 1)])
-def test_who_only_slows_down_for_a_moment_has_not_stopped(lasts, stops):
-    track = to_a_stand(30.0, (lasts, 0.0), (6.0, 1.5))
-    assert judged(track=track).summary.stops_without_cause == stops
+def test_a_moment_without_a_cause_counts():
+    track = to_a_stand(30.0, (0.2, 0.0), (6.0, 1.5))
+    assert judged(track=track).summary.stops_without_cause == 1
 
 
 def test_a_drive_without_a_stop_has_none():
