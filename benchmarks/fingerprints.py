@@ -27,6 +27,7 @@ SEVERAL_EGOS = [
     {"ego": {"take_over": ["eastbound.0"]}, "controller": "mpc-paper"},
     {"ego": {"id": "shuttle", "depart_time": 8.0}},
 ]
+SLOWLY = {"reference_speed": 4.0}  # as before lanes said how fast: older states are comparable
 #: What is run: four controllers, three scenarios, SUMO steps of 1 s, 0.1 s and 0.05 s, several
 #: egos, an FMU that is not ours, walkers that are taken over, walls, noise, exact integration.
 RUNS: dict[str, dict[str, Any]] = {
@@ -39,18 +40,28 @@ RUNS: dict[str, dict[str, Any]] = {
         "vehicle": {"fmu": "fmi3", "exact": True},
         "seed": 2,
     },
-    "street, SUMO steps of 1 s": {"scenario": "street", "crowd": {"pedestrians": 20}},
+    "street, SUMO steps of 1 s": {
+        "scenario": "street",
+        "crowd": {"pedestrians": 20},
+        "regulation": SLOWLY,
+    },
     "street, SUMO steps of 0.05 s": {
         "scenario": "street",
         "controller": "mpc-paper",
         "crowd": {"pedestrians": 20},
         "sumo": {"step_length": 0.05},
     },
-    "junction, walls": {"scenario": "junction", "crowd": {"walls": True}, "time_limit": 25.0},
+    "junction, walls": {
+        "scenario": "junction",
+        "crowd": {"walls": True},
+        "regulation": SLOWLY,
+        "time_limit": 25.0,
+    },
     "junction, several egos": {
         "scenario": "junction",
         "egos": SEVERAL_EGOS,
         "crowd": {"zone": "everywhere"},
+        "regulation": SLOWLY,
         "time_limit": 40.0,
     },
     "an FMU that is not ours": {"crowd": {"pedestrians": 20}, "vehicle": {"fmu": "FOREIGN"}},

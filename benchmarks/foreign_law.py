@@ -73,7 +73,6 @@ def drive(scenario: Path, ego: str, seed: int) -> dict[str, Any]:
     settings = {
         "scenario": str(scenario),
         "ego": inserted if "," in ego else {"take_over": [ego]},
-        "regulation": {"reference_speed": "lane"},
         "sumo": {"seed": seed},
         "seed": seed,
         "time_limit": LIMIT,

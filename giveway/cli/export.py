@@ -79,7 +79,7 @@ def _of_all(config: RunConfig, time_step: float) -> ControllerParameters:
 
 def _parameters(config: EgoRunConfig, time_step: float) -> ControllerParameters:
     """The parameters of one ego's controller."""
-    if config.regulation.reference_speed == LANE:
+    if config.reference_speed == LANE:
         msg = f"[regulation] reference_speed = {LANE}: an exported controller knows no lanes"
         raise ConfigError(f"{msg}; give a speed, like --regulation-reference-speed 8 [m/s]")
     own = make_controller(config, time_step)

@@ -30,7 +30,7 @@ def setup_of(config: EgoRunConfig, time_step: float) -> Setup:
         time_step: of the co-simulation [s].
     """
     vehicle, regulation = config.vehicle, config.regulation
-    speed = regulation.reference_speed
+    speed = config.reference_speed
     return Setup(
         time_step=time_step,
         mass=vehicle.mass,

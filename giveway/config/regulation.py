@@ -4,6 +4,7 @@ from typing import Literal
 
 from giveway.config.option import Section, SpeedOrLane, option
 from giveway.config.reasons import MILLIMETRE, TYRES
+from giveway.config.sections import DEFAULT_SPEED
 
 CORRIDOR_MARGIN = 0.25
 """[m] The corridor of a vehicle is wider than its body by this much on each side."""
@@ -12,10 +13,11 @@ CORRIDOR_MARGIN = 0.25
 class RegulationConfig(Section):
     """What both controllers aim at, and who counts as being in front."""
 
-    reference_speed: SpeedOrLane = option(
-        4.0,
+    reference_speed: SpeedOrLane | None = option(
+        None,
         "m/s",
-        "desired speed v_r, or 'lane': the limit of the lane under the ego, less in bends",
+        "desired speed v_r, or 'lane': the limit of the lane under the ego, less in bends. Left "
+        f"out: lane, but {DEFAULT_SPEED:g} m/s for the paper's controllers",
         least=0.1,
         because="slower than that nobody says whether it drives; no car is faster",
     )

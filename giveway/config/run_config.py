@@ -5,7 +5,7 @@ The TOML file, the command line's flags and the Python API are all derived from 
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     BeforeValidator,
@@ -25,11 +25,12 @@ from giveway.config.controller_sections import (
 )
 from giveway.config.crowd import CrowdConfig
 from giveway.config.measures import MeasureConfig, read_measures
-from giveway.config.option import Section, expectation, option
+from giveway.config.option import LANE, Section, expectation, option
 from giveway.config.perception import PerceptionConfig
 from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
 from giveway.config.regulation import RegulationConfig
 from giveway.config.sections import (
+    DEFAULT_SPEED,
     EgoConfig,
     RecordConfig,
     SumoConfig,
@@ -194,6 +195,14 @@ class RunConfig(Section):
             raise ValueError(f"egos[{number}]: {key} = {first['input']!r}: {expected}") from None
 
     @property
+    def reference_speed(self) -> float | Literal["lane"]:
+        """How fast an ego drives where nothing is in its way [m/s]; "lane": as its lanes say."""
+        wanted = self.regulation.reference_speed
+        if wanted is not None:
+            return wanted
+        return DEFAULT_SPEED if self.controller.endswith("-paper") else LANE
+
+    @property
     def heeds_priority(self) -> bool:
         """Whether the law of the road holds: an ego gives way by it, people rely on it."""
         priority = self.regulation.priority
@@ -296,7 +305,7 @@ class EgoRunConfig(RunConfig):
         """
         low, high = self.mpc.speed_min, self.mpc.speed_max
         for key, speed in (
-            ("[regulation] reference_speed", self.regulation.reference_speed),
+            ("[regulation] reference_speed", self.reference_speed),
             ("[ego] initial_speed", self.ego.initial_speed),
         ):
             if speed is None or isinstance(speed, str):

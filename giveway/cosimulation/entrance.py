@@ -266,7 +266,7 @@ class Entrance:
             name=config.ego_id,
             length=shape.length,
             gap=_standing_gap(regulation),
-            fastest=float(regulation.reference_speed) if profile is None else profile.fastest,
+            fastest=float(config.reference_speed) if profile is None else profile.fastest,
             critical_gap=regulation.critical_gap,
             follow_up_gap=regulation.follow_up_gap,
         )
@@ -344,7 +344,7 @@ def initial_speed(ego: WaitingEgo, lane_path: LanePath) -> float:
     speed = ego.config.ego.initial_speed
     if speed is not None:
         return speed
-    by_lane = ego.config.regulation.reference_speed == LANE
+    by_lane = ego.config.reference_speed == LANE
     return min(DEFAULT_SPEED, lane_path.limits[0].speed) if by_lane else DEFAULT_SPEED
 
 

@@ -19,7 +19,7 @@ def free_drive(config: RunConfig, path: EgoPath | None) -> FreeDrive | None:
     if path is None:
         return None
     own = next((ego for ego in config.each_ego() if not ego.ego.take_over), config)
-    ego, wanted = own.ego, own.regulation.reference_speed
+    ego, wanted = own.ego, own.reference_speed
     speed = (ego.initial_speed or DEFAULT_SPEED) if wanted == LANE else float(wanted)
     distance = ego.travel_distance or path.length - ego.depart_position
     return FreeDrive(path, ego.depart_position, distance, speed)

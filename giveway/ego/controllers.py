@@ -50,10 +50,11 @@ def make_controller(
     Raises:
         ControlError: its parameters contradict each other, or its solver is missing.
     """
-    if config.regulation.reference_speed == LANE:
-        own = {"reference_speed": config.mpc.speed_max if fastest is None else fastest}
-        regulation = config.regulation.model_copy(update=own)
-        config = config.model_copy(update={"regulation": regulation})
+    speed: float = config.mpc.speed_max if fastest is None else fastest
+    if config.reference_speed != LANE:
+        speed = config.reference_speed
+    regulation = config.regulation.model_copy(update={"reference_speed": speed})
+    config = config.model_copy(update={"regulation": regulation})
     try:
         if config.plugged_in:
             return plugged_in(config, time_step)

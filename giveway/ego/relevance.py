@@ -67,7 +67,7 @@ class Nearby:
         config = waiting.config
         self._path, self._span = path, span
         self._gain = config.mpc.force_limit / config.vehicle.mass / 2.0 * span * span
-        wanted = config.regulation.reference_speed
+        wanted = config.reference_speed
         self._wanted = config.mpc.speed_max if isinstance(wanted, str) else wanted
         self._behind, self._ahead = length, config.regulation.safe_distance
         self._margin = half_width + MARGIN

@@ -132,7 +132,7 @@ def profile_of(
         ScenarioError: there are no lanes along the path.
     """
     config = ego.config
-    if config.regulation.reference_speed != LANE:
+    if config.reference_speed != LANE:
         return None
     if not limits:
         raise ScenarioError(

@@ -149,7 +149,7 @@ class EgoResult:
         """The drive in one row."""
         config = self.config
         body = self.shape, self.body_radius
-        set_speed = config.regulation.reference_speed
+        set_speed = config.reference_speed
         reference = None if set_speed == LANE else float(set_speed)
         figures = summarise(
             self.track,

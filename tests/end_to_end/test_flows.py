@@ -31,7 +31,12 @@ ACROSS = {
     "rate": 1800.0,
     "begin": -10.0,
 }
-STREET = {"scenario": "street", "seed": 3, "crowd": {"pedestrians": 0, "flow": [ACROSS]}}
+STREET = {
+    "scenario": "street",
+    "seed": 3,
+    "crowd": {"pedestrians": 0, "flow": [ACROSS]},
+    "regulation": {"reference_speed": 4.0},  # long enough for many to come
+}
 
 
 def with_crowd(config: dict, **crowd: object) -> dict:

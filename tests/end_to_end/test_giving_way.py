@@ -6,6 +6,7 @@ people cross it on theirs.
 
 import giveway
 
+SLOWLY = 4.0  # [m/s] so that both drives come when people are there
 ZEBRA = (58.0, 62.0)  # [m] from where to where along the road (x)
 WAY = (-1.75 - 1.3, -1.75 + 1.3)  # [m] the body's way over it (y), and a body's radius
 
@@ -15,7 +16,7 @@ def in_the_way(priority):
     run = {
         "scenario": "junction",
         "seed": 8,
-        "regulation": {"priority": priority},
+        "regulation": {"priority": priority, "reference_speed": SLOWLY},
         "ego": {"depart_time": 114.0, "depart_position": 10.0, "travel_distance": 55.0},
     }
     run["ego"]["route"] = ["east_out", "far_east_out"]  # from behind the junction on
@@ -44,7 +45,8 @@ TURN = (-1.75 - 2.3, -1.75 + 2.3)  # [m] the body's way over it (x), and a body'
 def turning(priority):
     """When the ego's front comes onto the southern crossing, and who is in its way there then."""
     ego = {"route": ["west_in", "south_out"], "depart_time": 82.0, "depart_position": 70.0}
-    run = {"scenario": "junction", "seed": 11, "regulation": {"priority": priority}}
+    regulation = {"priority": priority, "reference_speed": SLOWLY}
+    run = {"scenario": "junction", "seed": 11, "regulation": regulation}
     result = giveway.run(run | {"ego": ego | {"travel_distance": 70.0}})
     ego = result.ego
     onto = ego.time[ego.y <= ARM[1]].iloc[0]

@@ -43,7 +43,7 @@ def cross(tmp_path_factory):
             {
                 "scenario": str(folder / "one.sumocfg"),
                 "controller": controller,
-                "regulation": {"priority": priority},
+                "regulation": {"priority": priority, "reference_speed": 4.0},
                 "crowd": {"zone": "everywhere"},
                 "record": {"near": 200.0, "far_period": 0.05},
                 "time_limit": 25.0,

@@ -270,7 +270,11 @@ def crowded(
 ) -> tuple[RunResult, Look]:
     """A minute of the city in which everybody on foot is ours, and one of its cars."""
     return drive(
-        city(0.1), ego={"take_over": ("car10",)}, crowd={"zone": "everywhere"}, time_limit=60.0
+        city(0.1),
+        ego={"take_over": ("car10",)},
+        crowd={"zone": "everywhere"},
+        regulation={"reference_speed": 4.0},  # there for the whole minute
+        time_limit=60.0,
     )
 
 

@@ -143,7 +143,7 @@ def test_diagonals_bends_and_another_network_without_anything_for_pedestrians(
 
 def test_a_left_turn_begins_on_the_left_lane(drive: Drive, city: Callable[[float], Path]) -> None:
     ego = {"route": ("A1B1", "B1B2"), "lane": 1, "travel_distance": 120.0}
-    regulation = {"traffic_lights": False, "vehicles": False}
+    regulation = {"traffic_lights": False, "vehicles": False, "reference_speed": 4.0}
     result, look = drive(city(0.1), ego=ego, regulation=regulation, **NOBODY)
     track = result.ego_track
     on_edge = track.front_x < look.lanes["A1B1_1"][-1, 0]

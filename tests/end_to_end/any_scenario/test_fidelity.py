@@ -126,7 +126,8 @@ def test_without_an_end_a_run_ends_when_everybody_has_arrived(
         end=-1,
     )
     for ego in ({"none": True}, {"take_over": ("car",)}):
-        result, look = drive(config, ego=ego, crowd={"zone": "everywhere"})
+        slowly = {"reference_speed": 4.0}
+        result, look = drive(config, ego=ego, crowd={"zone": "everywhere"}, regulation=slowly)
         assert 15.0 < result.time[-1] < 150.0
         if ego == {"none": True}:
             assert result.ending is Ending.SCENARIO_END

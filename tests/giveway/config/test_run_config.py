@@ -31,7 +31,7 @@ def explain(values: dict, *, flags: bool = False) -> str:
 
 
 def test_defaults_are_the_papers_table() -> None:
-    config = RunConfig()
+    config = RunConfig(controller="mpc-paper")
     assert (config.vehicle.mass, config.vehicle.friction) == (1000, 100)
     assert (config.mpc.force_limit, config.mpc.force_rate_limit, config.mpc.horizon) == (
         8000,
@@ -40,7 +40,7 @@ def test_defaults_are_the_papers_table() -> None:
     )
     assert (config.mpc.speed_min, config.mpc.speed_max) == (0, 20)
     assert (config.pid.integral_gain, config.pid.derivative_gain) == (10, 100)
-    assert (config.regulation.reference_speed, config.regulation.safe_distance) == (4, 8)
+    assert (config.reference_speed, config.regulation.safe_distance) == (4, 8)
     assert config.pid.buffer_distance == 10
 
 

@@ -23,14 +23,15 @@ from controller import (
 from fmus.sources.parameters import ControllerParameters
 from giveway.config import EgoRunConfig
 from giveway.config.controller_sections import PlannerConfig, SafetyConfig
+from giveway.config.option import LANE
 from giveway.config.sections import DEFAULT_SPEED
-from giveway.ego.controllers import filled, manoeuvres_of
+from giveway.ego.controllers import filled, make_controller, manoeuvres_of
 from giveway.ego.waiting import safety_parameters
 from giveway.geometry.bodies import BODY
 from pedestrian_model import SIM
 
 STEP = 0.05  # [s]
-CONFIG = EgoRunConfig()
+CONFIG = EgoRunConfig.model_validate({"regulation": {"reference_speed": DEFAULT_SPEED}})
 
 
 @pytest.mark.parametrize(
@@ -57,7 +58,6 @@ def test_the_paper_s_gains_are_the_configurations():
         gains.derivative_gain,
     )
     assert PlannerParameters().horizon == round(CONFIG.planner.horizon / STEP)
-    assert CONFIG.regulation.reference_speed == DEFAULT_SPEED
 
 
 def test_the_safety_layers_defaults_are_the_configurations_and_the_people_s():
@@ -83,6 +83,21 @@ def test_the_exported_controllers_defaults_are_the_configurations():
     assert {name: exported[name] for name in shared} == {name: ours[name] for name in shared}
 
 
+def test_lanes_say_how_fast_but_not_to_the_paper_s_controllers():
+    for name in ("mpc", "pid-tuned", "idm", "package:Driver"):
+        assert EgoRunConfig(controller=name).reference_speed == LANE
+    for name in ("mpc-paper", "pid-paper"):
+        assert EgoRunConfig(controller=name).reference_speed == DEFAULT_SPEED
+        told = EgoRunConfig.model_validate(
+            {"controller": name, "regulation": {"reference_speed": "lane"}}
+        )
+        assert told.reference_speed == LANE
+    planner = make_controller(EgoRunConfig(), STEP, 9.5).planner
+    assert planner.parameters.reference_speed == 9.5
+    paper = make_controller(EgoRunConfig(controller="pid-paper"), STEP, None)
+    assert paper.pid.parameters.reference_speed == DEFAULT_SPEED
+
+
 def test_an_attitude_sets_what_the_options_leave_out():
     assert manoeuvres_of(PlannerConfig()) == ManoeuvreParameters()
     chosen = PlannerConfig.model_fields["attitude"].annotation
@@ -95,6 +110,8 @@ def test_an_attitude_sets_what_the_options_leave_out():
 
 
 def test_an_option_reaches_the_parameter_of_its_name():
-    config = EgoRunConfig.model_validate({"mpc": {"force_limit": 5000.0}})
+    config = EgoRunConfig.model_validate(
+        {"mpc": {"force_limit": 5000.0}, "regulation": {"reference_speed": 4.0}}
+    )
     assert filled(PidParameters, config.regulation, config.pid, config.mpc).force_limit == 5000.0
     assert filled(PidParameters, config.mpc, force_limit=6000.0).force_limit == 6000.0

@@ -118,7 +118,7 @@ def test_the_cap_is_the_model_s_and_the_safety_layer_s(own, fastest):
 
 
 def test_a_number_asks_for_no_profile():
-    config = EgoRunConfig()
+    config = EgoRunConfig.model_validate({"regulation": {"reference_speed": 4.0}})
     with ExitStack() as stack:
         ego = make_waiting_ego(config, make_controller(config, 0.05), 0.05, stack)
         assert profile_of(ego, STRAIGHT, DROP, 0.0, 5.0, math.inf, 0.05) is None
