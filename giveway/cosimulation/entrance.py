@@ -248,6 +248,7 @@ class Entrance:
             gap=_standing_gap(regulation),
             kerb_distance=regulation.kerb_distance,
             kerb_time=regulation.kerb_time,
+            change_of=self._session.signal_plans.change,
         )
 
     def _right_of_way(

@@ -8,7 +8,7 @@ vehicle ahead keeps it from leaving (art. 18.2).
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -35,6 +35,7 @@ from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
+from giveway.sumo.signal_plans import SignalChange
 from pedestrian_model import Crowd
 
 _SAMPLE, _COARSE = 0.1, 2.0  # [m] between the places of the body that are looked at
@@ -151,7 +152,9 @@ class Crossings:
         gap: that it keeps behind a vehicle that stands [m].
         kerb_distance: [m] from the kerb, from which on somebody who heads for a crossing is about
             to enter it.
-        kerb_time: [s] before they are there, from which on they are as well.
+        kerb_time: [s] before they are there, from which on they are as well, unless their light
+            turns red before.
+        change_of: the next change of a traffic light by its id; None: nobody can tell.
 
     Attributes:
         systems: SUMO's ids of the traffic lights that govern them.
@@ -165,7 +168,9 @@ class Crossings:
         gap: float,
         kerb_distance: float,
         kerb_time: float,
+        change_of: Callable[[str], SignalChange | None] = lambda _: None,
     ) -> None:
+        self._change_of = change_of
         self._crossings = tuple(crossings)
         self._length, self._room = length, length + gap
         self._kerb_distance, self._kerb_time = kerb_distance, kerb_time
@@ -259,14 +264,25 @@ class Crossings:
         coming = (aside <= 0.0) & have_priority(use, opened)
         coming |= ~use.on & (turning != 0.0) & opened
         direction = np.where(turning != 0.0, turning, np.where(use.onward >= 0.0, 1.0, -1.0))
+        pace = np.maximum(crowd.desired_speed[rows], 0.1)
+        if opened and (coming & ~use.on).any():
+            to_kerb = np.where(direction > 0.0, -u, u - place.length) + aside
+            in_time = np.maximum(self._kerb_distance, pace * self._open_for(place))
+            coming &= use.on | (to_kerb <= in_time)
         to_go = np.where(direction > 0.0, place.low - u, u - place.high) + aside
         to_leave = np.where(direction > 0.0, place.high - u, u - place.low) + aside
-        pace = np.maximum(crowd.desired_speed[rows], 0.1)
         arrives, leaves = to_go / pace, to_leave / pace
         enters, clears = self._own_times(place, front, speed)
         first = leaves + (_BEFORE if speed > CRAWLING else _AFTER) < enters
         later = arrives > max(clears + _BEFORE, _PATIENCE) + sure
         return bool((coming & (to_leave > 0.0) & ~first & ~later).any())
+
+    def _open_for(self, place: PathCrossing) -> float:
+        """How long [s] a crossing is open to people yet, as far as anybody can tell."""
+        change = self._change_of(place.system) if place.system else None
+        if change is None or is_open(change.state, place.link, zebra=place.zebra):
+            return math.inf
+        return change.time
 
     def _own_times(self, place: PathCrossing, front: float, speed: float) -> tuple[float, float]:
         """When [s] the ego would enter the crossing and have left it, if it went on."""

@@ -32,6 +32,7 @@ from giveway.sumo.junctions import Junctions
 from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import direct, import_libsumo
 from giveway.sumo.persons import ScenarioPersons
+from giveway.sumo.signal_plans import SignalPlans
 from giveway.sumo.stderr import NativeStderr, of_others
 from giveway.sumo.types import PEDESTRIAN_TYPE
 from giveway.sumo.vehicles import SumoVehicles
@@ -94,6 +95,7 @@ class SumoSession:
         self._move_vehicle = direct(self._sumo, "vehicle", "moveToXY")
         self._vehicle_position = direct(self._sumo, "vehicle", "getPosition")
         self._light_state = direct(self._sumo, "trafficlight", "getRedYellowGreenState")
+        self.signal_plans = SignalPlans(self._sumo)
         self._moves_pending = False
         self.lanes = Lanes(self._sumo, self._config_file)
         self.junctions = Junctions(self._sumo, scenario.net_file, self.lanes)

@@ -20,6 +20,7 @@ from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
+from giveway.sumo.signal_plans import SignalChange
 from pedestrian_model import Crowd
 
 SHAPE = VehicleShape(length=5.0, width=2.0)
@@ -30,13 +31,14 @@ NOBODY = Crowd.empty()
 SOUTHERN_KERB, NORTHERN_KERB = -3.5, 3.5
 
 
-def crossings(zebra=True, light="", kerb_distance=1.5, kerb_time=0.0):
+def crossings(zebra=True, light="", kerb_distance=1.5, kerb_time=0.0, change=None):
     ends = np.array([[22.0, NORTHERN_KERB], [22.0, SOUTHERN_KERB]])
     crossing = Crossing(":j_c0_0", ends, 4.0, zebra, "tls" if light else "", 0 if light else -1)
     path = EgoPath.through([(0.0, LANE), (60.0, LANE)])
     found = crossings_on(path, SHAPE, [crossing])
     near = {"kerb_distance": kerb_distance, "kerb_time": kerb_time}
-    watched = Crossings(found, length=SHAPE.length, gap=1.0, **near)
+    own = {**near, "change_of": {"tls": change}.get}
+    watched = Crossings(found, length=SHAPE.length, gap=1.0, **own)
     if light:
         watched.update({"tls": light})
     return watched
@@ -192,6 +194,22 @@ def test_who_walks_along_the_road_and_is_going_to_turn_in(x, then, stops):
     corner = (22.0, -4.0)
     walks = Crowd.create([[x, -4.5]], [[1.4, 0.0]], 1.4, [[corner, then]])
     assert (crossings(kerb_time=3.5).stop_at(NEAR, 4.0, walks) < math.inf) == stops
+
+
+@pytest.mark.parametrize(
+    ("y", "change", "stops"),
+    [
+        (-6.3, None, True),  # 2 s from the kerb, green for as long as anybody knows
+        (-6.3, SignalChange(3.0, "r"), True),
+        (-6.3, SignalChange(1.0, "r"), False),  # their light will be red before they are there
+        (-6.3, SignalChange(1.0, "G"), True),  # or green in the next phase, too
+        (-4.9, SignalChange(0.1, "r"), True),  # at the kerb nobody relies on that
+        (-3.0, SignalChange(0.1, "r"), True),  # who is on the crossing may finish
+    ],
+)
+def test_who_will_find_their_light_red_is_not_waited_for(y, change, stops):
+    watched = crossings(zebra=False, light="G", kerb_time=2.5, change=change)
+    assert (watched.stop_at(NEAR, 4.0, walker(y)) < math.inf) == stops
 
 
 def test_who_waits_before_two_crossings_for_the_second_one_stays_as_sure():
