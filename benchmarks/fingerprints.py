@@ -44,6 +44,7 @@ RUNS: dict[str, dict[str, Any]] = {
         "scenario": "street",
         "crowd": {"pedestrians": 20},
         "regulation": SLOWLY,
+        "sumo": {"step_length": 1.0},
     },
     "street, SUMO steps of 0.05 s": {
         "scenario": "street",

@@ -35,6 +35,12 @@ _HELP: Final = "from giveway.precompile import help_compiling; help_compiling(*a
 _PEOPLE: Final = {"pedestrians": 3, "spawn_area": (8.0, -3.0, 12.0, 3.0)}
 _FREE: Final[dict[str, Any]] = {"time_limit": 0.2, "crowd": {"pedestrians": 0}}
 _PLANNING: Final[dict[str, Any]] = {"time_limit": 0.2, "crowd": _PEOPLE, "twin": True}
+_STREET: Final[dict[str, Any]] = {
+    "time_limit": 1.2,
+    "scenario": "street",
+    "controller": "pid-paper",
+    "sumo": {"step_length": 1.0},  # in which its cars follow their lanes by our own kernels
+}
 # In this order two processes hardly compile the same: the crowd, and the race, which predicts it,
 # in one; the vehicle, its plans, what is measured and the other controllers in the other.
 _WALKS: Final[tuple[dict[str, Any], ...]] = (
@@ -44,7 +50,7 @@ _WALKS: Final[tuple[dict[str, Any], ...]] = (
 )
 _OTHERS: Final[tuple[dict[str, Any], ...]] = (
     _FREE,
-    {"time_limit": 1.2, "scenario": "street", "controller": "pid-paper"},
+    _STREET,
     {
         "time_limit": 0.3,
         "scenario": "junction",
@@ -164,7 +170,7 @@ def _tiny_run() -> None:
         {"time_limit": 0.2, "crowd": _PEOPLE, "planner": hard},
         {"time_limit": 0.2, "crowd": {"pedestrians": 0}, "controller": "mpc-paper"},
         {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "mpc-paper"},
-        {"time_limit": 1.2, "scenario": "street", "controller": "pid-paper"},
+        _STREET,
         {"time_limit": 0.3, "scenario": "junction", "crowd": {"walls": True}},
     ):
         _run(settings)

@@ -14,6 +14,7 @@ from giveway.scenario_files import STRIPING, ScenarioFiles, read_scenario
 from giveway.scenario_files.outputs import is_file
 from sumo_scenarios import ScenarioError, find
 
+_BLINK: Final = 0.5  # [s] in which somebody may step before a car that looks once in each
 _CONTROL_STEP: Final = 0.05  # [s] at most; a run takes the longest step that divides SUMO's
 _NETWORK_VERSION: Final = (1, 20)  # what SUMO 1.28's netconvert writes
 _OLDEST_NETWORK: Final = (1, 0)  # before it, walkingareas and lefthand mean something else
@@ -131,9 +132,11 @@ def _time(files: ScenarioFiles) -> list[Finding]:
         remedy = "SUMO cuts it off; use whole milliseconds"
         findings = [warning("step length", f"{text} is no whole number of ms", remedy)]
     else:
-        findings = [
-            ok("step length", f"{text}, {substeps} control step(s) of {step / substeps:.4g} s")
-        ]
+        text = f"{text}, {substeps} control step(s) of {step / substeps:.4g} s"
+        findings = [ok("step length", text)]
+        if step > _BLINK:
+            remedy = "--sumo-step-length 0.1 lets its vehicles brake for people in time"
+            findings = [note("step length", f"{text}; SUMO's vehicles look once in each", remedy)]
     if files.end is None:
         text = f"from {files.begin:.12g} s, with no end"
         findings.append(note("time", text, "a run ends with its own --time-limit"))

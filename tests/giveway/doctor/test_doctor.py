@@ -110,6 +110,17 @@ def test_a_scenario_without_people_gets_a_place_for_some(
     assert [word.partition("=")[0] for word in words[6:]] == ["--spawn-area", "--walk"]
 
 
+@pytest.mark.parametrize(("step", "level"), [("1", "note"), ("0.5", "ok"), ("0.1", "ok")])
+def test_steps_in_which_cars_look_only_once_are_noted(
+    small_scenario: Callable[..., Path], step: str, level: str
+) -> None:
+    finding = about(
+        examine_scenario(small_scenario(f'<step-length value="{step}"/>')), "step length"
+    )
+    assert finding.level == level
+    assert ("--sumo-step-length 0.1" in finding.remedy) == (level == "note")
+
+
 def test_what_a_run_would_change_is_noted(small_scenario: Callable[..., Path]) -> None:
     config = small_scenario(
         '<pedestrian.model value="nonInteracting"/><random value="true"/>',
