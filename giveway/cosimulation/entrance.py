@@ -172,6 +172,7 @@ class Entrance:
             self._crossings(config, path, shape),
             self._right_of_way(config, junctions, shape, profile),
             self._merges(config, path, lane_path, shape, departure),
+            self._kerbs(ego, path, shape),
         )
         slope = Slope.through(lane_path.heights)
         if slope is not None and not ego.recorded:
@@ -186,7 +187,6 @@ class Entrance:
             self._time_step,
             profile,
             slope,
-            self._kerbs(ego, path, shape),
         )
 
     def _remark_on_slope(self, ego: WaitingEgo, slope: Slope) -> None:
@@ -203,7 +203,8 @@ class Entrance:
         network = self._network
         if network is None or ego.safety is None or ego.safety.setting_out == math.inf:
             return None
-        kerbs = Kerbs(path, shape.width, network.sidewalks, self._session.lanes.crossings)
+        crossings, change_of = self._session.lanes.crossings, self._session.signal_plans.change
+        kerbs = Kerbs(path, shape.width, network.sidewalks, crossings, change_of)
         return kerbs if kerbs else None
 
     def _lights(self, config: EgoRunConfig, lane_path: LanePath, hardest: float) -> Lights | None:

@@ -11,7 +11,7 @@ from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foreseeing import foresight_of
-from giveway.ego.kerbs import NO_KERBS, Kerbs
+from giveway.ego.kerbs import NO_KERBS
 from giveway.ego.leader import NO_LEADER, Following
 from giveway.ego.path_view import PathView
 from giveway.ego.relevance import Nearby, Relevance
@@ -49,7 +49,6 @@ class Ego:
         time_step: [s].
         profile: its speed where nothing is in its way; None: the controller's own.
         slope: of the path; None: it is level.
-        kerbs: beside its path; None: there is no sidewalk.
     """
 
     def __init__(
@@ -63,7 +62,6 @@ class Ego:
         time_step: float,
         profile: SpeedProfile | None = None,
         slope: Slope | None = None,
-        kerbs: Kerbs | None = None,
     ) -> None:
         config = waiting.config
         self._controller, self._predictor = waiting.controller, waiting.predictor
@@ -95,7 +93,7 @@ class Ego:
         perception = Perception(config, waiting.worst.acceleration, time_step)
         self._perception = None if perception.exact else perception
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
-        self._kerbs = kerbs if self._guard is not None else None
+        self._kerbs = way.kerbs if self._guard is not None else None
         self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
         self._foresight = foresight_of(waiting, path, shape, self.corridor.half_width, time_step)
         self._force = 0.0
@@ -166,9 +164,9 @@ class Ego:
         if perception is not None:
             crowd = perception.observe(truth, numbers)
             errors = perception.errors
-        kerbs, hasty = NO_KERBS, NOBODY
+        kerbs, hasty, expected = NO_KERBS, NOBODY, NO_KERBS
         if self._kerbs is not None:
-            kerbs = self._kerbs.of(crowd.position, front)
+            kerbs, expected = self._kerbs.of(crowd.position, crowd.velocity, front)
             hasty = self._setting_out.beyond(numbers, crowd.velocity, kerbs)
         pedestrian, reachable = corridor.closest_now(crowd.position, front)
         closest = pedestrian
@@ -184,11 +182,12 @@ class Ego:
                 relevant = self._nearby.of(crowd, front, speed)
             pedestrians = crowd if relevant is None else crowd.select(relevant)
             if foresight is not None:
-                behind = kerbs[relevant] if len(kerbs) and relevant is not None else kerbs
+                if len(expected) and relevant is not None:
+                    expected = expected[relevant]
                 off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
                 who = numbers if relevant is None else numbers[relevant]
                 foresight.look(
-                    pedestrians, surroundings, poses, row, front, speed, off, behind, who
+                    pedestrians, surroundings, poses, row, front, speed, off, expected, who
                 )
             else:
                 predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
@@ -208,7 +207,7 @@ class Ego:
             stop, stops_for = self.way.stop_at(front, speed, crowd, leader)
             stop, stops_for = min((stop, stops_for), (waits, "yield"))
         if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
-            allowed = stop + _BEYOND + self._origin
+            allowed = min(stop + _BEYOND, self.way.limit) + self._origin
             ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
         return Seen(
             pedestrian,

@@ -2,17 +2,19 @@
 
 The safety layer takes people on a sidewalk to set out for the road less suddenly than those who
 walk on it or on open ground (docs/safety.md). Beside a crossing nobody counts as being on a
-sidewalk: there people are about to step on the road.
+sidewalk, unless their light is red: there people are about to step on the road.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import shapely
 
+from giveway.crowd.crossings import is_open
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
+from giveway.sumo.signal_plans import ChangeOf, SignalChange, untold
 
 NO_KERBS: Array = np.zeros((0, 3))
 """Nobody is on a sidewalk."""
@@ -23,6 +25,8 @@ _FACING = 0.5  # cosine: the road is less than 60 degrees from the right angle t
 _BESIDE = 0.25  # [m] from the ego's side nobody is on a sidewalk, whatever the network says
 _MOUTH = 1.5  # [m] beside and before a crossing people are about to enter it
 _DEEPEST = 4.0  # [m] from the kerb: who is farther off is no matter
+_AHEAD_OF_MOUTH, _STEPS = 2.0, 4  # [s] and looks, in which plans expect people there
+_SOON = 3.0  # [s] before it turns green, people are about to use a crossing
 _BEHIND, _AHEAD = 10.0, 60.0  # [m] of the path from the front bumper, beside which people matter
 
 
@@ -34,6 +38,10 @@ class Kerbs:
         width: of its body [m].
         sidewalks: of the network, those that reach into some place.
         crossings: of the network.
+        change_of: the next change of a traffic light by its id; None: nobody can tell.
+
+    Attributes:
+        systems: SUMO's ids of the traffic lights that govern the crossings.
     """
 
     def __init__(
@@ -42,6 +50,7 @@ class Kerbs:
         width: float,
         sidewalks: Callable[[shapely.Geometry], shapely.Geometry],
         crossings: Sequence[Crossing],
+        change_of: ChangeOf = untold,
     ) -> None:
         line = shapely.LineString(path.vertices)
         strip = line.buffer(width / 2.0 + _BESIDE, cap_style="flat")
@@ -60,22 +69,39 @@ class Kerbs:
         self._edges = np.ascontiguousarray(edges[order])
         self._stations = stations[order]
         self._kerb = np.ascontiguousarray((facing >= _FACING)[order])
-        self._mouths = _mouths(crossings, line)
+        self._crossings = _near(crossings, line)
+        self._mouths = self._open = _mouths(self._crossings)
+        self._change_of = change_of
+        self.systems = frozenset(crossing.system for crossing in self._crossings) - {""}
 
     def __bool__(self) -> bool:
         return bool(self._kerb.any())
 
-    def of(self, position: Array, front: float) -> Array:
+    def update(self, states: Mapping[str, str]) -> None:
+        """Take note of the lights' states: of each system, one letter per movement (SUMO's)."""
+        if self.systems:
+            changes = {system: self._change_of(system) for system in self.systems}
+            closed = [
+                _stays_closed(crossing, states, changes.get(crossing.system))
+                for crossing in self._crossings
+            ]
+            self._open = self._mouths[~np.array(closed)]
+
+    def of(self, position: Array, velocity: Array, front: float) -> tuple[Array, Array]:
         """(n, 3) unit vectors to the kerbs of people on sidewalks, and how far [m]; 0 for others.
+
+        And the same as a plan has to expect it: 0 for those, too, who walk up to a crossing.
 
         Args:
             position: (n, 2) [m] of the people.
+            velocity: (n, 2) [m/s].
             front: station of the ego's front bumper [m].
         """
-        found = np.zeros((len(position), 3))
+        found, expected = np.zeros((2, len(position), 3))
         first, last = np.searchsorted(self._stations, (front - _BEHIND, front + _AHEAD))
-        fill_kerbs(position, self._edges[first:last], self._kerb[first:last], self._mouths, found)
-        return found
+        edges, is_kerb = self._edges[first:last], self._kerb[first:last]
+        fill_kerbs(position, velocity, edges, is_kerb, self._open, found, expected)
+        return found, expected
 
 
 def kerb_lines(position: Array, kerbs: Array) -> Array:
@@ -107,27 +133,54 @@ def _pieces(ring: Array) -> Array:
     return np.concatenate([np.hstack([points[:-1], points[1:]]) for points in cut])
 
 
-def _mouths(crossings: Sequence[Crossing], line: shapely.LineString) -> Array:
-    """(k, 6) of the crossings near a path: a kerb [m], the unit vector over it, lengths [m]."""
+def _near(crossings: Sequence[Crossing], line: shapely.LineString) -> list[Crossing]:
+    """The crossings near a path."""
+    ways = [(crossing, shapely.LineString(crossing.ends)) for crossing in crossings]
+    return [crossing for crossing, way in ways if way.length > 0.0 and line.distance(way) <= _NEAR]
+
+
+def _mouths(crossings: Sequence[Crossing]) -> Array:
+    """(k, 6) of each crossing a kerb [m], the unit vector over it, its length, half width [m]."""
     rows = []
     for crossing in crossings:
         kerb, other = crossing.ends
         length = float(np.hypot(*(other - kerb)))
-        if length > 0.0 and line.distance(shapely.LineString(crossing.ends)) <= _NEAR:
-            rows.append((*kerb, *(other - kerb) / length, length, crossing.width / 2.0))
+        rows.append((*kerb, *(other - kerb) / length, length, crossing.width / 2.0))
     return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
+def _stays_closed(
+    crossing: Crossing, states: Mapping[str, str], change: SignalChange | None
+) -> bool:
+    """Whether people have a red light before a crossing, and for some seconds yet."""
+    state = states.get(crossing.system, "")
+    if not state or is_open(state, crossing.link, zebra=crossing.zebra):
+        return False
+    if change is None or change.time > _SOON:
+        return True
+    return not is_open(change.state, crossing.link, zebra=crossing.zebra)
+
+
 @kernel
-def fill_kerbs(position: Array, edges: Array, is_kerb: Array, mouths: Array, found: Array) -> None:
-    """Fill ``found`` (n, 3) as in :meth:`Kerbs.of`.
+def fill_kerbs(
+    position: Array,
+    velocity: Array,
+    edges: Array,
+    is_kerb: Array,
+    mouths: Array,
+    found: Array,
+    expected: Array,
+) -> None:
+    """Fill ``found`` and ``expected``, (n, 3) each, as in :meth:`Kerbs.of`.
 
     Args:
         position: (n, 2) [m].
+        velocity: (n, 2) [m/s].
         edges: (k, 4) [m] of sidewalks, which are on the left of each.
         is_kerb: (k,) whether the road is on the right.
         mouths: (c, 6) see :func:`_mouths`.
-        found: (n, 3).
+        found: now.
+        expected: by a plan.
     """
     for p in range(position.shape[0]):
         x, y = position[p, 0], position[p, 1]
@@ -150,6 +203,12 @@ def fill_kerbs(position: Array, edges: Array, is_kerb: Array, mouths: Array, fou
             continue
         found[p, 0], found[p, 1] = to_x / nearest_kerb, to_y / nearest_kerb
         found[p, 2] = nearest_kerb
+        walks_up = False
+        for i in range(1, _STEPS + 1):
+            t = i * _AHEAD_OF_MOUTH / _STEPS
+            walks_up |= in_mouth(x + t * velocity[p, 0], y + t * velocity[p, 1], mouths)
+        if not walks_up:
+            expected[p] = found[p]
 
 
 @inner

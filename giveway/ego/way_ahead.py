@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 from giveway.ego.crossings import Crossings
 from giveway.ego.giving_way import at_rest
+from giveway.ego.kerbs import Kerbs
 from giveway.ego.leader import Leader
 from giveway.ego.lights import Lights
 from giveway.ego.merges import Merges
@@ -22,12 +23,14 @@ class WayAhead:
         crossings: at which it gives way; None: at none.
         right_of_way: at junctions; None: it keeps to none.
         merges: where it comes onto a lane together with others; None: nowhere.
+        kerbs: beside its path; None: there is no sidewalk, or it is no matter.
 
     Attributes:
         systems: SUMO's ids of the traffic lights that matter.
         bounds: there is anything on its path that may bound it.
         visited: the junctions on the path, where it keeps to right of way.
         stop: station [m] at which it had to stop when it last asked; inf: nowhere.
+        limit: station [m] that a plan must not lead beyond, however late the stop was asked for.
     """
 
     def __init__(
@@ -37,10 +40,12 @@ class WayAhead:
         crossings: Crossings | None = None,
         right_of_way: RightOfWay | None = None,
         merges: Merges | None = None,
+        kerbs: Kerbs | None = None,
     ) -> None:
         self.stops = stops
+        self.kerbs = kerbs
         self.merges = merges
-        self.stop = math.inf
+        self.stop = self.limit = math.inf
         self._lights = lights
         self._crossings = crossings
         self._right_of_way = right_of_way
@@ -50,7 +55,7 @@ class WayAhead:
         self._kept_free = sorted(kept_free)
         parts = lights, stops, crossings, right_of_way, merges
         self.bounds = any(part is not None for part in parts)
-        watched = [part for part in (lights, crossings, right_of_way) if part is not None]
+        watched = [part for part in (lights, crossings, right_of_way, kerbs) if part is not None]
         self.systems = frozenset[str]().union(*(part.systems for part in watched))
 
     def junctions(self, front: float) -> frozenset[str]:
@@ -86,6 +91,8 @@ class WayAhead:
             self._lights.update(states, front, speed)
         if self._crossings is not None:
             self._crossings.update(states)
+        if self.kerbs is not None:
+            self.kerbs.update(states)
         if self._right_of_way is not None:
             self._right_of_way.update(time, front, speed, states, traffic)
 
@@ -108,6 +115,7 @@ class WayAhead:
             place, cause = min((place, cause), (self.stops.stop_at(front, speed), "stop"))
         if self._crossings is not None:
             stop = self._crossings.stop_at(front, speed, crowd, leader)
+            self.limit = self._crossings.limit
             place, cause = min((place, cause), (stop, "yield"))
         if self._right_of_way is not None:
             stop = self._right_of_way.stop_at(front, speed, leader)

@@ -3,6 +3,7 @@
 SAE J2735 calls it *signal phase and timing* (SPaT), ISO/TS 19091 says what it is for.
 """
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 
@@ -11,6 +12,15 @@ class SignalChange(NamedTuple):
 
     time: float  # [s] until then; an actuated light may go on for longer
     state: str  # from then on, one letter per movement
+
+
+ChangeOf = Callable[[str], SignalChange | None]
+"""The next change of a traffic light by its id; None: nobody can tell."""
+
+
+def untold(_: str) -> SignalChange | None:
+    """Of no light anybody can tell what comes."""
+    return None
 
 
 class SignalPlans:

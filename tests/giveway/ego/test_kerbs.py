@@ -8,6 +8,7 @@ from giveway.ego.kerbs import NO_KERBS, Kerbs, kerb_lines
 from giveway.ego.setting_out import SettingOut
 from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
+from giveway.sumo.signal_plans import SignalChange, untold
 
 EAST = EgoPath.through([(0.0, 0.0), (100.0, 0.0)])
 WIDTH = 2.0
@@ -18,14 +19,21 @@ SIDEWALKS = shapely.union_all(
 ZEBRA = Crossing("c", np.array([[60.0, -1.75], [60.0, 5.25]]), 4.0, True, "", -1)
 
 
-def kerbs(path=EAST, sidewalks=SIDEWALKS, crossings=(ZEBRA,)):
-    return Kerbs(path, WIDTH, lambda place: sidewalks.intersection(place), crossings)
+def kerbs(path=EAST, sidewalks=SIDEWALKS, crossings=(ZEBRA,), change_of=untold):
+    return Kerbs(path, WIDTH, lambda place: sidewalks.intersection(place), crossings, change_of)
+
+
+def found_of(people, beside=None, front=15.0):
+    """Of people who stand there."""
+    found, expected = (beside or kerbs()).of(people, np.zeros_like(people), front)
+    assert (found == expected).all()
+    return found
 
 
 def test_who_is_on_a_sidewalk_has_a_kerb():
     people = np.array([[20.0, -2.25], [21.3, -4.5], [30.0, 5.5]])
     expected = [[0.0, 1.0, 0.5], [0.0, 1.0, 2.75], [0.0, -1.0, 0.25]]
-    assert kerbs().of(people, front=15.0) == pytest.approx(np.array(expected))
+    assert found_of(people) == pytest.approx(np.array(expected))
 
 
 @pytest.mark.parametrize(
@@ -41,18 +49,48 @@ def test_who_is_on_a_sidewalk_has_a_kerb():
     ],
 )
 def test_who_is_elsewhere_has_none(where, why):
-    assert not kerbs().of(np.array([where]), front=15.0).any(), why
+    assert not found_of(np.array([where])).any(), why
 
 
 def test_behind_the_mouth_of_a_zebra_there_is_a_kerb_again():
-    found = kerbs().of(np.array([[64.0, -2.0], [60.0, -3.5]]), front=15.0)
+    found = found_of(np.array([[64.0, -2.0], [60.0, -3.5]]))
     assert found[:, 2] == pytest.approx([0.25, 1.75])
+
+
+SIGNALS = Crossing("s", ZEBRA.ends, 4.0, False, "tls", 0)
+
+
+@pytest.mark.parametrize(
+    ("state", "change", "has_kerb"),
+    [
+        ("", None, False),  # nobody knows the light
+        ("G", SignalChange(9.0, "r"), False),
+        ("r", None, True),
+        ("r", SignalChange(9.0, "G"), True),
+        ("r", SignalChange(2.0, "G"), False),  # in two seconds they set out
+        ("r", SignalChange(2.0, "r"), True),  # the light changes for others
+    ],
+)
+def test_before_a_red_light_people_are_on_the_sidewalk(state, change, has_kerb):
+    beside = kerbs(crossings=(SIGNALS,), change_of={"tls": change}.get)
+    assert beside.systems == {"tls"}
+    beside.update({"tls": state})
+    assert found_of(np.array([[60.0, -2.0]]), beside).any() == has_kerb
+    assert found_of(np.array([[40.0, -2.0]]), beside).any()
+
+
+def test_a_plan_expects_who_walks_up_to_a_zebra_to_use_it():
+    people = np.array([[52.0, -2.5], [52.0, -2.5], [52.0, -2.5], [40.0, -2.5]])
+    walking = np.array([[1.5, 0.0], [-1.5, 0.0], [0.0, 0.0], [1.5, 0.0]])
+    found, expected = kerbs().of(people + [2.0, 0.0], walking, 15.0)  # 2.5 m before it
+    assert (found[:, 2] == 0.75).all()
+    assert expected[:, 2].tolist() == [0.0, 0.75, 0.75, 0.75]
 
 
 def test_on_the_strip_that_the_ego_sweeps_there_is_no_sidewalk():
     """A network in which a sidewalk reaches into the lane."""
     over = shapely.union_all([SIDEWALKS, shapely.box(20, -4.75, 30, -0.5)])
-    found = kerbs(sidewalks=over).of(np.array([[25.0, -1.2], [25.0, -1.5]]), front=15.0)
+    found = found_of(np.array([[25.0, -1.2], [25.0, -1.5]]), kerbs(sidewalks=over))
     assert found[0, 2] == 0.0
     assert found[1, 2] == pytest.approx(0.25)
 
@@ -65,9 +103,8 @@ def test_in_a_bend_the_kerb_is_where_it_is_nearest():
         .buffer(16.0, 64)
         .difference(shapely.Point(0.0, 12.0).buffer(13.75, 64))
     )
-    found = kerbs(bend, ring, ()).of(
-        np.array([[14.25 * np.sin(0.7), 12.0 - 14.25 * np.cos(0.7)]]), 2.0
-    )
+    there = np.array([[14.25 * np.sin(0.7), 12.0 - 14.25 * np.cos(0.7)]])
+    found = found_of(there, kerbs(bend, ring, ()), front=2.0)
     assert found[0] == pytest.approx([-np.sin(0.7), np.cos(0.7), 0.5], abs=0.02)
 
 
@@ -79,7 +116,7 @@ def test_where_there_is_no_sidewalk_nobody_is_on_one():
 
 def test_a_kerb_as_a_line_is_where_it_was():
     people = np.array([[20.0, -2.25], [20.0, 0.0]])
-    lines = kerb_lines(people, kerbs().of(people, front=15.0))
+    lines = kerb_lines(people, found_of(people))
     assert lines == pytest.approx(np.array([[0.0, 1.0, -1.75], [0.0, 0.0, 0.0]]))
     assert kerb_lines(people, NO_KERBS) is NO_KERBS
 
