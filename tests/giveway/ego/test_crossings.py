@@ -133,8 +133,8 @@ def test_in_the_last_metre_it_stops_wherever_3_would_do_before_the_crossing():
         stop = late.stop_at(19.4, speed, somebody)
         assert 19.4 + speed**2 / (2 * hardest) <= stop + 1e-9
         assert stop < 20.0
-        assert late.limit == pytest.approx(19.9, abs=0.11)
-    assert crossings().stop_at(19.4, 2.0, somebody) == math.inf  # too late: over it and away
+        assert late.limit == pytest.approx(19.8, abs=0.11)
+    assert crossings().stop_at(19.4, 2.2, somebody) == math.inf  # too late: over it and away
     assert late.stop_at(19.4, 1.89, NOBODY) == late.limit == math.inf
 
 
