@@ -133,7 +133,7 @@ class Judge:
 
     def _on_sidewalks(self, where: Any, front: float) -> Any:
         """(n, 3) see :meth:`giveway.ego.kerbs.Kerbs.of`, before any light as before a zebra."""
-        return self._kerbs.of(where, np.zeros_like(where), front)[0]
+        return self._kerbs.of(where, front)
 
 
 def table(files: list[Path], sidewalks: bool, hard: float) -> str:

@@ -43,9 +43,7 @@ _GRAIN = 0.5  # [m] between the points of its outline, at most
 _BESIDE = 0.8  # [m] from the ego's side to the middle of somebody who is not in its way
 _BEFORE, _AFTER = 1.0, 0.5  # [s] between the ego and whoever passes its way after or before it
 _PATIENCE = 4.5  # [s] away from the ego's way, and a little more than an encounter's 4 s
-_CLEAR = 0.3  # [m] before the crossing it stops at the latest ...
-_LEAST = 0.2  # [m] before it the front stays, whatever a plan makes of that
-_AT_LAST = 4.0  # [m/s^2] ... or as this brakes, where anybody may ask for a stop just before it
+_CLEAR = 0.3  # [m] before the crossing it stops at the latest
 _SURE = 1.0  # [s] in addition, before it starts again; else it would creep on bit by bit
 _PULL_AWAY = 1.5  # [m/s^2] of the ego that has waited
 _SIGHT = 60.0  # [m] before a crossing from which on people are looked at
@@ -160,7 +158,6 @@ class Crossings:
 
     Attributes:
         systems: SUMO's ids of the traffic lights that govern them.
-        limit: station [m] that the front bumper must not pass while it waits; inf: it does not.
     """
 
     def __init__(
@@ -180,7 +177,6 @@ class Crossings:
         self._next = 0
         self._waits_for: int | None = None  # a crossing, before the next one
         self._place = math.inf  # [m] where it does, or did before; inf: it has not
-        self.limit = math.inf
         self._states: Mapping[str, str] = {}
         self.systems = frozenset(place.system for place in self._crossings if place.system)
 
@@ -207,7 +203,6 @@ class Crossings:
         while self._next < len(self._crossings) and self._crossings[self._next].entry < front:
             self._next += 1
             self._waits_for, self._place = None, math.inf
-        self.limit = math.inf
         for number in range(self._next, len(self._crossings)):
             place = self._crossings[number]
             if place.entry - front > _SIGHT:
@@ -226,14 +221,13 @@ class Crossings:
         for before in self._stops_before(number, front):
             entry = self._crossings[before].entry
             first = before == self._next
-            too_late = needed_braking(speed, entry - front) > HARDEST
+            latest = entry - _CLEAR
+            too_late = needed_braking(speed, latest - front) > HARDEST
             if too_late and not (first and waits):
                 continue
             nearest = front + speed * speed / (2.0 * HARDEST)
-            latest = max(entry - _CLEAR, front + speed * speed / (2.0 * _AT_LAST))
             stop = max(entry - STOP_BEFORE, min(nearest, latest))
             self._waits_for = number if first else None
-            self.limit = entry - _LEAST
             if first:
                 self._place = min(self._place, stop)
                 stop = self._place

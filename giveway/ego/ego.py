@@ -164,9 +164,9 @@ class Ego:
         if perception is not None:
             crowd = perception.observe(truth, numbers)
             errors = perception.errors
-        kerbs, hasty, expected = NO_KERBS, NOBODY, NO_KERBS
+        kerbs, hasty = NO_KERBS, NOBODY
         if self._kerbs is not None:
-            kerbs, expected = self._kerbs.of(crowd.position, crowd.velocity, front)
+            kerbs = self._kerbs.of(crowd.position, front)
             hasty = self._setting_out.beyond(numbers, crowd.velocity, kerbs)
         pedestrian, reachable = corridor.closest_now(crowd.position, front)
         closest = pedestrian
@@ -182,12 +182,11 @@ class Ego:
                 relevant = self._nearby.of(crowd, front, speed)
             pedestrians = crowd if relevant is None else crowd.select(relevant)
             if foresight is not None:
-                if len(expected) and relevant is not None:
-                    expected = expected[relevant]
+                behind = kerbs[relevant] if len(kerbs) and relevant is not None else kerbs
                 off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
                 who = numbers if relevant is None else numbers[relevant]
                 foresight.look(
-                    pedestrians, surroundings, poses, row, front, speed, off, expected, who
+                    pedestrians, surroundings, poses, row, front, speed, off, behind, who
                 )
             else:
                 predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
@@ -207,7 +206,7 @@ class Ego:
             stop, stops_for = self.way.stop_at(front, speed, crowd, leader)
             stop, stops_for = min((stop, stops_for), (waits, "yield"))
         if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
-            allowed = min(stop + _BEYOND, self.way.limit) + self._origin
+            allowed = stop + _BEYOND + self._origin
             ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
         return Seen(
             pedestrian,

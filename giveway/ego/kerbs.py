@@ -25,7 +25,6 @@ _FACING = 0.5  # cosine: the road is less than 60 degrees from the right angle t
 _BESIDE = 0.25  # [m] from the ego's side nobody is on a sidewalk, whatever the network says
 _MOUTH = 1.5  # [m] beside and before a crossing people are about to enter it
 _DEEPEST = 4.0  # [m] from the kerb: who is farther off is no matter
-_AHEAD_OF_MOUTH, _STEPS = 2.0, 4  # [s] and looks, in which plans expect people there
 _SOON = 3.0  # [s] before it turns green, people are about to use a crossing
 _BEHIND, _AHEAD = 10.0, 60.0  # [m] of the path from the front bumper, beside which people matter
 
@@ -87,21 +86,17 @@ class Kerbs:
             ]
             self._open = self._mouths[~np.array(closed)]
 
-    def of(self, position: Array, velocity: Array, front: float) -> tuple[Array, Array]:
+    def of(self, position: Array, front: float) -> Array:
         """(n, 3) unit vectors to the kerbs of people on sidewalks, and how far [m]; 0 for others.
-
-        And the same as a plan has to expect it: 0 for those, too, who walk up to a crossing.
 
         Args:
             position: (n, 2) [m] of the people.
-            velocity: (n, 2) [m/s].
             front: station of the ego's front bumper [m].
         """
-        found, expected = np.zeros((2, len(position), 3))
+        found = np.zeros((len(position), 3))
         first, last = np.searchsorted(self._stations, (front - _BEHIND, front + _AHEAD))
-        edges, is_kerb = self._edges[first:last], self._kerb[first:last]
-        fill_kerbs(position, velocity, edges, is_kerb, self._open, found, expected)
-        return found, expected
+        fill_kerbs(position, self._edges[first:last], self._kerb[first:last], self._open, found)
+        return found
 
 
 def kerb_lines(position: Array, kerbs: Array) -> Array:
@@ -162,25 +157,15 @@ def _stays_closed(
 
 
 @kernel
-def fill_kerbs(
-    position: Array,
-    velocity: Array,
-    edges: Array,
-    is_kerb: Array,
-    mouths: Array,
-    found: Array,
-    expected: Array,
-) -> None:
-    """Fill ``found`` and ``expected``, (n, 3) each, as in :meth:`Kerbs.of`.
+def fill_kerbs(position: Array, edges: Array, is_kerb: Array, mouths: Array, found: Array) -> None:
+    """Fill ``found`` (n, 3) as in :meth:`Kerbs.of`.
 
     Args:
         position: (n, 2) [m].
-        velocity: (n, 2) [m/s].
         edges: (k, 4) [m] of sidewalks, which are on the left of each.
         is_kerb: (k,) whether the road is on the right.
         mouths: (c, 6) see :func:`_mouths`.
-        found: now.
-        expected: by a plan.
+        found: (n, 3).
     """
     for p in range(position.shape[0]):
         x, y = position[p, 0], position[p, 1]
@@ -203,12 +188,6 @@ def fill_kerbs(
             continue
         found[p, 0], found[p, 1] = to_x / nearest_kerb, to_y / nearest_kerb
         found[p, 2] = nearest_kerb
-        walks_up = False
-        for i in range(1, _STEPS + 1):
-            t = i * _AHEAD_OF_MOUTH / _STEPS
-            walks_up |= in_mouth(x + t * velocity[p, 0], y + t * velocity[p, 1], mouths)
-        if not walks_up:
-            expected[p] = found[p]
 
 
 @inner

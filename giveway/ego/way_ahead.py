@@ -30,7 +30,6 @@ class WayAhead:
         bounds: there is anything on its path that may bound it.
         visited: the junctions on the path, where it keeps to right of way.
         stop: station [m] at which it had to stop when it last asked; inf: nowhere.
-        limit: station [m] that a plan must not lead beyond, however late the stop was asked for.
     """
 
     def __init__(
@@ -45,7 +44,7 @@ class WayAhead:
         self.stops = stops
         self.kerbs = kerbs
         self.merges = merges
-        self.stop = self.limit = math.inf
+        self.stop = math.inf
         self._lights = lights
         self._crossings = crossings
         self._right_of_way = right_of_way
@@ -115,7 +114,6 @@ class WayAhead:
             place, cause = min((place, cause), (self.stops.stop_at(front, speed), "stop"))
         if self._crossings is not None:
             stop = self._crossings.stop_at(front, speed, crowd, leader)
-            self.limit = self._crossings.limit
             place, cause = min((place, cause), (stop, "yield"))
         if self._right_of_way is not None:
             stop = self._right_of_way.stop_at(front, speed, leader)
