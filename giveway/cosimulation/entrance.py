@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 from giveway.config import EgoRunConfig
 from giveway.config.option import LANE
 from giveway.config.regulation import RegulationConfig
 from giveway.config.sections import DEFAULT_SPEED
+from giveway.cosimulation.joining import join
 from giveway.cosimulation.stops import SERVING, lanes_of, on_path, placed
 from giveway.cosimulation.ways import way_of
 from giveway.ego.controllers import make_controller
@@ -36,8 +36,6 @@ from giveway.walkways import WalkNetwork
 _BEHIND = 0.5  # [m] more than it keeps is left behind a vehicle that stands
 _LEAST_GAP = 1.0  # [m] behind it
 _STEEP = 0.01  # [rad] less is not worth a word
-_ON_THE_LINE = 0.01  # [m]
-_MERGE = 20.0  # [m] along which a vehicle beside its lane's centre line joins it
 
 
 class Entrance:
@@ -99,7 +97,7 @@ class Entrance:
             start=state.lane_position,
             by=lanes_of(places, stops),
         )
-        path, departure, joined = _joined(lane_path, state)
+        path, departure, joined = join(lane_path, state)
         require_way(ego, path, departure)
         if ego.taken_over:
             vehicles.adopt(state, shape)
@@ -297,42 +295,6 @@ def require_way(ego: WaitingEgo, path: EgoPath, departure: float) -> None:
             f"{path.length:.1f} m long and it departs at {departure:.1f} m; "
             "shorten the distance or lengthen --ego-route"
         )
-
-
-def _joined(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, LanePath]:
-    """The path of a vehicle that is taken over, its front bumper's station, and its lights.
-
-    As a rule the front bumper is on the lane's centre line. A vehicle beside it (one that changes
-    lanes, or is moved by SUMO's sublane model) joins the line within ``_MERGE``.
-    """
-    path = EgoPath.through(lane_path.points)
-    station, lateral = path.locate(state.x, state.y, near=state.lane_position)
-    if abs(lateral) <= _ON_THE_LINE:
-        return path, station, lane_path
-    share = (path.stations - station) / _MERGE
-    beside = path.vertices[share > 1.0]
-    joined = EgoPath.through([(state.x, state.y), *beside])
-    shift = joined.length - (path.length - station)
-    lights = [light._replace(station=light.station - station + shift) for light in lane_path.lights]
-    return (
-        joined,
-        0.0,
-        replace(
-            lane_path,
-            points=joined.vertices,
-            lights=tuple(lights),
-            edges=tuple(begin - station + shift for begin in lane_path.edges),
-            limits=tuple(
-                limit._replace(station=limit.station - station + shift)
-                for limit in lane_path.limits
-            ),
-            passages=tuple(passage.shifted(shift - station) for passage in lane_path.passages),
-            heights=tuple(
-                height._replace(station=height.station - station + shift)
-                for height in lane_path.heights
-            ),
-        ),
-    )
 
 
 def shape_of(ego: WaitingEgo, own: VehicleShape | VehicleState) -> VehicleShape:

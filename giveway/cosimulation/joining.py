@@ -1,0 +1,50 @@
+"""How a vehicle that is taken over beside its lane's centre line joins it."""
+
+from dataclasses import replace
+
+from giveway.geometry.path import EgoPath
+from giveway.sumo.lane_path import LanePath
+from giveway.sumo.vehicles import VehicleState
+
+_ON_THE_LINE = 0.01  # [m]
+_MERGE = 20.0  # [m] along which it joins the line
+
+
+def join(lane_path: LanePath, state: VehicleState) -> tuple[EgoPath, float, LanePath]:
+    """The path of a vehicle that is taken over, its front bumper's station, and its lights.
+
+    As a rule the front bumper is on the lane's centre line. A vehicle beside it (one that changes
+    lanes, or is moved by SUMO's sublane model) joins the line within 20 m.
+
+    Args:
+        lane_path: of its route.
+        state: of it in SUMO.
+    """
+    path = EgoPath.through(lane_path.points)
+    station, lateral = path.locate(state.x, state.y, near=state.lane_position)
+    if abs(lateral) <= _ON_THE_LINE:
+        return path, station, lane_path
+    share = (path.stations - station) / _MERGE
+    beside = path.vertices[share > 1.0]
+    joined = EgoPath.through([(state.x, state.y), *beside])
+    shift = joined.length - (path.length - station)
+    lights = [light._replace(station=light.station - station + shift) for light in lane_path.lights]
+    return (
+        joined,
+        0.0,
+        replace(
+            lane_path,
+            points=joined.vertices,
+            lights=tuple(lights),
+            edges=tuple(begin - station + shift for begin in lane_path.edges),
+            limits=tuple(
+                limit._replace(station=limit.station - station + shift)
+                for limit in lane_path.limits
+            ),
+            passages=tuple(passage.shifted(shift - station) for passage in lane_path.passages),
+            heights=tuple(
+                height._replace(station=height.station - station + shift)
+                for height in lane_path.heights
+            ),
+        ),
+    )
