@@ -109,7 +109,7 @@ class Judge:
         turn = np.array([[cos, -sin], [sin, cos]])  # from the network's frame into the ego's
         rows = np.flatnonzero(crowd.step == now)
         where = np.column_stack([crowd.x[rows], crowd.y[rows]])
-        to = self._on_sidewalks(where, self._departure + float(ego.position[k]))
+        to = self._kerbs.of(where, self._departure + float(ego.position[k]))
         front = np.array([ego.front_x[k] + gone * cos, ego.front_y[k] + gone * sin])
         there = (where - front) @ turn
         walks = np.column_stack([crowd.vx[rows], crowd.vy[rows]]) @ turn
@@ -129,11 +129,7 @@ class Judge:
         rows = np.flatnonzero(soon & (crowd.pedestrian == crowd.pedestrian[row]))
         where = np.column_stack([crowd.x[rows], crowd.y[rows]])
         front = self._departure + float(self._ego.position[now])
-        return bool((self._on_sidewalks(where, front)[:, 2] > 0.0).all())
-
-    def _on_sidewalks(self, where: Any, front: float) -> Any:
-        """(n, 3) see :meth:`giveway.ego.kerbs.Kerbs.of`, before any light as before a zebra."""
-        return self._kerbs.of(where, front)
+        return bool((self._kerbs.of(where, front)[:, 2] > 0.0).all())
 
 
 def table(files: list[Path], sidewalks: bool, hard: float) -> str:

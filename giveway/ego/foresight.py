@@ -12,7 +12,8 @@ from giveway.ego.corridor import fill_poses
 from giveway.ego.crossers import fill_crossers
 from giveway.ego.kerbs import NO_KERBS, kerb_lines
 from giveway.ego.prospects import View, assess
-from giveway.ego.race import Lanes, run_race
+from giveway.ego.race import run_race
+from giveway.ego.race_lanes import Lanes
 from giveway.ego.threats import Alarm
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array

@@ -1,0 +1,78 @@
+"""The lanes of a race between manoeuvres: what each has led to so far, reused from race to race."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controller import Heats, Prospect, Verdict
+from giveway.geometry.kernel import Array
+
+Arrays = tuple[NDArray[Any], ...]
+
+
+class Lanes:
+    """Memory of a race: what each manoeuvre has led to so far.
+
+    Args:
+        count: of manoeuvres.
+        horizon: N [steps].
+        predicted: M [steps] of the crowd.
+        people: n, at most.
+
+    Attributes:
+        arrays: what the kernel takes.
+    """
+
+    def __init__(self, count: int, horizon: int, predicted: int, people: int) -> None:
+        self.count, self.people, self._predicted = count, people, predicted
+        self._state = np.empty(count * predicted * people * 4)
+        self._index = np.empty(count * predicted * people, dtype=np.int64)
+        self._prospects = np.zeros((3, count, horizon))  # gap, conflicts, calm
+        self._sums = np.zeros((4, count))  # own and later cost, of others, missing distance, own
+        self._steps = np.zeros((2, count), dtype=np.int64)  # predicted, assessed
+        self._alike = np.zeros((count, count), dtype=np.int64)  # steps before they part
+        self._entrants = np.zeros((3, count + 1), dtype=np.int64)
+        self._bad = np.zeros(1, dtype=np.int64)
+        self.arrays: Arrays = (
+            self._state,
+            self._index,
+            self._prospects,
+            self._sums,
+            self._steps,
+            self._alike,
+            np.empty((people, 2)),
+            np.empty((people, 5)),
+            np.empty((people, 4)),
+            self._bad,
+        )
+
+    @property
+    def bad(self) -> int:
+        """A pedestrian whose predicted state is not finite; -1: none."""
+        return int(self._bad[0])
+
+    def line_up(self, heats: Heats) -> NDArray[np.int64]:
+        """(3, k + 1) who runs when; -1 behind them."""
+        entrants = self._entrants
+        entrants[:] = -1
+        for heat, trials in enumerate(heats):
+            entrants[heat, : len(trials)] = trials
+        return entrants
+
+    def positions(self, k: int, n: int) -> Array:
+        """(M, n, 2) [m] of the people under a manoeuvre that has finished."""
+        M = self._predicted
+        size = M * n * 4
+        return self._state[k * size : (k + 1) * size].reshape(M, n, 4)[:, :, :2]
+
+    def soon(self, k: int, n: int) -> Array:
+        """(4 n,) x, y [m], v_x, v_y [m/s] of the people after the first step, likewise."""
+        at = 4 * k * self._predicted * n
+        return self._state[at : at + 4 * n]
+
+    def verdict(self, best: int, clear: bool, tried: int) -> Verdict:
+        """How the race ended."""
+        gap, conflicts, calm = self._prospects
+        prospect = Prospect(gap[best], conflicts[best], calm[best])
+        return Verdict(best, float(self._sums[2, best]), clear, tried, prospect)
