@@ -30,6 +30,7 @@ from giveway.geometry.slope import Slope
 from giveway.records.way import EgoWay
 from giveway.sumo.lane_path import LanePath
 from giveway.sumo.session import SumoSession
+from giveway.sumo.signal_plans import ChangeOf, untold
 from giveway.sumo.vehicles import VehicleState
 from giveway.walkways import WalkNetwork
 
@@ -201,9 +202,13 @@ class Entrance:
         network = self._network
         if network is None or ego.safety is None or ego.safety.setting_out == math.inf:
             return None
-        crossings, change_of = self._session.lanes.crossings, self._session.signal_plans.change
+        crossings, change_of = self._session.lanes.crossings, self._change_of(ego.config)
         kerbs = Kerbs(path, shape.width, network.sidewalks, crossings, change_of)
         return kerbs if kerbs else None
+
+    def _change_of(self, config: EgoRunConfig) -> ChangeOf:
+        """What traffic lights tell the ego of their next change."""
+        return self._session.signal_plans.change if config.perception.signal_plans else untold
 
     def _lights(self, config: EgoRunConfig, lane_path: LanePath, hardest: float) -> Lights | None:
         """The traffic lights that the ego heeds; None: there are none."""
@@ -214,6 +219,7 @@ class Entrance:
             comfortable=config.regulation.comfortable_deceleration,
             hardest=hardest,
             arrows=config.heeds_priority,
+            greens_of=self._session.signal_plans.greens if config.perception.signal_plans else None,
         )
 
     def _merges(
@@ -247,7 +253,7 @@ class Entrance:
             gap=_standing_gap(regulation),
             kerb_distance=regulation.kerb_distance,
             kerb_time=regulation.kerb_time,
-            change_of=self._session.signal_plans.change,
+            change_of=self._change_of(config),
         )
 
     def _right_of_way(

@@ -96,6 +96,7 @@ class Ego:
         self._kerbs = way.kerbs if self._guard is not None else None
         self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
         self._foresight = foresight_of(waiting, path, shape, self.corridor.half_width, time_step)
+        self._fastest = math.inf if profile is not None else float(config.reference_speed)
         self._force = 0.0
         self._eases_off = False  # a brake, or drives off
         self._pose: Pose | None = None  # asked for several times at each instant
@@ -263,15 +264,18 @@ class Ego:
         safe_distance = self.config.regulation.safe_distance
         origin = front + self._origin
         stop = seen.stop + self._origin + safe_distance
-        free = seen.stop == math.inf == seen.leader.station
-        vehicle_ahead = limit = math.inf
-        lanes = None
-        if not free:
+        vehicle_ahead, limit, lanes = math.inf, math.inf, None
+        if not seen.stop == math.inf == leader.station:
             vehicle_ahead = self._following.station(leader, front, seen.to_clear)
             limit = self._following.speed_limit(leader, seen.stop, front, seen.to_clear)
         if self._profile is not None:
             limit = min(limit, self._profile.limit(front, vehicle.speed))
             lanes = self._profile.ahead(front, vehicle.speed, self._times)
+        if self._controller.foresees and self.way.bounds:
+            wanted = self._fastest if self._profile is None else self._profile.at(front)
+            limit = min(
+                limit, self.way.unhurried(front, vehicle.speed, wanted, leader, safe_distance)
+            )
         self._view.station = front
         return Observation(  # by position: a third of the time that keywords take
             origin,

@@ -121,6 +121,22 @@ class WayAhead:
         self.stop = place
         return place, cause if place < math.inf else ""
 
+    def unhurried(
+        self, front: float, speed: float, wanted: float, leader: Leader, gap: float
+    ) -> float:
+        """The speed [m/s] at which it arrives at a light when that is green; inf: any.
+
+        Args:
+            front: station of the front bumper [m].
+            speed: now [m/s].
+            wanted: speed [m/s] of a free ego.
+            leader: the vehicle ahead.
+            gap: [m] that is kept to it.
+        """
+        if self._lights is None:
+            return math.inf
+        return self._lights.unhurried(front, speed, wanted, leader, gap)
+
     def pass_time(self, front: float, speed: float, time_step: float) -> None:
         """Once after each control step of ``time_step`` [s]: has it halted, has it waited?
 

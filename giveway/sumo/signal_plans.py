@@ -6,6 +6,8 @@ SAE J2735 calls it *signal phase and timing* (SPaT), ISO/TS 19091 says what it i
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+_GREEN = ("g", "G")
+
 
 class SignalChange(NamedTuple):
     """The next change of a traffic light."""
@@ -16,6 +18,21 @@ class SignalChange(NamedTuple):
 
 ChangeOf = Callable[[str], SignalChange | None]
 """The next change of a traffic light by its id; None: nobody can tell."""
+
+
+Greens = tuple[tuple[float, float], ...]
+"""When a movement is green, as far as its plan tells: from and until [s] from now, in order."""
+
+GreensOf = Callable[[str, int], Greens]
+"""The greens of a traffic light by its id and the movement's number; none: nobody can tell."""
+
+
+class _Phase(NamedTuple):
+    """A phase of a program."""
+
+    state: str
+    duration: float  # [s]
+    follows: int  # the number of the phase after it; -1: one of several, or none
 
 
 def untold(_: str) -> SignalChange | None:
@@ -32,7 +49,7 @@ class SignalPlans:
 
     def __init__(self, sumo: Any) -> None:
         self._sumo = sumo
-        self._plans: dict[tuple[str, str], tuple[str | None, ...]] = {}
+        self._plans: dict[tuple[str, str], tuple[_Phase, ...]] = {}
 
     def change(self, system: str) -> SignalChange | None:
         """The next change; None: nobody can tell what comes.
@@ -40,31 +57,66 @@ class SignalPlans:
         Args:
             system: SUMO's id of the traffic light.
         """
+        plan, phase = self._now(system)
+        if phase < 0:
+            return None
+        return SignalChange(self._left(system), plan[phase].state)
+
+    def greens(self, system: str, link: int) -> Greens:
+        """When a movement is green within one round of the plan; none: nobody can tell.
+
+        Args:
+            system: SUMO's id of the traffic light.
+            link: the movement's number.
+        """
+        plan, follows = self._now(system)
+        if follows < 0:
+            return ()
+        phase, begin = int(self._sumo.trafficlight.getPhase(system)), 0.0
+        end, found = self._left(system), list[tuple[float, float]]()
+        for _ in range(len(plan) + 1):
+            if plan[phase].state[link : link + 1] in _GREEN:
+                if found and found[-1][1] == begin:
+                    found[-1] = found[-1][0], end
+                else:
+                    found.append((begin, end))
+            phase = plan[phase].follows
+            if phase < 0:
+                break
+            begin, end = end, end + plan[phase].duration
+        return tuple(found)
+
+    def _now(self, system: str) -> tuple[tuple[_Phase, ...], int]:
+        """The program that runs, and the number of the phase that is next in it; -1: unknown."""
         lights = self._sumo.trafficlight
         program = str(lights.getProgram(system))
         plan = self._plans.get((system, program))
         if plan is None:
             plan = self._plans[system, program] = self._read(system, program)
         phase = int(lights.getPhase(system))
-        state = plan[phase] if 0 <= phase < len(plan) else None
-        if state is None:
-            return None
-        left = float(lights.getNextSwitch(system)) - float(self._sumo.simulation.getTime())
-        return SignalChange(max(left, 0.0), state)
+        return plan, plan[phase].follows if 0 <= phase < len(plan) else -1
 
-    def _read(self, system: str, program: str) -> tuple[str | None, ...]:
-        """What follows each phase; None where several may."""
+    def _left(self, system: str) -> float:
+        """[s] until the present phase ends."""
+        switches = float(self._sumo.trafficlight.getNextSwitch(system))
+        return max(switches - float(self._sumo.simulation.getTime()), 0.0)
+
+    def _read(self, system: str, program: str) -> tuple[_Phase, ...]:
+        """The phases of a program."""
         for logic in self._sumo.trafficlight.getAllProgramLogics(system):
             if str(logic.programID) == program:
                 phases = logic.phases
-                follows = [
-                    list(phase.next) or [(number + 1) % len(phases)]
-                    for number, phase in enumerate(phases)
-                ]
                 return tuple(
-                    str(phases[after[0]].state)
-                    if len(after) == 1 and 0 <= after[0] < len(phases)
-                    else None
-                    for after in follows
+                    _Phase(
+                        str(phase.state),
+                        float(phase.duration),
+                        _only(list(phase.next) or [(number + 1) % len(phases)], len(phases)),
+                    )
+                    for number, phase in enumerate(phases)
                 )
         return ()
+
+
+def _only(follows: list[int], count: int) -> int:
+    """The only phase of ``count`` that may follow; -1: there are several, or it is none."""
+    return int(follows[0]) if len(follows) == 1 and 0 <= follows[0] < count else -1

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from contextlib import ExitStack
 from typing import Literal
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -29,7 +31,7 @@ TOO_LATE = 2.0  # [s] of red in which who cannot stop passes
 
 
 def drive(
-    config: EgoRunConfig, line: float, yellow_at: float, every: int
+    config: EgoRunConfig, line: float, yellow_at: float, every: int, told: bool = False
 ) -> list[tuple[float, float, str]]:
     """Front [m], speed [m/s] and colour at each step until the red is over.
 
@@ -38,6 +40,7 @@ def drive(
         line: station of the stop line [m].
         yellow_at: when the green ends [s].
         every: how many steps apart the light is looked at: SUMO's own step.
+        told: the light's plan.
     """
     shape, nobody = VehicleShape(), Crowd.empty()
     path = EgoPath.through([(0.0, 0.0), (2000.0, 0.0)])
@@ -45,7 +48,18 @@ def drive(
     with ExitStack() as stack:
         waiting = make_waiting_ego(config, make_controller(config, STEP), STEP, stack)
         waiting.start(config.ego.initial_speed or 0.0)
-        lights = Lights([Light(line, "tls", 0)], comfortable=2.0, hardest=8.0)
+        greens = [(0.0, yellow_at), (yellow_at + YELLOW + RED, math.inf)]
+        time = 0.0
+
+        def greens_of(*_: object) -> tuple[tuple[float, float], ...]:
+            return tuple((max(a - time, 0.0), b - time) for a, b in greens if b > time)
+
+        lights = Lights(
+            [Light(line, "tls", 0)],
+            comfortable=2.0,
+            hardest=8.0,
+            greens_of=greens_of if told else None,
+        )
         ego = Ego(waiting, path, DEPARTURE, shape, WayAhead(lights), 1900.0, STEP)
         poses = np.zeros((waiting.horizon, 1, 7))
         poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
@@ -70,6 +84,7 @@ def drive(
     every=st.sampled_from([1, 20]),
     gap_from=st.sampled_from(["bumper", "centre"]),
     safe_distance=st.sampled_from([2.0, 8.0, 15.0]),
+    told=st.booleans(),
 )
 @settings(max_examples=40)
 def test_an_ego_stands_before_the_line_or_passes_and_never_halts_beyond(
@@ -81,6 +96,7 @@ def test_an_ego_stands_before_the_line_or_passes_and_never_halts_beyond(
     every: int,
     gap_from: Literal["bumper", "centre"],
     safe_distance: float,
+    told: bool,
 ) -> None:
     config = EgoRunConfig.model_validate(
         {
@@ -94,7 +110,7 @@ def test_an_ego_stands_before_the_line_or_passes_and_never_halts_beyond(
         }
     )
     line = DEPARTURE + distance
-    rows = drive(config, line, yellow_at, every)
+    rows = drive(config, line, yellow_at, every, told)
     slow = 0
     for front, now, colour in rows:
         slow = slow + 1 if colour == "r" and now < CREEPING else 0
@@ -103,3 +119,20 @@ def test_an_ego_stands_before_the_line_or_passes_and_never_halts_beyond(
     at_red = [front <= line for front, _, colour in rows if colour == "r"]
     settled = at_red[every + round(TOO_LATE / STEP) :]
     assert settled == [settled[0]] * len(settled)  # nobody crosses the line any more
+
+
+@pytest.mark.parametrize("distance", [90.0, 105.0, 120.0])
+def test_who_is_told_the_plan_does_not_stand_and_is_sooner_through(distance: float) -> None:
+    config = EgoRunConfig.model_validate(
+        {"ego": {"initial_speed": 8.0}, "regulation": {"reference_speed": 8.0}}
+    )
+    end = DEPARTURE + distance
+    stood, speeds = {}, {}
+    for told in (False, True):
+        rows = drive(config, end, 1.0, 20, told)
+        stood[told] = STEP * sum(speed < CREEPING for _, speed, _ in rows)
+        speeds[told] = rows[-1][1]
+        assert rows[-1][0] <= end
+    assert stood[True] == 0.0
+    assert stood[False] > 3.0
+    assert speeds[True] >= speeds[False] + 1.0  # it need not set off when the light is green

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from giveway.ego.leader import NO_LEADER, Leader
 from giveway.ego.lights import STOP_BEFORE, Lights
 from giveway.sumo.lane_path import Light
 
@@ -72,3 +73,50 @@ def test_a_system_that_does_not_answer_stops_nobody() -> None:
     watch = lights()
     watch.update({}, 60.0, 5.0)
     assert watch.stop_at(60.0, 5.0) == math.inf
+
+
+@pytest.mark.parametrize(
+    ("state", "greens", "leader", "expected"),
+    [
+        ("r", ((20.0, 40.0),), NO_LEADER, 59.0 / 21.0),  # it arrives a second after the change
+        ("r", ((90.0, 99.0),), NO_LEADER, 2.0),  # nobody crawls
+        ("r", ((3.0, 40.0),), NO_LEADER, math.inf),  # green before it is there
+        (
+            "r",
+            ((20.0, 40.0),),
+            Leader(79.0, 0.0),
+            36.0 / 26.0,
+        ),  # behind a queue, which starts later
+        ("G", ((0.0, 10.0), (50.0, 70.0)), NO_LEADER, math.inf),
+        ("G", ((0.0, 4.0), (50.0, 70.0)), NO_LEADER, 2.0),  # red when it is there: the next green
+        ("G", ((0.0, 4.0), (20.0, 70.0)), NO_LEADER, 59.0 / 21.0),
+        ("G", ((0.0, 4.0),), NO_LEADER, math.inf),  # nobody knows when it is green again
+        ("r", (), NO_LEADER, math.inf),
+    ],
+)
+def test_it_arrives_when_the_light_is_green(state, greens, leader, expected) -> None:
+    ahead = [Light(LINE, "tls", 0)]
+    watch = Lights(ahead, comfortable=2.0, hardest=8.0, greens_of=lambda *_: greens)
+    watch.update({"tls": state}, 40.0, 8.0)
+    assert watch.unhurried(40.0, 1.0, 8.0, leader, 3.0) == pytest.approx(max(expected, 2.0))
+
+
+def test_a_light_far_off_or_passed_is_not_listened_to() -> None:
+    asked = []
+    ahead = [Light(400.0, "tls", 0)]
+    watch = Lights(
+        ahead, comfortable=2.0, hardest=8.0, greens_of=lambda *light: (asked.append(light), ())[1]
+    )
+    for front in (100.0, 401.0):
+        watch.update({"tls": "r"}, front, 8.0)
+        assert watch.unhurried(front, 8.0, 8.0, NO_LEADER, 3.0) == math.inf
+    assert not asked
+    watch.update({"tls": "r"}, 300.0, 8.0)
+    assert asked == [("tls", 0)]
+
+
+def test_it_slows_gently() -> None:
+    ahead = [Light(LINE, "tls", 0)]
+    watch = Lights(ahead, comfortable=2.0, hardest=8.0, greens_of=lambda *_: ((20.0, 40.0),))
+    watch.update({"tls": "r"}, 40.0, 8.0)
+    assert watch.unhurried(40.0, 8.0, 8.0, NO_LEADER, 3.0) == pytest.approx(7.6)

@@ -33,7 +33,8 @@ def test_a_minute_and_a_half_of_the_junction_s_lights():
 def lights(phases, phase):
     """One light as SUMO's library has it, in a phase of one program."""
     logic = SimpleNamespace(
-        programID="0", phases=[SimpleNamespace(state=state, next=next) for state, next in phases]
+        programID="0",
+        phases=[SimpleNamespace(state=state, next=next, duration=5.0) for state, next in phases],
     )
     return SimpleNamespace(
         trafficlight=SimpleNamespace(
@@ -58,3 +59,42 @@ def lights(phases, phase):
 )
 def test_programs_that_leap(phases, phase, expected):
     assert SignalPlans(lights(phases, phase)).change("tls") == expected
+
+
+@pytest.mark.parametrize(
+    ("phases", "phase", "expected"),
+    [
+        ([("G", ()), ("r", ()), ("r", ())], 0, ((0.0, 2.0), (12.0, 17.0))),
+        ([("G", ()), ("r", ()), ("r", ())], 2, ((2.0, 7.0),)),
+        ([("g", ()), ("G", ()), ("y", ()), ("r", ())], 3, ((2.0, 12.0),)),  # green for two phases
+        ([("r", ()), ("r", (0, 2)), ("G", ())], 0, ()),  # which comes is decided later
+        ([("G", (0, 1)), ("r", ())], 0, ()),  # nor is it known how long this one lasts
+        ([("r", ())], 4, ()),
+    ],
+)
+def test_greens(phases, phase, expected):
+    assert SignalPlans(lights(phases, phase)).greens("tls", 0) == expected
+    assert SignalPlans(lights(phases, phase)).greens("tls", 7) == ()  # no such movement
+
+
+def test_the_junction_s_lights_are_green_when_they_were_said_to_be():
+    libsumo.start(["sumo", "-c", str(find("junction").config_file), "--no-step-log"])
+    try:
+        plans = SignalPlans(libsumo)
+        (system,) = libsumo.trafficlight.getIDList()
+        read = libsumo.trafficlight.getRedYellowGreenState
+        step = libsumo.simulation.getDeltaT()
+        libsumo.simulationStep()
+        start, links = libsumo.simulation.getTime(), range(len(read(system)))
+        said = [plans.greens(system, link) for link in links]
+        assert all(said)
+        while (now := libsumo.simulation.getTime() - start) < 60.0:
+            for link, letter in enumerate(read(system)):
+                green = any(
+                    (begin == 0.0 or begin + step / 2 < now) and now < end + step / 2
+                    for begin, end in said[link]
+                )
+                assert green == (letter in "gG"), (now, link, letter, said[link])
+            libsumo.simulationStep()
+    finally:
+        libsumo.close()
