@@ -97,8 +97,7 @@ class Ego:
         self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
         self._foresight = foresight_of(waiting, path, shape, self.corridor.half_width, time_step)
         self._fastest = math.inf if profile is not None else float(config.reference_speed)
-        self._force = 0.0
-        self._eases_off = False  # a brake, or drives off
+        self._force, self._eases_off = 0.0, False  # a brake, or drives off
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
         self._following = Following(
@@ -272,10 +271,9 @@ class Ego:
             limit = min(limit, self._profile.limit(front, vehicle.speed))
             lanes = self._profile.ahead(front, vehicle.speed, self._times)
         if self._controller.foresees and self.way.bounds:
-            wanted = self._fastest if self._profile is None else self._profile.at(front)
-            limit = min(
-                limit, self.way.unhurried(front, vehicle.speed, wanted, leader, safe_distance)
-            )
+            free = self._fastest if self._profile is None else self._profile.at(front)
+            pace = self.way.unhurried(front, vehicle.speed, free, leader, safe_distance)
+            limit = min(limit, pace)
         self._view.station = front
         return Observation(  # by position: a third of the time that keywords take
             origin,
@@ -346,7 +344,7 @@ class Ego:
         )
 
     def _waits_for(self, seen: Seen, decision: Decision) -> str:
+        kept = self._origin + self.config.regulation.safe_distance
         if self.vehicle.speed >= STOP_SPEED:
             return ""
-        kept = self._origin + self.config.regulation.safe_distance
         return waits_for(self.front, kept, seen, decision, self._eases_off)
