@@ -4,6 +4,7 @@ Run: giveway study controllers --runs 50 --first-seed 501 --out FOLDER
      python benchmarks/controllers.py FOLDER                # as Markdown, on the terminal
      python benchmarks/controllers.py FOLDER --write        # into docs/controllers.md
 The same of: giveway study attitudes --first-seed 551 --out FOLDER
+With --margins: where the default is non-inferior, of a study of any of the scenes.
 
 Seeds from 501 on were never looked at while the default was tuned.
 """
@@ -47,6 +48,17 @@ COLUMNS = (
 )
 BRIEFLY = ("completion_time", "longest_wait", "rms_jerk", "conflicts", "share_below_ttc",
            "mean_people_delay")  # fmt: skip
+#: How much worse the default may be, [unit of the metric]; on streets MORE_CONFLICTS.
+MARGINS = {
+    "completion_time": ("time [s]", 0.3),
+    "longest_wait": ("longest wait [s]", 0.3),
+    "rms_jerk": ("RMS jerk [m/s³]", 0.2),
+    "conflicts": ("conflicts", 0.2),
+    "share_below_ttc": ("TTC < 1.5 s", 0.03),
+    "share_below_pet": ("PET < 1 s", 0.02),
+    "mean_people_delay": ("people's mean delay [s]", 0.2),
+}
+MORE_CONFLICTS = 0.4
 SUMS = (("frontal_contacts", "frontal"), ("side_contacts", "side"))
 
 
@@ -110,6 +122,34 @@ def differences(folder: Path) -> list[str]:
     return lines
 
 
+def margins(folder: Path) -> list[str]:
+    """Lines of Markdown: where the upper end of the difference's interval is within the margin.
+
+    Where it is not, the difference and its interval: in bold where all of that is beyond.
+    """
+    comparison = pd.read_csv(folder / "comparison.csv")
+    kept = comparison[(comparison.situation == "general") & (comparison.treatment == "mpc")]
+    by = kept.set_index(["scene", "metric"])
+    shown = {name: told for name, told in MARGINS.items() if name in set(kept.metric)}
+    titles = [f"{title} (+{margin:g})" for title, margin in shown.values()]
+    lines = ["| scene | " + " | ".join(titles) + " |", "|" + "---|" * (len(titles) + 1)]
+    for scene in kept.scene.drop_duplicates():
+        told = [str(scene)]
+        for metric, (_, margin) in shown.items():
+            if metric == "conflicts" and str(scene).startswith("street"):
+                margin = MORE_CONFLICTS
+            row = by.loc[(scene, metric)] if (scene, metric) in by.index else None
+            if row is None or pd.isna(row.ci_high):
+                told.append("-")
+            elif row.ci_high <= margin:
+                told.append("yes")
+            else:
+                said = f"{row.mean_difference:+.2f} [{row.ci_low:+.2f}, {row.ci_high:+.2f}]"
+                told.append(f"**{said}**" if row.ci_low > margin else said)
+        lines.append("| " + " | ".join(told) + " |")
+    return lines
+
+
 def write(name: str, lines: list[str]) -> None:
     """Put lines between the marks of that name in the page."""
     text = PAGE.read_text(encoding="utf-8")
@@ -123,8 +163,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--write", action="store_true", help="into docs/controllers.md")
+    parser.add_argument("--margins", action="store_true", help="where it is non-inferior")
     options = parser.parse_args()
-    if "driver" in pd.read_csv(options.folder / "cells.csv"):
+    if options.margins:
+        found = {"margins": margins(options.folder)}
+    elif "driver" in pd.read_csv(options.folder / "cells.csv"):
         briefly = [column for column in COLUMNS if column.name in BRIEFLY]
         found = {"attitudes": table(options.folder, "driver", briefly)}
     else:

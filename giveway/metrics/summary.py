@@ -11,6 +11,7 @@ from controller import WorstMotion
 from giveway.metrics.anticipation import Anticipation
 from giveway.metrics.conflicts import Critical
 from giveway.metrics.contacts import FRONTAL, SIDE
+from giveway.metrics.severity import CRITICAL_PET
 from giveway.metrics.slowing import slowed
 from giveway.metrics.standing import waiting_times
 from giveway.metrics.vehicles import VehicleContact
@@ -83,6 +84,9 @@ class Summary:
     ]
     minimum_pet: Annotated[
         float, Quantity("s", "smallest post-encroachment time; empty: no paths crossed")
+    ]
+    share_below_pet: Annotated[
+        float, Quantity(None, "share of all pedestrians whose post-encroachment time is below 1 s")
     ]
     maximum_drac: Annotated[
         float, Quantity("m/s^2", "largest deceleration that the ego needed to spare somebody")
@@ -204,6 +208,7 @@ def summarise(
         conflicts=critical.pedestrians,
         share_below_ttc=critical.share,
         minimum_pet=_extreme(per_pedestrian["post_encroachment_time"].to_numpy(), np.min),
+        share_below_pet=_share_below(per_pedestrian["post_encroachment_time"], CRITICAL_PET),
         maximum_drac=_extreme(per_pedestrian["maximum_drac"].to_numpy(), np.max),
         minimum_ttc_moving=critical.minimum_ttc,
         vehicle_contacts=len(vehicles),
@@ -216,6 +221,11 @@ def summarise(
         ttc_at_slowing=met.ttc_at_slowing,
         time_among_people=met.time_among_people,
     )
+
+
+def _share_below(times: "pd.Series[float]", limit: float) -> float:
+    """The share of all pedestrians, met or not, whose time [s] is below a limit; nan: of none."""
+    return float(np.mean(times.to_numpy() < limit)) if len(times) else float("nan")
 
 
 def _beyond(per_pedestrian: "pd.DataFrame", people: WorstMotion | None) -> NDArray[np.bool_]:

@@ -62,6 +62,7 @@ METRICS = (
     _lower("conflicts", "conflicts"),
     _lower("share_below_ttc", "share in conflict"),
     _higher("minimum_pet", "minimum post-encroachment time"),
+    _lower("share_below_pet", "share of people with a short post-encroachment time"),
     _lower("maximum_drac", "maximum deceleration to avoid a crash"),
     _higher("minimum_ttc_moving", "minimum time to collision while moving"),
     _higher("ttc_at_slowing", "time to collision as slowing begins"),

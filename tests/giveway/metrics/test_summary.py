@@ -185,6 +185,7 @@ def test_what_never_occurred_is_empty(ego):
         "minimum_ttc",
         "minimum_ttc_moving",
         "minimum_pet",
+        "share_below_pet",
         "maximum_drac",
         "ttc_at_slowing",
     }
@@ -208,6 +209,7 @@ def test_the_summary_of_the_crowd(ego):
     assert (summary.conflicts, summary.share_below_ttc) == (3, 0.25)
     assert (summary.overlaps, summary.overlap_time) == (2, pytest.approx(0.4))
     assert (summary.minimum_ttc, summary.minimum_pet, summary.maximum_drac) == (0.0, 0.0, 3.5)
+    assert summary.share_below_pet == 0.5  # of all four, met or not
 
 
 def test_the_summary_of_a_single_instant(ego):
