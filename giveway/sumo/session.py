@@ -90,6 +90,7 @@ class SumoSession:
             self._scratch.cleanup()
             raise
         SumoSession._running = True
+        self._step = direct(self._sumo, "simulation", "step")
         self._move_person = direct(self._sumo, "person", "moveToXY")
         self._person_position = direct(self._sumo, "person", "getPosition")
         self._move_vehicle = direct(self._sumo, "vehicle", "moveToXY")
@@ -131,7 +132,7 @@ class SumoSession:
         """SUMO's clock [s]."""
         return float(self._sumo.simulation.getTime())
 
-    @property
+    @cached_property
     def end(self) -> float:
         """The scenario's end [s]; infinite where it names none."""
         end = float(self._sumo.simulation.getEndTime())
@@ -248,7 +249,7 @@ class SumoSession:
                     self._move_person, ids, _NO_EDGE, x, y, angles, _EXACTLY, _WITHOUT_MATCHING
                 )
                 collections.deque(moves, maxlen=0)  # the fastest loop that Python has
-                self._sumo.simulationStep()
+                self._step()
                 self._moves_pending = False
         except Exception as error:
             raise self._failure(error) from error
@@ -274,7 +275,7 @@ class SumoSession:
 
     def step(self) -> None:
         """Let the scenario go on by itself for one step."""
-        self.call(self._sumo.simulationStep)
+        self.call(self._step)
 
     def call(self, function: Any, *arguments: Any, **keywords: Any) -> Any:
         """A libsumo call whose failure becomes a :class:`SumoError` with SUMO's own reason."""
@@ -302,7 +303,7 @@ class SumoSession:
         with self._stderr:
             if self._moves_pending:  # only then: SUMO's own outputs would hold one step more
                 with contextlib.suppress(Exception):  # the simulation is being given up anyway
-                    self._sumo.simulationStep()  # carries out the moves, which close() would leak
+                    self._step()  # carries out the moves, which close() would leak
             self._sumo.close()
         self._stderr.close()
         with contextlib.suppress(OSError):
