@@ -1,5 +1,6 @@
 """What a manoeuvre would lead to: the crowd predicted under it, as seen from the ego."""
 
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -299,12 +300,11 @@ class CrowdForesight:
         assert other is not None
         time_step = View(*self._view).time_step
 
-        def cost(trials: Trials, row: int, otherwise: bool) -> float:
-            people = other.people if otherwise else self._pedestrians
-            halting = other.halting if otherwise else self._halting
-            self._run(lanes, trials, Heats([row], [], []), False, judged, people, halting)
-            own, others = lanes.arrays[3][:2, row]
-            return float(own + time_step * others + trials.handicap[row])
+        def cost(trials: Trials, rows: list[int], otherwise: bool) -> float:
+            whom = other[:2] if otherwise else (self._pedestrians, self._halting)
+            best, _, _ = self._run(lanes, trials, Heats(rows, [], []), False, judged, *whom)
+            own, others = lanes.arrays[3][:2, best]
+            return float(own + time_step * others + trials.handicap[best]) if best >= 0 else inf
 
         rows = list(dict.fromkeys([*heats.first, *heats.content, *heats.wanting]))
         return Heats([hedged(cost, trials, rows, other.likely, judged[1], time_step)], [], [])
