@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 WARM_UP = 5.0  # [s] simulated, from the first instant on
 WINDOW = 10.0  # [s] simulated, timed
 SPLIT = {  # what the loop's own table lumps together as SUMO's
-    "sumo step": (libsumo, "simulationStep"),
+    "sumo step": (libsumo.libsumo._libsumo, "simulation_step"),  # what the session calls
     "moves": (SumoSession, "mirror"),
     "check": (SumoSession, "_check"),
     "vehicles": (Mirror, "read"),

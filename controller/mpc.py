@@ -124,7 +124,7 @@ class Mpc:
     ) -> MpcSolution:
         """The plan, if it keeps every constraint."""
         speeds = self._solver.solution.copy()
-        forces = np.empty_like(speeds)
+        forces = np.empty(len(speeds))
         residual = check_plan(
             position,
             speed,

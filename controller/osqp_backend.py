@@ -10,11 +10,12 @@ import numpy as np
 import osqp
 from scipy import sparse
 
-from controller._jit import Array
+from controller._jit import Array, kernel
 from controller.errors import SolverSetupError
 from controller.least_squares import LeastSquares, Outcome
 
 _INFINITY = 1e30  # OSQP's
+_INTERRUPTED = int(osqp.SolverStatus.OSQP_SIGINT)
 _STATUS = {
     osqp.SolverStatus.OSQP_SOLVED: Outcome.SOLVED,
     osqp.SolverStatus.OSQP_PRIMAL_INFEASIBLE: Outcome.INFEASIBLE,
@@ -70,29 +71,74 @@ class OsqpBackend:
 
     def solve(self, solution: Array, multipliers: Array) -> tuple[Outcome, int]:
         """Solve within the problem's present bounds, as :class:`controller.backends.Backend`."""
-        solver = self._solver
-        np.maximum(self._problem.lower, -_INFINITY, out=self._lower)
-        np.minimum(self._problem.upper, _INFINITY, out=self._upper)
-        q = None
-        if not np.array_equal(self._problem.target, self._aimed_at):
-            self._aimed_at[:] = self._problem.target
-            q = self._gradient(self._problem.target)
+        solver, problem = self._solver, self._problem
+        aims_elsewhere = pose(
+            problem.lower,
+            problem.upper,
+            problem.target,
+            solution,
+            problem.increments,
+            self._lower,
+            self._upper,
+            self._aimed_at,
+            self._start,
+        )
+        q = self._gradient(problem.target) if aims_elsewhere else None
         solver.update_data_vec(q=q, l=self._lower, u=self._upper)
-        self._start[:] = solution
-        if self._problem.increments:
-            np.subtract(solution[1:], solution[:-1], out=self._start[1:])
         solver.warm_start(self._start, multipliers)
         solver.solve()
-        if solver.info.status_val == osqp.SolverStatus.OSQP_SIGINT:
+        status = solver.info.status_val
+        if status == _INTERRUPTED:
             signal.raise_signal(signal.SIGINT)  # OSQP swallowed it: hand it to whose it is
             solver.solve()
-        outcome = _STATUS.get(solver.info.status_val, Outcome.FAILED)
+            status = solver.info.status_val
+        outcome = _STATUS.get(status, Outcome.FAILED)
+        found = solver.solution
         if outcome is Outcome.INFEASIBLE:
-            multipliers[:] = solver.solution.prim_inf_cert
+            multipliers[:] = found.prim_inf_cert
         else:
-            if self._problem.increments:
-                np.cumsum(solver.solution.x, out=solution)
-            else:
-                solution[:] = solver.solution.x
-            multipliers[:] = solver.solution.y
+            take(found.x, found.y, problem.increments, solution, multipliers)
         return outcome, int(solver.info.iter)
+
+
+@kernel
+def pose(
+    lower: Array,
+    upper: Array,
+    target: Array,
+    solution: Array,
+    increments: bool,
+    low: Array,
+    high: Array,
+    aimed_at: Array,
+    start: Array,
+) -> bool:
+    """Fill what the solver gets: finite bounds, and where to start; is the target another one?
+
+    Args:
+        lower: (m,) of the problem.
+        upper: (m,) of the problem.
+        target: (n,) of the problem.
+        solution: (n,) of the problem, from which to start.
+        increments: the solver's unknowns are increments.
+        low: (m,) the solver's.
+        high: (m,) the solver's.
+        aimed_at: (n,) the target that the solver knows; brought up to date.
+        start: (n,) the solver's.
+    """
+    for i in range(lower.size):
+        low[i], high[i] = max(lower[i], -_INFINITY), min(upper[i], _INFINITY)
+    elsewhere = False
+    for i in range(target.size):
+        elsewhere |= target[i] != aimed_at[i]
+        aimed_at[i] = target[i]
+        start[i] = solution[i] - solution[i - 1] if increments and i > 0 else solution[i]
+    return elsewhere
+
+
+@kernel
+def take(x: Array, y: Array, increments: bool, solution: Array, multipliers: Array) -> None:
+    """Fill the problem's solution (n,) and multipliers (m,) from the solver's ``x`` and ``y``."""
+    for i in range(x.size):
+        solution[i] = solution[i - 1] + x[i] if increments and i > 0 else x[i]
+    multipliers[:] = y

@@ -113,6 +113,8 @@ class SafetyLayer:
         self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
         delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
         self._commands = np.zeros(1 + max(delay, 0))
+        # How many steps full braking takes at most to set in.
+        self._not_yet = len(self._commands) + 2.0 * p.force_limit / p.force_rate_limit
 
     def reach(self, speed: float) -> float:
         """How far the front gets at most until it stops, whatever is asked for now [m].
@@ -135,11 +137,6 @@ class SafetyLayer:
         growth = min(-log(c.slowest_decay), _MOST_DECAY / steps)
         share = steps if growth == 0.0 else expm1(growth * steps) / -expm1(-growth)
         return max(0.0, c.force_limit * (c.braking_gain * share - c.gain * not_yet))
-
-    @property
-    def _not_yet(self) -> float:
-        """How many steps full braking takes at most to set in."""
-        return len(self._commands) + 2.0 * self._limits.force_limit / self._limits.force_rate_limit
 
     def reset(self) -> None:
         """Forget the forces of the past."""

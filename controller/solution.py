@@ -1,13 +1,12 @@
 """What a solve of the paper's controller gives back."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 
-@dataclass(frozen=True, slots=True)
-class MpcSolution:
+class MpcSolution(NamedTuple):
     """A plan, or why there is none.
 
     Attributes:

@@ -17,7 +17,7 @@ from controller import LongitudinalModel, Mpc, MpcParameters, branch_off
 from giveway._kernels.cache import FOLDERS, kernel_cache
 from giveway.processes.child import die_with
 from giveway.processes.interpreter import command
-from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles
+from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles, arrived
 from pedestrian_model.model import SHARED_FROM
 
 if TYPE_CHECKING:
@@ -215,4 +215,5 @@ def _branch_off() -> None:
 def _come_and_go() -> None:
     """Pedestrians join a crowd and leave it."""
     one = Crowd.create([(0.0, 0.0)], [(1.0, 0.0)], 1.4, [[(9.0, 0.0)]])
-    one.concatenate(one).select(np.array([True, False]))
+    two = one.concatenate(one)
+    two.select(~arrived(two, 0.5))

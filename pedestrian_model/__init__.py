@@ -14,7 +14,13 @@ from pedestrian_model.errors import (
 )
 from pedestrian_model.influence import vehicle_influence
 from pedestrian_model.jupedsim_models import JUPEDSIM_MODELS, JuPedSimName, JuPedSimPeople
-from pedestrian_model.model import LONGEST_STEP, CrowdModel, arrived, require_steady
+from pedestrian_model.model import (
+    LONGEST_STEP,
+    CrowdModel,
+    any_arrived,
+    arrived,
+    require_steady,
+)
 from pedestrian_model.parameters import PRESETS, SIM, TABLE2, VciParameters
 from pedestrian_model.plain_models import PLAIN_MODELS, PlainModel, PlainName, unmoved
 from pedestrian_model.plug_in import (
@@ -68,6 +74,7 @@ __all__ = [
     "Velocities",
     "Walkers",
     "Walls",
+    "any_arrived",
     "arrived",
     "borrowed",
     "check_model",

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pedestrian_model._check import as_floats, check_not_negative, check_shape, check_values
-from pedestrian_model._jit import kernel
 from pedestrian_model._routes import Routes
 from pedestrian_model._rows import Arrays
+from pedestrian_model._selection import extent, select_into
 from pedestrian_model.errors import CrowdError
 
 _UNIT = 1e-6  # a direction's length may differ from one by this
@@ -194,23 +194,6 @@ class Crowd:
         return (self.desired_speed, self.priority, *self.routes)
 
     @property
-    def _arrays(self) -> Arrays:
-        """All fields, in their order."""
-        return (*self.state[:2], *self._unchanged[:3], self.waypoint_index, *self._unchanged[3:])
-
-    @cached_property
-    def _unchanged(self) -> Arrays:
-        """The fields that no step changes, in their order."""
-        return (
-            self.desired_speed,
-            self.waypoints,
-            self.waypoint_start,
-            self.waypoint_passage,
-            self.waypoint_signal,
-            self.priority,
-        )
-
-    @property
     def state(self) -> Arrays:
         """What a step changes: position, velocity, current way-point."""
         return self.position, self.velocity, self.waypoint_index
@@ -242,7 +225,28 @@ class Crowd:
             raise CrowdError(
                 f"mask is {mask.dtype} of shape {mask.shape}, expected bool of ({len(self)},)"
             )
-        return _unchecked(dict(zip(_FIELDS, _select(self._arrays, mask), strict=True)))
+        n, total = extent(mask, self.waypoint_start)
+        state = np.empty((n, 2)), np.empty((n, 2)), np.empty(n, dtype=np.int64)
+        signal, start = np.empty(total, dtype=np.int64), np.empty(n + 1, dtype=np.int64)
+        routes = np.empty((total, 2)), np.empty((total, 3)), signal, start
+        wishes = np.empty(n), np.empty(n), *routes
+        signals = select_into((*self.state, *self.wishes), mask, (*state, *wishes))
+        return _unchecked(
+            {
+                "position": state[0],
+                "velocity": state[1],
+                "desired_speed": wishes[0],
+                "waypoints": routes[0],
+                "waypoint_start": start,
+                "waypoint_index": state[2],
+                "waypoint_passage": routes[1],
+                "waypoint_signal": signal,
+                "priority": wishes[1],
+                "routes": routes,
+                "wishes": wishes,
+                "signals": signals,
+            }
+        )
 
     def concatenate(self, other: Crowd) -> Crowd:
         """This crowd followed by ``other``."""
@@ -255,9 +259,8 @@ class Crowd:
         return _unchecked(joined)
 
 
-#: All fields; and all but ``waypoint_start``, whose offsets move on.
-_FIELDS = tuple(field.name for field in fields(Crowd))
-_JOINED = tuple(name for name in _FIELDS if name != "waypoint_start")
+#: All fields but ``waypoint_start``, whose offsets move on.
+_JOINED = tuple(field.name for field in fields(Crowd) if field.name != "waypoint_start")
 
 
 def _for_each(values: NDArray[np.float64], n: int) -> NDArray[np.float64]:
@@ -320,35 +323,3 @@ def _unchecked(state: dict[str, Any]) -> Crowd:
     crowd = object.__new__(Crowd)
     crowd.__dict__.update(state)
     return crowd
-
-
-@kernel
-def _select(arrays: tuple[NDArray[Any], ...], mask: NDArray[np.bool_]) -> Any:
-    """The fields of those in ``mask``, in the same order, from the fields of all."""
-    position, velocity, desired_speed, waypoints, start, index, passage, signal, priority = arrays
-    n, total = 0, 0
-    for i in range(len(mask)):
-        if mask[i]:
-            n += 1
-            total += start[i + 1] - start[i]
-    x, v = np.empty((n, 2)), np.empty((n, 2))
-    wanted, at, relying = np.empty(n), np.empty(n, dtype=np.int64), np.empty(n)
-    points, lines = np.empty((total, 2)), np.empty((total, 3))
-    lights, offsets = np.empty(total, dtype=np.int64), np.zeros(n + 1, dtype=np.int64)
-    k = 0
-    for i in range(len(mask)):
-        if not mask[i]:
-            continue
-        x[k, 0], x[k, 1] = position[i, 0], position[i, 1]
-        v[k, 0], v[k, 1] = velocity[i, 0], velocity[i, 1]
-        wanted[k], at[k], relying[k] = desired_speed[i], index[i], priority[i]
-        shift = offsets[k] - start[i]
-        for p in range(start[i], start[i + 1]):
-            q = p + shift
-            points[q, 0], points[q, 1] = waypoints[p, 0], waypoints[p, 1]
-            lines[q, 0], lines[q, 1] = passage[p, 0], passage[p, 1]
-            lines[q, 2] = passage[p, 2]
-            lights[q] = signal[p]
-        k += 1
-        offsets[k] = shift + start[i + 1]
-    return x, v, wanted, points, offsets, at, lines, lights, relying

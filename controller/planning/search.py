@@ -62,6 +62,7 @@ class Search:
         self._handicap, self._charged = handicap, False
         self._trials = Trials.empty(count, N, handicap.copy())
         self._motions = (self._trials.distance, self._trials.speed, self._trials.acceleration)
+        self._each = [self._trials.of(trial) for trial in range(count)]
         self.gap, self.conflicts, self.calm = np.full(N, inf), np.zeros(N), np.full(N, inf)
         self._free, self._nobody = np.full(N, inf), np.zeros(N)
         self._take(_DRIVE_ON)
@@ -232,9 +233,7 @@ class Search:
 
     def _take(self, trial: int) -> None:
         """It is the best."""
-        self._best = trial
-        distance, speed, acceleration = self._motions
-        self.best = distance[trial], speed[trial], acceleration[trial]
+        self._best, self.best = trial, self._each[trial]
 
 
 @kernel

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from giveway.config import RunConfig
 from giveway.config.people import DISTRACTED
 from giveway.crowd.disturbance import disturbance_of
-from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, arrived
+from pedestrian_model import Crowd, PedestrianModel, Surroundings, Vehicles, any_arrived, arrived
 
 ARRIVAL_RADIUS = 0.5  # [m] this close to the destination a pedestrian has arrived
 
@@ -183,9 +183,9 @@ class Walking:
             self._disturbance.advance(
                 crowd, vehicles, surroundings, roster.present, len(roster.ids)
             )
-        there = arrived(roster.crowd, ARRIVAL_RADIUS)
-        if not np.count_nonzero(there):
+        if not any_arrived(roster.crowd, ARRIVAL_RADIUS):
             return []
+        there = arrived(roster.crowd, ARRIVAL_RADIUS)
         if self._log is not None:
             self._log.arrive(step + 1, roster.present[there])
         return roster.release(there)

@@ -6,6 +6,7 @@ its cost is that under the likelier hypothesis, and that of the better branch un
 each weighted by its likelihood (contingency MPC, Alsterda et al. 2019).
 """
 
+import functools
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -15,7 +16,14 @@ from controller import Trials, branch_off
 _COMMON = 0.5  # [s] of a manoeuvre, after which one knows: a walker slows by 1 m/s in it
 _BRAKING = (-2.5, -5.0)  # [m/s^2] of the branches, beside going on
 
-Cost = Callable[[Trials, int, bool], float]
+Cost = Callable[[Trials, list[int], bool], float]
+
+
+@functools.cache
+def load() -> None:
+    """Load the kernel that branches need: it would hold up the step that first needs them."""
+    distance, speed, acceleration = np.zeros((3, 4))
+    branch_off(distance, speed, acceleration, 1, -1.0, 4.0, 0.05)
 
 
 def hedged(
@@ -24,7 +32,7 @@ def hedged(
     """The manoeuvre of least weighted cost.
 
     Args:
-        cost: of a row of the trials [s]; whether under the less likely hypothesis.
+        cost: of the best of some rows of the trials [s]; whether under the less likely hypothesis.
         trials: the manoeuvres.
         rows: which of them are compared.
         likely: how likely the likelier hypothesis is.
@@ -32,16 +40,18 @@ def hedged(
         time_step: of a manoeuvre [s].
     """
     first = min(max(round(_COMMON / time_step), 1), trials.speed.shape[1] - 1)
-    branches = Trials(*(array.copy() for array in trials))
-    costs = {row: cost(trials, row, False) for row in rows}
+    every = list(range(1 + len(_BRAKING)))
+    branches = Trials(*(np.empty((len(every), *array.shape[1:])) for array in trials))
+    costs = {row: cost(trials, [row], False) for row in rows}
     best, least = rows[0], np.inf
     for row in sorted(rows, key=costs.__getitem__):
         if likely * costs[row] >= least:
             break
-        other = cost(branches, row, True)
-        for braking in _BRAKING:
-            branch_off(*branches.of(row), first, braking, wanted, time_step)
-            other = min(other, cost(branches, row, True))
+        for array, given in zip(branches, trials, strict=True):
+            array[:] = given[row]
+        for k, braking in enumerate(_BRAKING, start=1):
+            branch_off(*branches.of(k), first, braking, wanted, time_step)
+        other = cost(branches, every, True)
         whole = likely * costs[row] + (1.0 - likely) * other
         if whole < least:
             best, least = row, whole

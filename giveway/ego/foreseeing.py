@@ -1,6 +1,7 @@
 """What a waiting ego will foresee the crowd with, made of its options."""
 
 from giveway.ego.belief import Beliefs
+from giveway.ego.contingency import load
 from giveway.ego.foresight import CrowdForesight
 from giveway.ego.waiting import WaitingEgo
 from giveway.geometry.bodies import VehicleShape
@@ -27,6 +28,8 @@ def foresight_of(
     if planner.belief and config.perception.model == "vci":
         assert isinstance(predictor, Predictor)
         contingency = planner.contingency
+        if contingency:
+            load()
         beliefs = Beliefs(path, half_width, predictor, time_step, contingency=contingency)
     return CrowdForesight(
         predictor,

@@ -1,5 +1,6 @@
 """What a manoeuvre would lead to: the crowd predicted under it, as seen from the ego."""
 
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -131,8 +132,8 @@ class CrowdForesight:
         self._poses = np.empty((M, 0, 7))
         self._copied, self._stale, self._preferred = False, True, False
         self._otherwise: Otherwise | None = None
-        self._winner: Array | None = None
-        self._lanes: Lanes | None = None
+        self._winner = -1  # of the latest race, whose lanes hold it
+        self._lanes = Lanes(0, N, M, 0)
         # Under one speed for all there is one prediction for all: there is nothing to save. Other
         # models than VCI are no part of the compiled race: manoeuvres are judged one by one.
         self._vci = predictor if isinstance(predictor, Predictor) else None
@@ -176,7 +177,7 @@ class CrowdForesight:
         self._pedestrians, self._surroundings = pedestrians, surroundings
         self._given, self._row, self._front, self._now = poses, row, front, speed
         self._copied, self._stale, self._preferred = False, True, False
-        self._winner = None
+        self._winner = -1
 
     @property
     def best(self) -> Array | None:
@@ -184,10 +185,11 @@ class CrowdForesight:
 
         Those between the steps of the prediction lie on straight lines between these.
         """
-        if self._winner is None and not self._preferred:
+        if self._winner < 0 and not self._preferred:
             return None
-        known = self._best if self._winner is None else self._winner
-        known = np.concatenate([self._pedestrians.position[None], known])
+        people, row = self._pedestrians.position, self._winner
+        known = self._best if row < 0 else self._lanes.positions(row, len(people))
+        known = np.concatenate([people[None], known])
         after = np.minimum(np.arange(1, len(self._distance)) / self._every, len(known) - 1.0)
         before = np.minimum(after.astype(np.int64), len(known) - 2)
         share = (after - before)[:, None, None]
@@ -246,9 +248,8 @@ class CrowdForesight:
         """
         if not self._copied:
             self._copy()
-        n = len(self._pedestrians)
-        lanes = self._lanes
-        if lanes is None or lanes.people < n or lanes.count < len(trials.handicap):
+        n, lanes = len(self._pedestrians), self._lanes
+        if lanes.people < n or lanes.count < len(trials.handicap):
             lanes = self._lanes = Lanes(len(trials.handicap), len(allowed), len(self._poses), n)
         judged = allowed, wanted, weights
         if self._otherwise is not None:
@@ -257,7 +258,7 @@ class CrowdForesight:
             lanes, trials, heats, lead, judged, self._pedestrians, self._halting
         )
         if best >= 0:
-            self._winner = lanes.positions(best, n)
+            self._winner = best
             self._soon = lanes.soon(best, n)
         return lanes.verdict(best, clear, tried)
 
@@ -299,12 +300,11 @@ class CrowdForesight:
         assert other is not None
         time_step = View(*self._view).time_step
 
-        def cost(trials: Trials, row: int, otherwise: bool) -> float:
-            people = other.people if otherwise else self._pedestrians
-            halting = other.halting if otherwise else self._halting
-            self._run(lanes, trials, Heats([row], [], []), False, judged, people, halting)
-            own, others = lanes.arrays[3][:2, row]
-            return float(own + time_step * others + trials.handicap[row])
+        def cost(trials: Trials, rows: list[int], otherwise: bool) -> float:
+            whom = other[:2] if otherwise else (self._pedestrians, self._halting)
+            best, _, _ = self._run(lanes, trials, Heats(rows, [], []), False, judged, *whom)
+            own, others = lanes.arrays[3][:2, best]
+            return float(own + time_step * others + trials.handicap[best]) if best >= 0 else inf
 
         rows = list(dict.fromkeys([*heats.first, *heats.content, *heats.wanting]))
         return Heats([hedged(cost, trials, rows, other.likely, judged[1], time_step)], [], [])

@@ -28,16 +28,17 @@ class Lanes:
         self.count, self.people, self._predicted = count, people, predicted
         self._state = np.empty(count * predicted * people * 4)
         self._index = np.empty(count * predicted * people, dtype=np.int64)
-        self._prospects = np.zeros((3, count, horizon))  # gap, conflicts, calm
+        prospects = np.zeros((3, count, horizon))  # gap, conflicts, calm
+        self._prospects = [Prospect(*rows) for rows in zip(*prospects, strict=True)]
         self._sums = np.zeros((4, count))  # own and later cost, of others, missing distance, own
         self._steps = np.zeros((2, count), dtype=np.int64)  # predicted, assessed
         self._alike = np.zeros((count, count), dtype=np.int64)  # steps before they part
-        self._entrants = np.zeros((3, count + 1), dtype=np.int64)
+        self._lined_up: dict[tuple[tuple[int, ...], ...], NDArray[np.int64]] = {}  # some hundred
         self._bad = np.zeros(1, dtype=np.int64)
         self.arrays: Arrays = (
             self._state,
             self._index,
-            self._prospects,
+            prospects,
             self._sums,
             self._steps,
             self._alike,
@@ -54,10 +55,12 @@ class Lanes:
 
     def line_up(self, heats: Heats) -> NDArray[np.int64]:
         """(3, k + 1) who runs when; -1 behind them."""
-        entrants = self._entrants
-        entrants[:] = -1
-        for heat, trials in enumerate(heats):
-            entrants[heat, : len(trials)] = trials
+        key = tuple(map(tuple, heats))
+        entrants = self._lined_up.get(key)
+        if entrants is None:
+            entrants = self._lined_up[key] = np.full((3, self.count + 1), -1)
+            for heat, trials in enumerate(heats):
+                entrants[heat, : len(trials)] = trials
         return entrants
 
     def positions(self, k: int, n: int) -> Array:
@@ -73,6 +76,4 @@ class Lanes:
 
     def verdict(self, best: int, clear: bool, tried: int) -> Verdict:
         """How the race ended."""
-        gap, conflicts, calm = self._prospects
-        prospect = Prospect(gap[best], conflicts[best], calm[best])
-        return Verdict(best, float(self._sums[2, best]), clear, tried, prospect)
+        return Verdict(best, float(self._sums[2, best]), clear, tried, self._prospects[best])

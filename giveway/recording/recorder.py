@@ -48,11 +48,12 @@ class Recorder:
         self._traits = names("traits")  # pedestrian, kind, group, as JSON
         self._vehicles = names("vehicles")
         self._keys: dict[tuple[str, str], int] = {}
+        self._counts: Mapping[str, int] = {}
         self._steps = 0
 
     def instant(self, time: float) -> None:
         """Begin the next control instant, at ``time`` [s]."""
-        self._clock.block(1)[0, 0] = time
+        self._clock.add(time)
         self._steps += 1
 
     def name_pedestrians(
@@ -71,8 +72,7 @@ class Recorder:
 
     def drive(self, ego_id: str, shape: VehicleShape, goal: float) -> None:
         """Note an ego that departs: its body and the distance [m] it is to drive."""
-        row = (self._egos.index(ego_id), shape.length, shape.width, goal)
-        self._drives.block(1)[0] = row
+        self._drives.add(self._egos.index(ego_id), shape.length, shape.width, goal)
 
     def outputs(
         self, ego_id: str, record: Sequence[tuple[str, str, str]], values: Sequence[float]
@@ -98,7 +98,7 @@ class Recorder:
 
     def signal(self, time: float, system: str, state: str) -> None:
         """Record the state that a traffic light has from ``time`` [s] on."""
-        self._signals.block(1)[0] = (time, self._words.index(system), self._words.index(state))
+        self._signals.add(time, self._words.index(system), self._words.index(state))
 
     def walk(self, pedestrian: int, desired_speed: float, places: Array) -> None:
         """Record where a pedestrian means to walk from the present instant on.
@@ -115,13 +115,15 @@ class Recorder:
         block[:, 3:] = places
 
     def ledger(self, counts: Mapping[str, int]) -> None:
-        """Note how many pedestrians are where, at one of SUMO's instants."""
-        self._ledger.block(1)[0] = [counts[name] for name in LEDGER]
+        """Note how many pedestrians are where, if that has changed: the latest row counts."""
+        if counts != self._counts:
+            self._counts = counts
+            self._ledger.add(*(counts[name] for name in LEDGER))
 
     def ego(self, ego_id: str, row: EgoRow) -> None:
         """Record an ego at the present control instant."""
         word = self._words.index
-        self._ego.block(1)[0] = (
+        self._ego.add(
             self._steps - 1,
             self._egos.index(ego_id),
             row[0],
@@ -195,7 +197,7 @@ class Recorder:
 
     def timing(self, *seconds: float) -> None:
         """Record the computing times of one control step, in the order of ``Timings.NAMES``."""
-        self._timings.block(1)[0] = seconds
+        self._timings.add(*seconds)
 
     def rows(self) -> RecordedRows:
         """Everything recorded so far."""

@@ -2,7 +2,6 @@
 
 import os
 import re
-import sys
 import tempfile
 from collections.abc import Container
 from pathlib import Path
@@ -51,8 +50,6 @@ class NativeStderr:
             self._saved = os.open(os.devnull, os.O_WRONLY)
 
     def __enter__(self) -> None:
-        if sys.stderr is not None:
-            sys.stderr.flush()
         os.dup2(self._file_descriptor, 2)
 
     def __exit__(self, *_: object) -> None:

@@ -85,7 +85,7 @@ def test_sumo_disagreeing_is_an_error() -> None:
         sumo.vehicles.insert("ego", ["plaza"], lane=0, position=22.5, speed=4.0)
         sumo.mirror([("ego", Pose(2.7, 0.0, 0.0))], [], [], [], [])
         with pytest.raises(SumoError, match=r"ego.*away from our state"):
-            sumo._check([("ego", Pose(2.8, 0.0, 0.0))], [], [])
+            sumo._check([("ego", Pose(2.8, 0.0, 0.0))], [], [], [])
 
 
 def test_two_simulations_at_once_are_refused() -> None:

@@ -183,7 +183,8 @@ def test_two_runs_are_the_same_to_the_byte(city: Callable[[float], Path], tmp_pa
 
 def test_somebody_elses_move_of_our_walkers_is_noticed(city: Callable[[float], Path]) -> None:
     seen: list[str] = []
-    step = libsumo.simulationStep
+    native = libsumo.libsumo._libsumo
+    step = native.simulation_step
 
     def meddle(*arguments: Any) -> Any:
         done = step(*arguments)
@@ -194,7 +195,7 @@ def test_somebody_elses_move_of_our_walkers_is_noticed(city: Callable[[float], P
 
     config = {"ego": {"take_over": ("car10",)}, "crowd": {"zone": "everywhere"}}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(libsumo, "simulationStep", meddle)
+        patch.setattr(native, "simulation_step", meddle)
         with pytest.raises(giveway.GivewayError, match=r"person 'ped0' at 11.*away from our state"):
             giveway.run({"scenario": str(city(0.1)), "time_limit": 10.0, **config})
 

@@ -36,11 +36,10 @@ def test_a_branch_begins_like_its_manoeuvre_and_brakes_within_jerk_and_decelerat
 def cost(time, stopped):
     """Under the likelier hypothesis a manoeuvre loses time; else all but who stops hits someone."""
 
-    def of(trials, row, otherwise):
-        late = trials.distance[row, -1]
+    def of(trials, rows, otherwise):
         if otherwise:
-            return 10.0 if late > stopped else 2.0
-        return time[row]
+            return 10.0 if trials.distance[rows, -1].min() > stopped else 2.0
+        return min(time[row] for row in rows)
 
     return of
 
