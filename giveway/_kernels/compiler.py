@@ -1,4 +1,4 @@
-"""Numba's compiler without what it does that nobody here reads: a fifth of its time.
+"""Numba's compiler without what it does that nobody here reads.
 
 The code that comes out is the same. To import this module is to do so; it reaches into numba, hence
 ``cache.LINKED``.
