@@ -35,13 +35,12 @@ def refine(
     """
     m, N = rows.shape
     side = np.zeros(m, dtype=np.int64)  # +1: upper bound binds, -1: lower, 0: neither
-    largest = np.abs(multipliers).max()
-    count = 0
-    order = np.argsort(-np.abs(multipliers))
-    for i in order[:N]:
-        if abs(multipliers[i]) > 1e-6 * max(1.0, largest):
-            side[i] = 1 if multipliers[i] > 0.0 else -1
-            count += 1
+    least = 1e-6 * max(1.0, largest_size(multipliers))
+    for _ in range(N):  # the largest first: more than N bind only where some say the same
+        i = largest_outside(multipliers, side)
+        if i < 0 or not abs(multipliers[i]) > least:
+            break
+        side[i] = 1 if multipliers[i] > 0.0 else -1
     for correction in range(4 * N):
         active = np.flatnonzero(side)
         dual = np.zeros(len(active))
@@ -136,6 +135,27 @@ def equality_solve(
 
 
 @inner
+def largest_size(values: Array) -> float:
+    """The largest absolute value; nan if any of them is."""
+    largest = 0.0
+    for value in values:
+        if np.isnan(value):
+            return np.nan
+        largest = max(largest, abs(value))
+    return largest
+
+
+@inner
+def largest_outside(values: Array, side: NDArray[np.int64]) -> int:
+    """Index of the largest absolute value whose ``side`` is 0; -1 if there is none above zero."""
+    largest, index = 0.0, -1
+    for i in range(len(values)):
+        if side[i] == 0 and abs(values[i]) > largest:
+            largest, index = abs(values[i]), i
+    return index
+
+
+@inner
 def is_finite(values: Array) -> bool:
     """Whether all of ``values`` are finite."""
     for value in values:  # noqa: SIM110 - numba compiles no generator
@@ -154,7 +174,7 @@ def certifies_infeasibility(
     that everywhere in the box of possible speeds, there is none.
     """
     m, N = rows.shape
-    largest = np.abs(certificate).max()
+    largest = largest_size(certificate)
     if not (np.isfinite(largest) and largest > 0.0):
         return False
     support = 0.0

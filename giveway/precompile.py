@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import shutil
 import subprocess
@@ -29,6 +30,7 @@ _MARKER = "compiled-for-"
 _KEPT = 30 * 86400.0  # [s] since the last run
 _MESSAGE = "Compiling the numerical kernels (once after installation, about a minute) ..."
 _MESSAGE_THREADS = "Compiling the kernels of several threads (once, some ten seconds) ..."
+_SELDOM: Final = (50_000, 20, 100)  # objects made until Python looks for garbage
 _LONGEST: Final = 600.0  # [s] that the other process is waited for
 _HELP: Final = "from giveway.precompile import help_compiling; help_compiling(*arguments)"
 
@@ -58,6 +60,7 @@ _OTHERS: Final[tuple[dict[str, Any], ...]] = (
         "crowd": {"walls": True},
     },
     {"time_limit": 0.2, "crowd": _PEOPLE, "controller": "pid-paper", "twin": True},
+    {"time_limit": 0.2, "crowd": {"pedestrians": 0}, "controller": "mpc-paper"},
 )
 
 
@@ -88,7 +91,8 @@ def _once(
     with contextlib.nullcontext() if console is None else console.status(message):
         if console is not None and not console.is_terminal:
             console.print(message)
-        compile_them()
+        with _rarely_collected():
+            compile_them()
     try:
         marker.parent.mkdir(parents=True, exist_ok=True)
         marker.touch()
@@ -109,6 +113,17 @@ def forget_old_kernels(folder: Path) -> None:
             shutil.rmtree(other, ignore_errors=True)
 
 
+@contextlib.contextmanager
+def _rarely_collected() -> Iterator[None]:
+    """Look for garbage seldom: what a compiler makes by the million stays."""
+    before = gc.get_threshold()
+    gc.set_threshold(*_SELDOM)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*before)
+
+
 def _compile_all() -> None:
     """Compile in this process and in one beside it; then call everything.
 
@@ -119,6 +134,7 @@ def _compile_all() -> None:
         if helper is not None:
             for settings in _OTHERS:
                 _run(settings)
+            _call_the_rest()
             with contextlib.suppress(subprocess.TimeoutExpired):
                 helper.wait(_LONGEST)
     _tiny_run()
@@ -150,8 +166,9 @@ def _started() -> subprocess.Popen[bytes]:
 def help_compiling(parent: int) -> None:
     """What the process beside ``parent`` does."""
     die_with(parent)
-    for settings in _WALKS:
-        _run(settings, measured=False)
+    with _rarely_collected():
+        for settings in _WALKS:
+            _run(settings, measured=False)
 
 
 def _processors() -> int:
@@ -174,6 +191,11 @@ def _tiny_run() -> None:
         {"time_limit": 0.3, "scenario": "junction", "crowd": {"walls": True}},
     ):
         _run(settings)
+    _call_the_rest()
+
+
+def _call_the_rest() -> None:
+    """What no tiny run calls."""
     _solve_without_solution()
     _branch_off()
     _come_and_go()

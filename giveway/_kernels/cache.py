@@ -27,6 +27,7 @@ LINKED = numba.version_info.short in {(0, 68)}
 """Whether numba is of a version with which ``linking`` was tried; any other one compiles every
 function as ever, which takes twice the time and comes to the same."""
 if LINKED:
+    import giveway._kernels.compiler
     import giveway._kernels.linking  # noqa: F401 - what is compiled is linked as it says
 
 FOLDERS = "kernels-*"

@@ -226,7 +226,8 @@ def extrapolate(poses: Array, egos: int, time_step: float) -> None:
     for i in range(1, poses.shape[0]):
         for j in range(egos, poses.shape[1]):
             distance = poses[0, j, 3] * time_step * i
-            poses[i, j] = poses[0, j]
+            for k in range(poses.shape[2]):
+                poses[i, j, k] = poses[0, j, k]
             poses[i, j, 0] += distance * np.cos(poses[0, j, 2])
             poses[i, j, 1] += distance * np.sin(poses[0, j, 2])
 

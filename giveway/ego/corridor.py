@@ -220,8 +220,11 @@ def closest_in_front(
         return closest_on_segment(vertices, stations, first, positions, front, half_width), False
     closest = np.inf
     reachable = False
-    low_x, high_x = np.min(vertices[first : last + 2, 0]), np.max(vertices[first : last + 2, 0])
-    low_y, high_y = np.min(vertices[first : last + 2, 1]), np.max(vertices[first : last + 2, 1])
+    low_x = high_x = vertices[first, 0]
+    low_y = high_y = vertices[first, 1]
+    for i in range(first + 1, last + 2):
+        low_x, high_x = min(low_x, vertices[i, 0]), max(high_x, vertices[i, 0])
+        low_y, high_y = min(low_y, vertices[i, 1]), max(high_y, vertices[i, 1])
     margin = half_width + reach
     if first == 0 or last == len(vertices) - 2:
         margin += SIGHT  # the path goes on straight beyond its ends

@@ -28,7 +28,7 @@ def blocks_of(
         farthest = 0.0
         for k in range(start, stop + 1):
             farthest = max(farthest, hypot(poses[k, 0] - x, poses[k, 1] - y))
-        blocks[b] = x, y, (farthest + reach) ** 2
+        blocks[b, 0], blocks[b, 1], blocks[b, 2] = x, y, (farthest + reach) ** 2
     return blocks
 
 

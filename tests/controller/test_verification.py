@@ -11,7 +11,12 @@ from least_squares_cases import BOX, assert_optimal, bounds, optimum, small_prob
 from controller import MpcParameters
 from controller._jit import kernel
 from controller.active_set import INFEASIBLE, solve_exactly
-from controller.verification import certifies_infeasibility, refine
+from controller.verification import (
+    certifies_infeasibility,
+    largest_outside,
+    largest_size,
+    refine,
+)
 
 solve_exactly = kernel(solve_exactly)
 refine = kernel(refine)
@@ -118,3 +123,12 @@ def test_refine_adds_what_is_missed_and_drops_what_pulls(guess, corrections):
     assert refine(rows, lower, upper, np.array([2.0, 2.0]), multipliers, V) == corrections
     np.testing.assert_allclose(V, [1.0, 1.0], atol=1e-14)
     np.testing.assert_allclose(multipliers, [0.0, 0.0, 2.0], atol=1e-14)
+
+
+def test_the_largest_of_some_values():
+    values = np.array([1.0, -3.0, 2.0, 0.0])
+    assert largest_size(values) == 3.0
+    assert np.isnan(largest_size(np.array([1.0, np.nan, 2.0])))
+    assert largest_outside(values, np.zeros(4, dtype=np.int64)) == 1
+    assert largest_outside(values, np.array([0, -1, 0, 0])) == 2
+    assert largest_outside(values, np.array([1, -1, 1, 0])) == -1
