@@ -173,6 +173,7 @@ def main() -> None:
     else:
         found = {
             "differences": differences(options.folder),
+            "margins": margins(options.folder),
             "all scenes": table(options.folder, "controller", COLUMNS),
         }
     for name, lines in found.items():
