@@ -96,7 +96,6 @@ class Ego:
         self._kerbs = way.kerbs if self._guard is not None else None
         self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
         self._foresight = foresight_of(waiting, path, shape, self.corridor.half_width, time_step)
-        self._fastest = math.inf if profile is not None else float(config.reference_speed)
         self._force, self._eases_off = 0.0, False  # a brake, or drives off
         self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
@@ -267,11 +266,12 @@ class Ego:
         if not seen.stop == math.inf == leader.station:
             vehicle_ahead = self._following.station(leader, front, seen.to_clear)
             limit = self._following.speed_limit(leader, seen.stop, front, seen.to_clear)
-        if self._profile is not None:
-            limit = min(limit, self._profile.limit(front, vehicle.speed))
-            lanes = self._profile.ahead(front, vehicle.speed, self._times)
+        profile = self._profile
+        if profile is not None:
+            limit = min(limit, profile.limit(front, vehicle.speed))
+            lanes = profile.ahead(front, vehicle.speed, self._times)
         if self._controller.foresees and self.way.bounds:
-            free = self._fastest if self._profile is None else self._profile.at(front)
+            free = float(self.config.reference_speed) if profile is None else profile.at(front)
             pace = self.way.unhurried(front, vehicle.speed, free, leader, safe_distance)
             limit = min(limit, pace)
         self._view.station = front

@@ -47,6 +47,7 @@ def turning(priority):
     ego = {"route": ["west_in", "south_out"], "depart_time": 82.0, "depart_position": 70.0}
     regulation = {"priority": priority, "reference_speed": SLOWLY}
     run = {"scenario": "junction", "seed": 11, "regulation": regulation}
+    run["perception"] = {"signal_plans": False}  # it stands before the red light
     result = giveway.run(run | {"ego": ego | {"travel_distance": 70.0}})
     ego = result.ego
     onto = ego.time[ego.y <= ARM[1]].iloc[0]
