@@ -344,7 +344,7 @@ class Ego:
         )
 
     def _waits_for(self, seen: Seen, decision: Decision) -> str:
-        kept = self._origin + self.config.regulation.safe_distance
         if self.vehicle.speed >= STOP_SPEED:
             return ""
+        kept = self._origin + self.config.regulation.safe_distance
         return waits_for(self.front, kept, seen, decision, self._eases_off)

@@ -90,6 +90,7 @@ class Lights:
         """Station [m] at which the front bumper has to stop; inf: nowhere."""
         while self._next < len(self._lights) and self._lights[self._next].station <= front:
             self._next += 1
+            self._greens = ()  # they were the passed one's
         for i in range(self._next, len(self._lights)):
             colour = self._colours[i]
             stops = colour in self._red or (colour in YELLOW and self._passing[i] == 0.0)

@@ -6,7 +6,7 @@ SAE J2735 calls it *signal phase and timing* (SPaT), ISO/TS 19091 says what it i
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-_GREEN = ("g", "G")
+_GOES = tuple("gGoO")  # green, blinking yellow and off stop nobody
 
 
 class SignalChange(NamedTuple):
@@ -21,7 +21,7 @@ ChangeOf = Callable[[str], SignalChange | None]
 
 
 Greens = tuple[tuple[float, float], ...]
-"""When a movement is green, as far as its plan tells: from and until [s] from now, in order."""
+"""When a movement may go, as far as its plan tells: from and until [s] from now, in order."""
 
 GreensOf = Callable[[str, int], Greens]
 """The greens of a traffic light by its id and the movement's number; none: nobody can tell."""
@@ -58,24 +58,23 @@ class SignalPlans:
             system: SUMO's id of the traffic light.
         """
         plan, phase = self._now(system)
-        if phase < 0:
+        if phase < 0 or plan[phase].follows < 0:
             return None
-        return SignalChange(self._left(system), plan[phase].state)
+        return SignalChange(self._left(system), plan[plan[phase].follows].state)
 
     def greens(self, system: str, link: int) -> Greens:
-        """When a movement is green within one round of the plan; none: nobody can tell.
+        """When a movement may go within one round of the plan; none: nobody can tell.
 
         Args:
             system: SUMO's id of the traffic light.
             link: the movement's number.
         """
-        plan, follows = self._now(system)
-        if follows < 0:
+        plan, phase = self._now(system)
+        if phase < 0 or plan[phase].follows < 0:
             return ()
-        phase, begin = int(self._sumo.trafficlight.getPhase(system)), 0.0
-        end, found = self._left(system), list[tuple[float, float]]()
+        begin, end, found = 0.0, self._left(system), list[tuple[float, float]]()
         for _ in range(len(plan) + 1):
-            if plan[phase].state[link : link + 1] in _GREEN:
+            if plan[phase].state[link : link + 1] in _GOES:
                 if found and found[-1][1] == begin:
                     found[-1] = found[-1][0], end
                 else:
@@ -87,14 +86,14 @@ class SignalPlans:
         return tuple(found)
 
     def _now(self, system: str) -> tuple[tuple[_Phase, ...], int]:
-        """The program that runs, and the number of the phase that is next in it; -1: unknown."""
+        """The program that runs, and the number of its phase; -1: of no phase of it."""
         lights = self._sumo.trafficlight
         program = str(lights.getProgram(system))
         plan = self._plans.get((system, program))
         if plan is None:
             plan = self._plans[system, program] = self._read(system, program)
         phase = int(lights.getPhase(system))
-        return plan, plan[phase].follows if 0 <= phase < len(plan) else -1
+        return plan, phase if phase < len(plan) else -1
 
     def _left(self, system: str) -> float:
         """[s] until the present phase ends."""

@@ -120,3 +120,12 @@ def test_it_slows_gently() -> None:
     watch = Lights(ahead, comfortable=2.0, hardest=8.0, greens_of=lambda *_: ((20.0, 40.0),))
     watch.update({"tls": "r"}, 40.0, 8.0)
     assert watch.unhurried(40.0, 8.0, 8.0, NO_LEADER, 3.0) == pytest.approx(7.6)
+
+
+def test_the_plan_of_a_light_that_is_passed_says_nothing_of_the_next() -> None:
+    ahead = [Light(LINE, "first", 0), Light(LINE + 60.0, "second", 0)]
+    greens = {"first": ((0.0, 5.0), (40.0, 60.0)), "second": ((0.0, 60.0),)}
+    watch = Lights(ahead, comfortable=2.0, hardest=8.0, greens_of=lambda system, _: greens[system])
+    watch.update({"first": "G", "second": "G"}, LINE - 0.1, 8.0)
+    watch.stop_at(LINE + 0.1, 8.0)  # before SUMO's next step
+    assert watch.unhurried(LINE + 0.1, 8.0, 8.0, NO_LEADER, 3.0) == math.inf

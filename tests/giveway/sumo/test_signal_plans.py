@@ -67,6 +67,11 @@ def test_programs_that_leap(phases, phase, expected):
         ([("G", ()), ("r", ()), ("r", ())], 0, ((0.0, 2.0), (12.0, 17.0))),
         ([("G", ()), ("r", ()), ("r", ())], 2, ((2.0, 7.0),)),
         ([("g", ()), ("G", ()), ("y", ()), ("r", ())], 3, ((2.0, 12.0),)),  # green for two phases
+        (
+            [("O", ()), ("G", ()), ("r", ())],
+            0,
+            ((0.0, 7.0), (12.0, 17.0)),
+        ),  # off: nobody has to stop
         ([("r", ()), ("r", (0, 2)), ("G", ())], 0, ()),  # which comes is decided later
         ([("G", (0, 1)), ("r", ())], 0, ()),  # nor is it known how long this one lasts
         ([("r", ())], 4, ()),
