@@ -217,7 +217,7 @@ class RightOfWay:
             if self._stays(place, other, states, traffic):
                 stay.add(source)  # and who is behind it
                 continue
-            if not self._goes_first(place, letter, other, where, states):
+            if not self._goes_first(place, letter, other, where, states, traffic):
                 continue
             if not self._meets(place, other, where, front, speed, critical, margin):
                 continue
@@ -255,6 +255,7 @@ class RightOfWay:
         other: Approach,
         where: Conflict,
         states: Mapping[str, str],
+        traffic: Traffic,
     ) -> bool:
         """Whether the ego has to let it go first."""
         movement = place.movements[other.number]
@@ -263,7 +264,7 @@ class RightOfWay:
             if other.distance + where.other_leave + other.length <= 0.0:
                 return False
             there = other.distance + where.other_enter <= 0.0
-            waits = other.standing > 0.0  # inside the junction, for others
+            waits = other.standing > 0.0 and _has_to_wait(movement, traffic)
             return there or other.speed > CRAWLING or (named and letter != "G" and not waits)
         if letter in _NOBODY or not named:
             return False
@@ -304,6 +305,11 @@ class RightOfWay:
             goes = outside / other.speed + (to_leave - outside) / inside
         in_time = comes >= max(clear + margin, line + critical if front <= place.entry else 0.0)
         return not in_time and goes + BEFORE > enter
+
+
+def _has_to_wait(movement: Movement, traffic: Traffic) -> bool:
+    """Whether anybody is about whom its vehicles let go first, the ego included."""
+    return any(one.number in movement.yields_to for one in traffic.get(movement.junction, ()))
 
 
 def _is_boxed_in(place: PathJunction, other: Approach, traffic: Traffic) -> bool:
