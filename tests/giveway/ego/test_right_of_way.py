@@ -104,6 +104,17 @@ def test_who_is_in_its_way_inside_the_junction_is_waited_for_whoever_he_is() -> 
     assert stop(junction(), LINE, 0.0, gone) == math.inf
 
 
+def test_who_waits_in_the_junction_for_others_is_not_waited_for() -> None:
+    place, third = junction(), 2
+    waits = place.movements[OTHER]._replace(yields_to=frozenset({third}))
+    oncoming = waits._replace(number=third, yields_to=NOBODY)
+    place = place._replace(movements={**place.movements, OTHER: waits, third: oncoming})
+    there = other(-2.0, speed=0.0, standing=1.0)
+    car = Approach("oncoming", third, 15.0, 10.0, 4.5, 0.0)
+    assert stop(place, LINE, 0.0, there, car) == math.inf
+    assert stop(place, LINE, 0.0, there) == LINE  # nobody keeps it from setting off
+
+
 @pytest.mark.parametrize(
     ("lights", "stops"),
     [("Gr", False), ("gG", True), ("gr", False), ("gy", False), ("og", True)],
