@@ -20,12 +20,14 @@ class PerceptionConfig(Section):
     tracker: bool | None = option(
         None,
         None,
-        "positions are filtered, and bounded for the safety layer. Left out: yes, but not for the "
-        "paper's controllers",
+        "positions are filtered, and bounded for the safety layer; unknown desired speeds are "
+        "learnt. Left out: yes, but not for the paper's controllers",
         flag="--tracker",
     )
     desired_speeds: Literal["known", "typical"] = option(
-        "known", None, "of each person, or [crowd] desired_speed_mean for everybody"
+        "known",
+        None,
+        "of each person, or no more than [crowd] desired_speed_mean, until a pace is seen: typical",
     )
     goals: Literal["known", "heading"] = option(
         "known",

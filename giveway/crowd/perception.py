@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from giveway.config import EgoRunConfig
 from giveway.crowd.noise import BOUND, planar_noise
+from giveway.crowd.pace import Pace
 from giveway.crowd.tracking import Tracker
 from giveway.geometry.kernel import Array
 from pedestrian_model import Crowd
@@ -23,8 +24,8 @@ class Perception:
     """One ego's eyes: positions with noise, and desired speeds and goals that cannot be seen.
 
     Each observation draws new noise for all, from a generator of this ego's own: equal runs see the
-    same, whatever other egos there are. A tracker makes the most of them, unless it is switched
-    off; the paper's controllers have none.
+    same, whatever other egos there are. A tracker makes the most of them, and learns desired speeds
+    from the pace that it sees, unless it is switched off; the paper's controllers have none.
 
     Args:
         config: of the ego.
@@ -44,8 +45,11 @@ class Perception:
         self._truth: Crowd | None = None
         self._seen: Crowd | None = None
         self._tracker: Tracker | None = None
+        self._pace: Pace | None = None
         if self._noise and config.tracks_people:
             self._tracker = Tracker(BOUND * self._noise, acceleration, time_step)
+        if self._speed is not None and config.tracks_people:
+            self._pace = Pace(self._speed, time_step)
         self.errors: Array | None = None
 
     @property
@@ -71,6 +75,8 @@ class Perception:
             return crowd
         if crowd is not self._truth or self._seen is None:
             self._truth, self._seen = crowd, self._look_at(crowd)
+        if self._pace is not None:
+            self._seen.desired_speed[:] = self._pace.learn(crowd, numbers)
         if self._noise:
             noise = planar_noise(self._random, len(crowd))
             noise *= self._noise

@@ -78,6 +78,44 @@ def test_typical_desired_speeds_are_the_mean_for_everybody():
     assert (seen.position == crowd.position).all()
 
 
+def test_desired_speeds_are_learnt_from_the_pace_that_is_seen():
+    crowd, seen_by = make_crowd(), eyes(desired_speeds="typical", tracker=None)
+    assert (observed(seen_by, crowd).desired_speed == 1.394).all()  # all stand
+    crowd.velocity[:, 1] = crowd.desired_speed
+    fast = crowd.desired_speed > 1.394
+    errors = []
+    for _ in range(20):  # [0.05 s]
+        errors.append(np.abs(observed(seen_by, crowd).desired_speed - crowd.desired_speed))
+    assert (np.diff(errors, axis=0) <= 1e-12).all()
+    assert (errors[-1][fast] < 0.03 * errors[0][fast]).all()
+    assert (errors[-1][~fast] > 0.7 * errors[0][~fast]).all()  # might be slowed down by somebody
+    for _ in range(400):
+        learnt = observed(seen_by, crowd).desired_speed.copy()
+    assert learnt == pytest.approx(crowd.desired_speed, abs=0.02)
+    crowd.velocity[:] = 0.0  # they let somebody pass
+    assert (observed(seen_by, crowd).desired_speed == learnt).all()
+
+
+def test_what_is_learnt_is_kept_by_person():
+    crowd, seen_by = make_crowd(), eyes(desired_speeds="typical", tracker=None)
+    crowd.velocity[:, 1] = 2.0
+    learnt = observed(seen_by, crowd).desired_speed.copy()
+    crowd.velocity[:] = 0.0
+    left = crowd.select(np.arange(len(crowd)) % 2 == 0)
+    again = seen_by.observe(left, np.arange(0, len(crowd), 2))
+    assert (again.desired_speed == learnt[::2]).all()
+    newcomers = seen_by.observe(left, np.arange(100, 100 + len(left)))
+    assert (newcomers.desired_speed == 1.394).all()
+
+
+def test_the_papers_controllers_learn_no_pace():
+    config = EgoRunConfig(controller="mpc-paper", perception={"desired_speeds": "typical"})
+    crowd = make_crowd()
+    crowd.velocity[:, 1] = 2.0
+    seen = observed(Perception(config, 3.0, 0.05), crowd)
+    assert (seen.desired_speed == 1.394).all()
+
+
 def test_the_same_seed_sees_the_same_and_every_ego_for_itself():
     crowd = make_crowd()
 
