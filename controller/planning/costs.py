@@ -9,6 +9,7 @@ from controller.planning.cost_to_go import time_to_go
 from controller.planning.parameters import Weights
 
 _BLOCKED = 2.0  # [s] beyond the horizon that a manoeuvre goes on blocking what it stands on then
+_SHARED = 4.0  # [m/s] v_r of Yang & Özgüner 2019; faster, a conflict weighs more with its cube
 _CLEAR = 0.3  # [m] before the end of what is to be kept free it is as good as left
 
 
@@ -165,7 +166,7 @@ def add_cost_of_others(
     w = Weights(*weights)
     share = speed / w.reference_speed
     counted = min(conflicts, 1.0) + w.growth * max(conflicts - 1.0, 0.0)
-    others += w.conflict * counted * np.sqrt(share)
+    others += w.conflict * counted * np.sqrt(share) * max(1.0, speed / _SHARED) ** 3
     others += w.threat * max(0.0, speed - calm) / w.reference_speed
     if gap < w.safe_distance:
         others += w.nearness * (1.0 - max(gap, 0.0) / w.safe_distance) * share

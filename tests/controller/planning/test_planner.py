@@ -115,7 +115,7 @@ class Crossing:
     """People on a collision course whatever is driven: a plan once made goes on for its cost."""
 
     def prospect(self, manoeuvre):
-        return Prospect(FREE, np.ones(N), FREE)
+        return Prospect(FREE, np.full(N, 0.1), FREE)
 
     def prefer(self):
         pass

@@ -233,6 +233,13 @@ def test_the_cost_of_others_by_hand():
     assert others == pytest.approx(n * (nearness + 20.0 * 0.5 * 0.5))
 
 
+def test_a_conflict_weighs_more_with_the_cube_of_the_speed_above_that_of_shared_space():
+    w = weights(conflict_weight=0.6)._replace(reference_speed=8.0)
+    slow, shared, fast = (costs(steady(v, 20), w, conflicts=1.0)[1] for v in (1.0, 4.0, 8.0))
+    assert shared == pytest.approx(2.0 * slow)  # the square root
+    assert fast == pytest.approx(math.sqrt(2.0) * 8.0 * shared)
+
+
 def test_beyond_what_is_allowed_each_metre_counts():
     m = steady(4.0, 20)  # 0.2 m per step
     _, others, missing = costs(m, weights(closeness_weight=20.0), allowed=3.8)
