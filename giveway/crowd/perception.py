@@ -4,6 +4,7 @@ Prediction and control work on what is seen here; tables and metrics on the trut
 """
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,13 +41,17 @@ class Perception:
         known = config.perception.desired_speeds == "known"
         self._speed = None if known else config.crowd.desired_speed_mean
         self._goals = config.perception.goals == "known"
-        self._random = np.random.default_rng((config.seed, _STREAM, *config.ego_id.encode()))
+        self._seed = (config.seed, _STREAM, *config.ego_id.encode())
         self._truth: Crowd | None = None
         self._seen: Crowd | None = None
         self._tracker: Tracker | None = None
         if self._noise and config.tracks_people:
             self._tracker = Tracker(BOUND * self._noise, acceleration, time_step)
         self.errors: Array | None = None
+
+    @cached_property
+    def _random(self) -> np.random.Generator:
+        return np.random.default_rng(self._seed)
 
     @property
     def exact(self) -> bool:
