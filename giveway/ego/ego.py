@@ -67,12 +67,10 @@ class Ego:
         self._controller, self._predictor = waiting.controller, waiting.predictor
         self.config, self.id, self.shape = config, waiting.id, shape
         self.path, self.departure, self.way = path, departure, way
-        self._profile, self._slope = profile, slope
+        self._profile, self._slope, self._time_step = profile, slope, time_step
         self.has_outputs = bool(waiting.vehicle.record) or slope is not None
-        self._time_step = time_step
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
-        self.goal = goal
-        self.vehicle = waiting.vehicle
+        self.goal, self.vehicle = goal, waiting.vehicle
         half_width = config.regulation.corridor_half_width
         self.corridor = Corridor(
             path,
@@ -83,11 +81,11 @@ class Ego:
             body_length=shape.length,
             straight=round(_STRAIGHT / time_step) if waiting.controller.foresees else None,
         )
-        size = shape.length + self.corridor.half_width
         span = waiting.horizon * time_step
-        self._relevance = Relevance(waiting, span, size)
+        self._relevance = Relevance(waiting, span, shape.length + self.corridor.half_width)
         self._nearby = Nearby(waiting, path, span, shape.length, self.corridor.half_width)
         self._view = PathView(path)
+        self._chosen: Crowd | None = None  # memory for those who matter
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
         safety = waiting.safety
         perception = Perception(config, waiting.worst.acceleration, time_step)
@@ -179,7 +177,9 @@ class Ego:
                 relevant = self._relevance.of(crowd, self.pose.x, self.pose.y, speed)
             else:
                 relevant = self._nearby.of(crowd, front, speed)
-            pedestrians = crowd if relevant is None else crowd.select(relevant)
+            pedestrians = crowd
+            if relevant is not None:
+                self._chosen = pedestrians = crowd.select(relevant, self._chosen)
             if foresight is not None:
                 behind = kerbs[relevant] if len(kerbs) and relevant is not None else kerbs
                 off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
