@@ -129,6 +129,8 @@ class SpeedReference:
 
     def _braking(self, speed: float, gap: float) -> float:
         """How hard it may brake [m/s^2]: in comfort, or as hard as a stop in time takes."""
+        if gap == inf:
+            return self._down
         p = self.parameters
         needed = self._to_stop(speed, gap - p.last_distance)
         in_time = self._to_stop(speed, gap - p.safe_distance)

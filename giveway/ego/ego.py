@@ -49,7 +49,14 @@ class Ego:
         time_step: [s].
         profile: its speed where nothing is in its way; None: the controller's own.
         slope: of the path; None: it is level.
+
+    Attributes:
+        front: station of the front bumper [m].
+        pose: where the front bumper's centre is, and the direction of the body.
     """
+
+    front: float
+    pose: Pose
 
     def __init__(
         self,
@@ -95,8 +102,8 @@ class Ego:
         self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
         self._foresight = foresight_of(waiting, path, shape, self.corridor.half_width, time_step)
         self._force, self._eases_off = 0.0, False  # a brake, or drives off
-        self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
+        self._locate()
         self._following = Following(
             config.regulation.safe_distance,
             self._origin,
@@ -109,18 +116,6 @@ class Ego:
     def foresees(self) -> bool:
         """Whether it predicts the crowd under each of its manoeuvres."""
         return self._foresight is not None
-
-    @property
-    def front(self) -> float:
-        """Station of the front bumper [m]."""
-        return self.departure + self.vehicle.position
-
-    @property
-    def pose(self) -> Pose:
-        """Where the front bumper's centre is, and the direction of the body."""
-        if self._pose is None:
-            self._pose = self.path.pose(self.front, self.shape.length)
-        return self._pose
 
     @property
     def arrived(self) -> bool:
@@ -305,13 +300,18 @@ class Ego:
 
     def advance(self) -> None:
         """Step the FMU with the force decided on."""
-        self._pose = None
         if self._slope is None:
             self.vehicle.step(self._force)
         else:
             self.vehicle.step(self._force, self._slope.grade(self.front, self.shape.length))
+        self._locate()
         if self.way.bounds:
             self.way.pass_time(self.front, self.vehicle.speed, self._time_step)
+
+    def _locate(self) -> None:
+        """Note where it is now: asked for several times at each instant."""
+        self.front = self.departure + self.vehicle.position
+        self.pose = self.path.pose(self.front, self.shape.length)
 
     def outputs(self) -> tuple[Sequence[tuple[str, str, str]], Sequence[float]]:
         """What is recorded of its FMU at this instant, and the grade of its road if it has one."""
