@@ -82,7 +82,8 @@ class Planner:
         faster = max(0.0, parameters.reference_speed - _SLOW)
         calm_time = parameters.manoeuvres.calm_time + faster / _SOFT
         self._soon = round(calm_time / model.time_step)
-        self._plan = Manoeuvre.empty(N)
+        self._plan = plan = Manoeuvre.empty(N)
+        self._to = (plan.distance, plan.speed, plan.acceleration)
         self._corridor, self._any_speed = np.empty(N), np.full(N, inf)
 
     def reset(self) -> None:
@@ -153,7 +154,7 @@ class Planner:
         """The QP within the manoeuvre's corridor; the manoeuvre itself where that is better."""
         p, search, plan = self.parameters, self._search, self._plan
         best = search.best
-        to = (plan.distance, plan.speed, plan.acceleration)
+        to = self._to
         prospect = (search.gap, search.conflicts, search.calm)
         judged = (search.missing, allowed)
         corrections, itself, holds = follow(
@@ -202,11 +203,11 @@ class Planner:
     def _force(self, speed: float, previous_force: float) -> float:
         """What drives the plan's next speed, within the actuator's limits [N]."""
         p = self.parameters
-        force = (self._plan.speed[1] - self._decay * speed) / self._speed_per_force
+        force = (float(self._plan.speed[1]) - self._decay * speed) / self._speed_per_force
         if speed > STANDSTILL:
             low, high = previous_force - p.force_rate_limit, previous_force + p.force_rate_limit
             force = min(max(force, low), high)
-        return float(min(max(force, -p.force_limit), p.force_limit))
+        return min(max(force, -p.force_limit), p.force_limit)
 
 
 class PlanningController:

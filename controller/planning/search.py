@@ -127,7 +127,8 @@ class Search:
             content = [] if self._turn % 2 else [others[self._turn // 2 % len(others)]]
         heats = Heats(first, content, others if drive_on else [_DRIVE_ON, *others])
         self._lay_out(speed, before, fastest, end if ends else inf)
-        self._charge(fastest, min(to_clear, float(allowed[-1])))
+        if to_clear > 0.0 or self._charged:
+            self._charge(fastest, min(to_clear, float(allowed[-1])))
         if self._compare(heats, drive_on, fastest, allowed, foresight):
             self._drives_on = True
             return "clear"
@@ -162,8 +163,6 @@ class Search:
 
     def _charge(self, fastest: float, to_clear: float) -> None:
         """Let each trial pay for standing within ``to_clear`` [m], which are to be kept free."""
-        if to_clear <= 0.0 and not self._charged:
-            return
         self._charged = to_clear > 0.0
         handicap = self._trials.handicap
         handicap[:] = self._handicap
