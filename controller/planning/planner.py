@@ -28,6 +28,7 @@ from controller.planning.smoothing import SmoothingProblem
 from controller.protocol import Decision, Observation
 from controller.tuned_pid import TunedPid
 
+_SOLVED = Outcome.SOLVED  # whose class is slow to tell it
 _SLOW = 4.0  # [m/s] of the reference speed: where it is more, calm speeds are kept to for longer,
 _SOFT = 4.0  # [m/s^2] so that braking from it asks for no more
 
@@ -175,10 +176,10 @@ class Planner:
         if corrections == NO_PLAN:
             search.forget()
             return Plan(0.0, False, "infeasible: cannot keep the distance", 0, chosen, search.tried)
-        outcome = Outcome.SOLVED
+        outcome = _SOLVED
         if corrections == UNSOLVED:
             outcome, corrections = self._solver.solve()
-            if outcome is Outcome.SOLVED:
+            if outcome is _SOLVED:
                 solution = self._solver.solution
                 itself, holds = unfold_and_judge(
                     speed,
@@ -194,7 +195,7 @@ class Planner:
             else:
                 holds = take_over(best, to, prospect, self.model.time_step, search.weights)
         status = "manoeuvre" if itself else str(outcome)
-        if outcome is not Outcome.SOLVED:
+        if outcome is not _SOLVED:
             status = "manoeuvre: no QP solution"
         search.keep(plan, holds)
         force = self._force(speed, previous_force)
