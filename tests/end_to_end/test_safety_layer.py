@@ -4,13 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from support.front_poses import front_poses
 
 from controller import Decision, SafetyParameters
 from giveway.api import RunResult
 from giveway.config import EgoRunConfig
-from giveway.ego.safety import MOST_POSES, Guard, fill_front_poses, spacing_of
+from giveway.ego.safety import Guard
 from giveway.geometry.bodies import VehicleShape
-from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
 
@@ -108,26 +108,19 @@ def guard(path: EgoPath) -> Guard:
     return Guard(SafetyParameters(), config, path, VehicleShape(5.0, 2.0), 0.05)
 
 
-def sampled(path: EgoPath, front: float, reach: float) -> tuple[Array, float]:
-    """The poses of the front of a body of 5 m on a path, and their spacing [m]."""
-    poses, spacing = np.zeros((MOST_POSES, 4)), spacing_of(reach, MOST_POSES)
-    way = path.vertices, path.stations, path.headings
-    return poses[: fill_front_poses(*way, front, 5.0, reach, spacing, poses)], spacing
-
-
 def person_at(x: float, y: float) -> Crowd:
     return Crowd.create([(x, y)], [(0.0, 0.0)], 1.4, [[(x, y)]])
 
 
 def test_on_a_straight_way_one_pose_says_everything() -> None:
-    way, _ = sampled(EgoPath.through([(0.0, 0.0), (50.0, 50.0)]), 14.0, 30.0)
+    way, _ = front_poses(EgoPath.through([(0.0, 0.0), (50.0, 50.0)]), 14.0, 30.0, 5.0)
     half = np.sqrt(0.5)
     np.testing.assert_allclose(way, [[14.0 * half, 14.0 * half, half, half]])
 
 
 def test_in_a_bend_the_poses_are_those_of_the_body() -> None:
     path = quarter_turn(8.0)
-    way, spacing = sampled(path, 18.0, 6.0)
+    way, spacing = front_poses(path, 18.0, 6.0, 5.0)
     assert len(way) * spacing > 6.0
     for i, (x, y, cos, sin) in enumerate(way):
         pose = path.pose(18.0 + i * spacing, 5.0)
@@ -136,7 +129,7 @@ def test_in_a_bend_the_poses_are_those_of_the_body() -> None:
 
 
 def test_a_way_of_any_length_is_sampled_to_its_end() -> None:
-    way, spacing = sampled(quarter_turn(8.0), 0.0, 5000.0)
+    way, spacing = front_poses(quarter_turn(8.0), 0.0, 5000.0, 5.0)
     assert (len(way) - 1) * spacing >= 5000.0
 
 
