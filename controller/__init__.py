@@ -34,7 +34,7 @@ from controller.planning import (
 from controller.plug_in import Acceleration, Answer, Force, PlugIn, Setup, Speed
 from controller.plugged_in import PluggedIn
 from controller.protocol import Controller, Decision, Observation, PathAhead, People
-from controller.safety import SafeForce, SafetyLayer, SafetyParameters
+from controller.safety import SafeForce, SafetyLayer, SafetyParameters, largest_safe_force
 from controller.solution import MpcSolution
 from controller.speed_controller import SpeedController
 from controller.speed_reference import ReferenceParameters, SpeedReference
@@ -93,6 +93,7 @@ __all__ = [
     "add_cost_of_others",
     "branch_off",
     "check_controller",
+    "largest_safe_force",
     "later_cost",
     "own_cost",
     "towards_kerb",

@@ -9,6 +9,8 @@ from controller.defaults import SolverName
 from controller.least_squares import LeastSquares, Outcome
 from controller.verification import certifies_infeasibility, refine
 
+_SOLVED, _INFEASIBLE = Outcome.SOLVED, Outcome.INFEASIBLE  # whose class is slow to tell them
+
 
 class ExactSolver:
     """Solves one problem again and again, as its target and bounds change.
@@ -64,15 +66,15 @@ class ExactSolver:
                 *self._bounds, self._problem.target, self._multipliers, self.solution
             )
             if corrections >= 0:
-                return Outcome.SOLVED, corrections
+                return _SOLVED, corrections
         if not self._start():
             return Outcome.CERTIFIED, 0
         outcome, iterations = self._backend.solve(self.solution, self._multipliers)
-        if outcome is Outcome.INFEASIBLE and self._certified():
+        if outcome is _INFEASIBLE and self._certified():
             outcome = Outcome.CERTIFIED
-        if outcome is Outcome.SOLVED or self._box is None:
+        if outcome is _SOLVED or self._box is None:
             if self._verified(outcome):
-                return Outcome.SOLVED, iterations
+                return _SOLVED, iterations
             outcome = Outcome.UNVERIFIED
         self._multipliers[:] = 0.0
         return outcome, iterations
@@ -91,7 +93,7 @@ class ExactSolver:
 
     def _verified(self, outcome: Outcome) -> bool:
         """Make the solution exact; whether it is the verified optimum."""
-        near = outcome is Outcome.SOLVED
+        near = outcome is _SOLVED
         work = (*self._bounds, self._problem.target, self._multipliers, self.solution)
         return solve_from(*work, near) >= 0
 

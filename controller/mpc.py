@@ -28,6 +28,7 @@ _PROOFS = {
     CANNOT_STOP: "infeasible: cannot stop",
     CANNOT_HOLD_SPEED: "infeasible: cannot hold speed",
 }
+_SOLVED = Outcome.SOLVED  # whose class is slow to tell it
 _STABLE = "at most 1, or forward Euler is unstable; lower friction [N.s/m] or time_step [s]"
 
 
@@ -110,7 +111,7 @@ class Mpc:
         if code != UNDECIDED:
             return _no_plan(_PROOFS[code], 0)
         outcome, iterations = self._solver.solve()
-        if outcome is not Outcome.SOLVED:
+        if outcome is not _SOLVED:
             return _no_plan(str(outcome), iterations)
         return self._checked(position, speed, previous_force, obstacle_positions, iterations)
 
@@ -138,7 +139,7 @@ class Mpc:
         if not residual <= 1.0:
             return _no_plan(str(Outcome.UNVERIFIED), iterations)
         return MpcSolution(
-            True, float(forces[0]), forces, speeds, str(Outcome.SOLVED), iterations, residual
+            True, float(forces[0]), forces, speeds, str(_SOLVED), iterations, residual
         )
 
 

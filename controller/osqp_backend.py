@@ -24,6 +24,8 @@ _STATUS = {
     osqp.SolverStatus.OSQP_MAX_ITER_REACHED: Outcome.ITERATION_LIMIT,
 }
 
+_INFEASIBLE, _FAILED = Outcome.INFEASIBLE, Outcome.FAILED  # whose class is slow to tell them
+
 
 class OsqpBackend:
     """Solves a least-squares problem by OSQP (Stellato et al. 2020), warm-started.
@@ -87,18 +89,18 @@ class OsqpBackend:
         solver.update_data_vec(q=q, l=self._lower, u=self._upper)
         solver.warm_start(self._start, multipliers)
         solver.solve()
-        status = solver.info.status_val
-        if status == _INTERRUPTED:
+        info = solver.info
+        if info.status_val == _INTERRUPTED:
             signal.raise_signal(signal.SIGINT)  # OSQP swallowed it: hand it to whose it is
             solver.solve()
-            status = solver.info.status_val
-        outcome = _STATUS.get(status, Outcome.FAILED)
+            info = solver.info
+        outcome = _STATUS.get(info.status_val, _FAILED)
         found = solver.solution
-        if outcome is Outcome.INFEASIBLE:
+        if outcome is _INFEASIBLE:
             multipliers[:] = found.prim_inf_cert
         else:
             take(found.x, found.y, problem.increments, solution, multipliers)
-        return outcome, int(solver.info.iter)
+        return outcome, int(info.iter)
 
 
 @kernel

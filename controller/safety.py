@@ -10,7 +10,7 @@ Althoff, ITSC 2018) and of the safe distances of RSS (Shalev-Shwartz et al., arX
 
 from dataclasses import dataclass
 from math import ceil, exp, expm1, inf, log
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -86,7 +86,13 @@ class SafetyLayer:
         model: of the ego's motion. The layer holds for its forward Euler and for its exact
             solution, whichever of them the plant is.
         parameters: the limits.
+
+    Attributes:
+        memory: the last arguments of :func:`largest_safe_force`, for kernels that call it.
+        REASONS: by its verdict.
     """
+
+    REASONS: Final = ("", "safety layer", "unavoidable")
 
     def __init__(self, model: LongitudinalModel, parameters: SafetyParameters) -> None:
         self.model = model
@@ -108,11 +114,11 @@ class SafetyLayer:
             body_radius=p.body_radius,
             margin=p.margin,
         )
-        self._plain_limits = tuple(self._limits)
         self._errors = np.full(0, p.position_error)
         self._boxes = np.zeros((ceil(LONGEST_STOP / dt) + 1, 9))
         delay = ceil(p.reaction_time / dt - _WHOLE_STEPS)
         self._commands = np.zeros(1 + max(delay, 0))
+        self.memory = (tuple(self._limits), self._commands, self._boxes)
         # How many steps full braking takes at most to set in.
         self._not_yet = len(self._commands) + 2.0 * p.force_limit / p.force_rate_limit
 
@@ -167,10 +173,6 @@ class SafetyLayer:
             kerbs: (n, 3) of those on a sidewalk the unit vector to its kerb, and how far that is
                 [m]; 0 for the others. Without rows nobody is.
         """
-        if errors is None:
-            if len(self._errors) < len(position):
-                self._errors = np.full(2 * len(position), self.parameters.position_error)
-            errors = self._errors
         safe, verdict = largest_safe_force(
             force,
             speed,
@@ -178,17 +180,17 @@ class SafetyLayer:
             spacing,
             position,
             velocity,
-            errors,
+            self.errors(len(position)) if errors is None else errors,
             kerbs,
-            self._plain_limits,
-            self._commands,
-            self._boxes,
+            *self.memory,
         )
-        if verdict == ACTS:
-            return SafeForce(safe, True, "safety layer")
-        if verdict == UNAVOIDABLE:
-            return SafeForce(safe, True, "unavoidable")
-        return SafeForce(safe, False, "")
+        return SafeForce(safe, verdict != LETS_THROUGH, self.REASONS[verdict])
+
+    def errors(self, people: int) -> Array:
+        """(n or more,) [m] that positions are off at most where nothing else is known of it."""
+        if len(self._errors) < people:
+            self._errors = np.full(2 * people, self.parameters.position_error)
+        return self._errors
 
 
 @kernel
@@ -206,6 +208,8 @@ def largest_safe_force(
     boxes: Array,
 ) -> tuple[float, int]:
     """The largest safe force up to ``force`` [N], and what the layer does; notes the force.
+
+    The layer lets it through (0), acts (1), or acts where no braking is surely enough (2).
 
     Args:
         force: asked for.

@@ -79,6 +79,7 @@ class SpeedReference:
         self._build_up = self._down / self._jerk  # [s] until comfortable braking is reached
         # A change of acceleration takes effect a step later; shorter lags overshoot the target.
         self._lag = 2.0 * time_step
+        self._wanted, self._asked = 0.0, (0.0, 0.0)  # to who is that close nobody drives
         self.start(0.0)
 
     def start(self, speed: float, acceleration: float = 0.0) -> None:
@@ -89,6 +90,8 @@ class SpeedReference:
 
     def target(self, gap: float, limit: float = inf) -> float:
         """The profile [m/s] at ``gap`` [m] to who is in front; never more than ``limit`` [m/s]."""
+        if (gap, limit) == self._asked:  # as by who wants to know what was just aimed at
+            return self._wanted
         p = self.parameters
         room = gap - p.safe_distance
         if room <= 0.0:
@@ -109,8 +112,8 @@ class SpeedReference:
             limit: caps the reference speed [m/s].
         """
         dt, now, before = self.time_step, self.speed, self.acceleration
-        wanted = self.target(gap, limit)
-        needed = self._braking(speed, gap)
+        self._wanted, self._asked = self.target(gap, limit), (gap, limit)
+        wanted, needed = self._wanted, self._braking(speed, gap)
         # Stop lines and vehicles come with a curve of their own, which is to be kept to.
         down = needed if limit == inf else min(max(needed, _OTHERS_CURVE), self._strongest)
         away = wanted - now
@@ -129,6 +132,8 @@ class SpeedReference:
 
     def _braking(self, speed: float, gap: float) -> float:
         """How hard it may brake [m/s^2]: in comfort, or as hard as a stop in time takes."""
+        if gap == inf:
+            return self._down
         p = self.parameters
         needed = self._to_stop(speed, gap - p.last_distance)
         in_time = self._to_stop(speed, gap - p.safe_distance)

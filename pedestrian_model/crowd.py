@@ -214,8 +214,12 @@ class Crowd:
             }
         )
 
-    def select(self, mask: NDArray[np.bool_]) -> Crowd:
+    def select(self, mask: NDArray[np.bool_], room: Crowd | None = None) -> Crowd:
         """The pedestrians where ``mask`` (n,) is true, in the same order.
+
+        Args:
+            mask: (n,) who is selected.
+            room: an earlier selection that nobody needs any more; it is overwritten where it fits.
 
         Raises:
             CrowdError: if ``mask`` is not a boolean array of length n.
@@ -226,27 +230,11 @@ class Crowd:
                 f"mask is {mask.dtype} of shape {mask.shape}, expected bool of ({len(self)},)"
             )
         n, total = extent(mask, self.waypoint_start)
-        state = np.empty((n, 2)), np.empty((n, 2)), np.empty(n, dtype=np.int64)
-        signal, start = np.empty(total, dtype=np.int64), np.empty(n + 1, dtype=np.int64)
-        routes = np.empty((total, 2)), np.empty((total, 3)), signal, start
-        wishes = np.empty(n), np.empty(n), *routes
-        signals = select_into((*self.state, *self.wishes), mask, (*state, *wishes))
-        return _unchecked(
-            {
-                "position": state[0],
-                "velocity": state[1],
-                "desired_speed": wishes[0],
-                "waypoints": routes[0],
-                "waypoint_start": start,
-                "waypoint_index": state[2],
-                "waypoint_passage": routes[1],
-                "waypoint_signal": signal,
-                "priority": wishes[1],
-                "routes": routes,
-                "wishes": wishes,
-                "signals": signals,
-            }
-        )
+        if room is None or (len(room.position), len(room.waypoints)) != (n, total):
+            room = _unfilled(n, total)
+        signals = select_into((*self.state, *self.wishes), mask, (*room.state, *room.wishes))
+        room.__dict__["signals"] = signals
+        return room
 
     def concatenate(self, other: Crowd) -> Crowd:
         """This crowd followed by ``other``."""
@@ -316,6 +304,29 @@ def _check_memory(array: NDArray[np.generic], dtype: np.dtype[np.generic], name:
     """The kernels take C-contiguous arrays of one type only."""
     if array.dtype != dtype or not array.flags.c_contiguous:
         raise CrowdError(f"{name} is {array.dtype}, expected C-contiguous {dtype}: Crowd.create")
+
+
+def _unfilled(n: int, total: int) -> Crowd:
+    """Memory for n pedestrians with ``total`` way-points."""
+    state = np.empty((n, 2)), np.empty((n, 2)), np.empty(n, dtype=np.int64)
+    signal, start = np.empty(total, dtype=np.int64), np.empty(n + 1, dtype=np.int64)
+    routes = np.empty((total, 2)), np.empty((total, 3)), signal, start
+    wishes = np.empty(n), np.empty(n), *routes
+    return _unchecked(
+        {
+            "position": state[0],
+            "velocity": state[1],
+            "desired_speed": wishes[0],
+            "waypoints": routes[0],
+            "waypoint_start": start,
+            "waypoint_index": state[2],
+            "waypoint_passage": routes[1],
+            "waypoint_signal": signal,
+            "priority": wishes[1],
+            "routes": routes,
+            "wishes": wishes,
+        }
+    )
 
 
 def _unchecked(state: dict[str, Any]) -> Crowd:

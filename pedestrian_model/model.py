@@ -121,6 +121,7 @@ class CrowdModel:
         self._dt = self.time_step / self._substeps
         self._constants = pack(parameters, detour=detour, creep=creep)
         self._workspace = Workspace()
+        self._latest: tuple[Crowd | None, Surroundings, Arrays] = None, OPEN_GROUND, ()
         self._team = _team(threads) if threads > 1 else None
 
     def step(
@@ -152,7 +153,10 @@ class CrowdModel:
         n = crowd.position.shape[0]
         if n > self._workspace.capacity:
             self._workspace.reserve(n)
-        arrays = (*crowd.state, *crowd.wishes, *surroundings.arrays, *self._workspace.arrays)
+        arrays = self._latest[2]
+        if crowd is not self._latest[0] or surroundings is not self._latest[1]:
+            arrays = (*crowd.state, *crowd.wishes, *surroundings.arrays, *self._workspace.arrays)
+            self._latest = crowd, surroundings, arrays
         time = (self._dt, self._substeps)
         if self._team is not None and n >= max(SHARED_FROM, self.cell_list_from):
             bad = self._team.advance(

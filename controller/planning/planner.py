@@ -28,6 +28,7 @@ from controller.planning.smoothing import SmoothingProblem
 from controller.protocol import Decision, Observation
 from controller.tuned_pid import TunedPid
 
+_SOLVED = Outcome.SOLVED  # whose class is slow to tell it
 _SLOW = 4.0  # [m/s] of the reference speed: where it is more, calm speeds are kept to for longer,
 _SOFT = 4.0  # [m/s^2] so that braking from it asks for no more
 
@@ -82,7 +83,8 @@ class Planner:
         faster = max(0.0, parameters.reference_speed - _SLOW)
         calm_time = parameters.manoeuvres.calm_time + faster / _SOFT
         self._soon = round(calm_time / model.time_step)
-        self._plan = Manoeuvre.empty(N)
+        self._plan = plan = Manoeuvre.empty(N)
+        self._to = (plan.distance, plan.speed, plan.acceleration)
         self._corridor, self._any_speed = np.empty(N), np.full(N, inf)
 
     def reset(self) -> None:
@@ -153,7 +155,7 @@ class Planner:
         """The QP within the manoeuvre's corridor; the manoeuvre itself where that is better."""
         p, search, plan = self.parameters, self._search, self._plan
         best = search.best
-        to = (plan.distance, plan.speed, plan.acceleration)
+        to = self._to
         prospect = (search.gap, search.conflicts, search.calm)
         judged = (search.missing, allowed)
         corrections, itself, holds = follow(
@@ -174,10 +176,10 @@ class Planner:
         if corrections == NO_PLAN:
             search.forget()
             return Plan(0.0, False, "infeasible: cannot keep the distance", 0, chosen, search.tried)
-        outcome = Outcome.SOLVED
+        outcome = _SOLVED
         if corrections == UNSOLVED:
             outcome, corrections = self._solver.solve()
-            if outcome is Outcome.SOLVED:
+            if outcome is _SOLVED:
                 solution = self._solver.solution
                 itself, holds = unfold_and_judge(
                     speed,
@@ -193,7 +195,7 @@ class Planner:
             else:
                 holds = take_over(best, to, prospect, self.model.time_step, search.weights)
         status = "manoeuvre" if itself else str(outcome)
-        if outcome is not Outcome.SOLVED:
+        if outcome is not _SOLVED:
             status = "manoeuvre: no QP solution"
         search.keep(plan, holds)
         force = self._force(speed, previous_force)
@@ -202,11 +204,11 @@ class Planner:
     def _force(self, speed: float, previous_force: float) -> float:
         """What drives the plan's next speed, within the actuator's limits [N]."""
         p = self.parameters
-        force = (self._plan.speed[1] - self._decay * speed) / self._speed_per_force
+        force = (float(self._plan.speed[1]) - self._decay * speed) / self._speed_per_force
         if speed > STANDSTILL:
             low, high = previous_force - p.force_rate_limit, previous_force + p.force_rate_limit
             force = min(max(force, low), high)
-        return float(min(max(force, -p.force_limit), p.force_limit))
+        return min(max(force, -p.force_limit), p.force_limit)
 
 
 class PlanningController:

@@ -7,6 +7,7 @@ Werling et al., ICRA 2010). Since people answer to the ego, each manoeuvre is ju
 crowd would move under it.
 """
 
+from bisect import bisect_left
 from math import inf
 
 import numpy as np
@@ -54,6 +55,12 @@ class Search:
         ]
         self._names += ["up to the end", "as planned"]
         self._goals = np.array(self._kinds)
+        # Who brakes to a speed is worth a try from a higher one: who is, by how many are lower.
+        self._slower = sorted({least for a, least in self._kinds if a < 0.0})
+        self._others = [
+            [k for k, (a, least) in enumerate(self._kinds) if k and (a >= 0.0 or least in lower)]
+            for lower in (self._slower[:count] for count in range(len(self._slower) + 1))
+        ]
         self._last = Manoeuvre.empty(N)
         count = len(self._names)
         handicap = np.full(count, m.persistence)
@@ -105,8 +112,8 @@ class Search:
         changes slowly: besides the plan, driving on and one of the others are tried by turns, so
         that the search stays as quick as the loop.
         """
-        kinds, planned = self._kinds, self._planned
-        others = [k for k, (a, least) in enumerate(kinds) if k and (a >= 0.0 or speed > least)]
+        planned = self._planned
+        others = self._others[bisect_left(self._slower, speed)]
         self._turn += 1
         drive_on = not planned or self._drives_on or self._turn % 2 == 1
         ends = bool(end < fastest * self._time_step * len(allowed))
@@ -120,7 +127,8 @@ class Search:
             content = [] if self._turn % 2 else [others[self._turn // 2 % len(others)]]
         heats = Heats(first, content, others if drive_on else [_DRIVE_ON, *others])
         self._lay_out(speed, before, fastest, end if ends else inf)
-        self._charge(fastest, min(to_clear, float(allowed[-1])))
+        if to_clear > 0.0 or self._charged:
+            self._charge(fastest, min(to_clear, float(allowed[-1])))
         if self._compare(heats, drive_on, fastest, allowed, foresight):
             self._drives_on = True
             return "clear"
@@ -155,8 +163,6 @@ class Search:
 
     def _charge(self, fastest: float, to_clear: float) -> None:
         """Let each trial pay for standing within ``to_clear`` [m], which are to be kept free."""
-        if to_clear <= 0.0 and not self._charged:
-            return
         self._charged = to_clear > 0.0
         handicap = self._trials.handicap
         handicap[:] = self._handicap

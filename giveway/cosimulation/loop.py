@@ -39,6 +39,10 @@ from giveway.recording.recorder import Recorder
 from giveway.records.progress import Ending, Progress, Watcher
 from pedestrian_model import PedestrianModelError, PlugInError
 
+# An enumeration's class takes four times as long as a module to tell its members.
+_CONTROLLING, _VEHICLE = Phase.CONTROLLING, Phase.VEHICLE
+_CROWD, _SUMO = Phase.CROWD, Phase.SUMO
+
 
 class Loop:
     """One run's state and its steps.
@@ -258,7 +262,7 @@ class Loop:
         instant, pulse = self._instant, self._pulse
         instant[0], instant[1] = self._k, round(time * MILLISECONDS)
         pulse[INSTANT] = instant
-        pulse[PHASE] = Phase.CONTROLLING
+        pulse[PHASE] = _CONTROLLING
         recorder, mirror = self._recorder, self._mirror
         recorder.instant(time)
         mirror.place(self._egos)
@@ -272,7 +276,8 @@ class Loop:
             decision = ego.decide(self._k, time, seen)
             controlled_at = perf_counter()
             recorder.ego(ego.id, ego.row(time, seen, decision))
-            recorder.hasty(ego.id, seen.hasty)
+            if len(seen.hasty):
+                recorder.hasty(ego.id, seen.hasty)
             if ego.has_outputs:
                 recorder.outputs(ego.id, *ego.outputs())
             predicted = ego.expected(seen) if self._instants.looks else None
@@ -310,15 +315,15 @@ class Loop:
     def _advance(self) -> None:
         parts, mirror = self._parts, self._mirror
         recorded_at = perf_counter()
-        self._pulse[PHASE] = Phase.VEHICLE
+        self._pulse[PHASE] = _VEHICLE
         for ego in self._egos:
             ego.advance()
         vehicle_at = perf_counter()
-        self._pulse[PHASE] = Phase.CROWD
+        self._pulse[PHASE] = _CROWD
         self._step_crowd()
         crowd_at = perf_counter()
         self._k += 1
-        self._pulse[PHASE] = Phase.SUMO
+        self._pulse[PHASE] = _SUMO
         if self._k % parts.substeps:
             mirror.carry_on()
         else:

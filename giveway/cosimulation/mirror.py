@@ -99,21 +99,21 @@ class Mirror:
             near = _relevant(background, pedestrians, drives, self._span)
         if self.poses.shape[1] != len(egos) + len(near) or self._driven != egos:
             self._allocate(egos, len(near))
-        if len(near):
-            now = self.poses[0, self._egos :]
-            half_length = background.length[near] / 2
-            now[:, 0] = background.x[near] - half_length * np.cos(background.heading[near])
-            now[:, 1] = background.y[near] - half_length * np.sin(background.heading[near])
-            now[:, 2] = background.heading[near]
-            now[:, 3] = background.speed[near]
-            now[:, 4] = now[:, 5] = half_length
-            now[:, 6] = background.width[near]
-            extrapolate(self.poses, self._egos, self._time_step)
         self._since = 0
-        if len(near):
-            close = None if self._long else _close(background, near, egos)
-            self._bends.read(background, near, close)
-            self._bends.fill(self.poses, self._egos, 0)
+        if not len(near):
+            return
+        now = self.poses[0, self._egos :]
+        half_length = background.length[near] / 2
+        now[:, 0] = background.x[near] - half_length * np.cos(background.heading[near])
+        now[:, 1] = background.y[near] - half_length * np.sin(background.heading[near])
+        now[:, 2] = background.heading[near]
+        now[:, 3] = background.speed[near]
+        now[:, 4] = now[:, 5] = half_length
+        now[:, 6] = background.width[near]
+        extrapolate(self.poses, self._egos, self._time_step)
+        close = None if self._long else _close(background, near, egos)
+        self._bends.read(background, near, close)
+        self._bends.fill(self.poses, self._egos, 0)
 
     def _require_finite(self, vehicles: BackgroundVehicles) -> None:
         bad = ~np.isfinite(vehicles.x + vehicles.y + vehicles.speed)

@@ -4,6 +4,7 @@ Prediction and control work on what is seen here; tables and metrics on the trut
 """
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +42,7 @@ class Perception:
         known = config.perception.desired_speeds == "known"
         self._speed = None if known else config.crowd.desired_speed_mean
         self._goals = config.perception.goals == "known"
-        self._random = np.random.default_rng((config.seed, _STREAM, *config.ego_id.encode()))
+        self._seed = (config.seed, _STREAM, *config.ego_id.encode())
         self._truth: Crowd | None = None
         self._seen: Crowd | None = None
         self._tracker: Tracker | None = None
@@ -51,6 +52,10 @@ class Perception:
         if self._speed is not None and config.tracks_people:
             self._pace = Pace(self._speed, time_step)
         self.errors: Array | None = None
+
+    @cached_property
+    def _random(self) -> np.random.Generator:
+        return np.random.default_rng(self._seed)
 
     @property
     def exact(self) -> bool:

@@ -15,6 +15,7 @@ from controller import Trials, branch_off
 
 _COMMON = 0.5  # [s] of a manoeuvre, after which one knows: a walker slows by 1 m/s in it
 _BRAKING = (-2.5, -5.0)  # [m/s^2] of the branches, beside going on
+BRANCHES = 1 + len(_BRAKING)
 
 Cost = Callable[[Trials, list[int], bool], float]
 
@@ -29,7 +30,7 @@ def load() -> None:
 def hedged(
     cost: Cost, trials: Trials, rows: Sequence[int], likely: float, wanted: float, time_step: float
 ) -> int:
-    """The manoeuvre of least weighted cost.
+    """The manoeuvre of least weighted cost; -1: that is no number.
 
     Args:
         cost: of the best of some rows of the trials [s]; whether under the less likely hypothesis.
@@ -40,7 +41,7 @@ def hedged(
         time_step: of a manoeuvre [s].
     """
     first = min(max(round(_COMMON / time_step), 1), trials.speed.shape[1] - 1)
-    every = list(range(1 + len(_BRAKING)))
+    every = list(range(BRANCHES))
     branches = Trials(*(np.empty((len(every), *array.shape[1:])) for array in trials))
     costs = {row: cost(trials, [row], False) for row in rows}
     best, least = rows[0], np.inf
@@ -55,4 +56,4 @@ def hedged(
         whole = likely * costs[row] + (1.0 - likely) * other
         if whole < least:
             best, least = row, whole
-    return best
+    return best if costs[best] < np.inf else -1

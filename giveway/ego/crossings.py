@@ -75,6 +75,8 @@ def crossings_on(
         shape: of its body.
         crossings: of the network.
     """
+    if not crossings:
+        return ()
     found: list[PathCrossing] = []
     coarse = np.arange(0.0, path.length, _COARSE)
     middles = _points(path, coarse)

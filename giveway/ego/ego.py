@@ -49,7 +49,14 @@ class Ego:
         time_step: [s].
         profile: its speed where nothing is in its way; None: the controller's own.
         slope: of the path; None: it is level.
+
+    Attributes:
+        front: station of the front bumper [m].
+        pose: where the front bumper's centre is, and the direction of the body.
     """
+
+    front: float
+    pose: Pose
 
     def __init__(
         self,
@@ -67,12 +74,10 @@ class Ego:
         self._controller, self._predictor = waiting.controller, waiting.predictor
         self.config, self.id, self.shape = config, waiting.id, shape
         self.path, self.departure, self.way = path, departure, way
-        self._profile, self._slope = profile, slope
+        self._profile, self._slope, self._time_step = profile, slope, time_step
         self.has_outputs = bool(waiting.vehicle.record) or slope is not None
-        self._time_step = time_step
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
-        self.goal = goal
-        self.vehicle = waiting.vehicle
+        self.goal, self.vehicle = goal, waiting.vehicle
         half_width = config.regulation.corridor_half_width
         self.corridor = Corridor(
             path,
@@ -83,11 +88,11 @@ class Ego:
             body_length=shape.length,
             straight=round(_STRAIGHT / time_step) if waiting.controller.foresees else None,
         )
-        size = shape.length + self.corridor.half_width
         span = waiting.horizon * time_step
-        self._relevance = Relevance(waiting, span, size)
+        self._relevance = Relevance(waiting, span, shape.length + self.corridor.half_width)
         self._nearby = Nearby(waiting, path, span, shape.length, self.corridor.half_width)
         self._view = PathView(path)
+        self._chosen: Crowd | None = None  # memory for those who matter
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
         safety = waiting.safety
         perception = Perception(config, waiting.worst.acceleration, time_step)
@@ -97,8 +102,8 @@ class Ego:
         self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
         self._foresight = foresight_of(waiting, path, shape, self.corridor.half_width, time_step)
         self._force, self._eases_off = 0.0, False  # a brake, or drives off
-        self._pose: Pose | None = None  # asked for several times at each instant
         self._heed_vehicles = config.regulation.vehicles
+        self._locate()
         self._following = Following(
             config.regulation.safe_distance,
             self._origin,
@@ -111,18 +116,6 @@ class Ego:
     def foresees(self) -> bool:
         """Whether it predicts the crowd under each of its manoeuvres."""
         return self._foresight is not None
-
-    @property
-    def front(self) -> float:
-        """Station of the front bumper [m]."""
-        return self.departure + self.vehicle.position
-
-    @property
-    def pose(self) -> Pose:
-        """Where the front bumper's centre is, and the direction of the body."""
-        if self._pose is None:
-            self._pose = self.path.pose(self.front, self.shape.length)
-        return self._pose
 
     @property
     def arrived(self) -> bool:
@@ -179,7 +172,9 @@ class Ego:
                 relevant = self._relevance.of(crowd, self.pose.x, self.pose.y, speed)
             else:
                 relevant = self._nearby.of(crowd, front, speed)
-            pedestrians = crowd if relevant is None else crowd.select(relevant)
+            pedestrians = crowd
+            if relevant is not None:
+                self._chosen = pedestrians = crowd.select(relevant, self._chosen)
             if foresight is not None:
                 behind = kerbs[relevant] if len(kerbs) and relevant is not None else kerbs
                 off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
@@ -305,13 +300,18 @@ class Ego:
 
     def advance(self) -> None:
         """Step the FMU with the force decided on."""
-        self._pose = None
         if self._slope is None:
             self.vehicle.step(self._force)
         else:
             self.vehicle.step(self._force, self._slope.grade(self.front, self.shape.length))
+        self._locate()
         if self.way.bounds:
             self.way.pass_time(self.front, self.vehicle.speed, self._time_step)
+
+    def _locate(self) -> None:
+        """Note where it is now: asked for several times at each instant."""
+        self.front = self.departure + self.vehicle.position
+        self.pose = self.path.pose(self.front, self.shape.length)
 
     def outputs(self) -> tuple[Sequence[tuple[str, str, str]], Sequence[float]]:
         """What is recorded of its FMU at this instant, and the grade of its road if it has one."""

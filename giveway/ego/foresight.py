@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from controller import Heats, Manoeuvre, Prospect, Trials, Verdict, WorstMotion
 from giveway.ego.belief import Beliefs, Halting, Otherwise
-from giveway.ego.contingency import hedged
+from giveway.ego.contingency import BRANCHES, hedged
 from giveway.ego.corridor import fill_poses
 from giveway.ego.crossers import fill_crossers
 from giveway.ego.kerbs import NO_KERBS, kerb_lines
@@ -103,7 +103,7 @@ class CrowdForesight:
         N, M = horizon, predictor.horizon
         every = round(predictor.time_step / time_step)
         self._predictor, self._every = predictor, every
-        self._path = path
+        self._way = path.vertices, path.stations, path.headings
         self._planned_speed = planned_speed
         # Plain tuples: each call would look the class of a named one up anew (2 us).
         self._view = tuple(
@@ -133,7 +133,7 @@ class CrowdForesight:
         self._copied, self._stale, self._preferred = False, True, False
         self._otherwise: Otherwise | None = None
         self._winner = -1  # of the latest race, whose lanes hold it
-        self._lanes = Lanes(0, N, M, 0)
+        self._lanes = self._aside = Lanes(0, N, M, 0)
         # Under one speed for all there is one prediction for all: there is nothing to save. Other
         # models than VCI are no part of the compiled race: manoeuvres are judged one by one.
         self._vci = predictor if isinstance(predictor, Predictor) else None
@@ -204,11 +204,8 @@ class CrowdForesight:
             self._speed[:] = self._now
             self._predict(self._distance, self._speed)
         gap, conflicts, calm, _ = self._prospect
-        path = self._path
         assess(
-            path.vertices,
-            path.stations,
-            path.headings,
+            *self._way,
             self._pedestrians.position,
             self._predicted,
             self._front,
@@ -223,8 +220,7 @@ class CrowdForesight:
         wishes = self._predictor.wishes(self._pedestrians, self._surroundings)
         crossers = np.empty((len(wishes), 4))
         fill_crossers(
-            path.vertices,
-            path.stations,
+            *self._way[:2],
             self._front + manoeuvre.distance[-1],
             self._view[2],
             np.column_stack([self._predicted[-1], wishes]),
@@ -251,12 +247,12 @@ class CrowdForesight:
         n, lanes = len(self._pedestrians), self._lanes
         if lanes.people < n or lanes.count < len(trials.handicap):
             lanes = self._lanes = Lanes(len(trials.handicap), len(allowed), len(self._poses), n)
-        judged = allowed, wanted, weights
-        if self._otherwise is not None:
-            heats, lead = self._hedge(lanes, trials, heats, judged), False
-        best, clear, tried = self._run(
-            lanes, trials, heats, lead, judged, self._pedestrians, self._halting
-        )
+        raced, whom = (lanes, trials, heats), (self._pedestrians, self._halting)
+        judged, other = (allowed, wanted, weights), self._otherwise
+        if other is not None:
+            best, clear, tried = self._hedge(*raced, judged, other)
+        else:
+            best, clear, tried = self._run(*raced, lead, judged, *whom)
         if best >= 0:
             self._winner = best
             self._soon = lanes.soon(best, n)
@@ -273,10 +269,10 @@ class CrowdForesight:
         halting: Halting,
     ) -> tuple[int, bool, int]:
         """As :func:`run_race`, with people who do as either hypothesis says."""
-        vci, path = self._vci, self._path
+        vci = self._vci
         assert vci is not None  # else there is no race
         ended: tuple[int, bool, int] = run_race(
-            (path.vertices, path.stations, path.headings),
+            self._way,
             vci.arrays(people, self._surroundings),
             (*vci.law, halting),
             self._poses,
@@ -294,20 +290,24 @@ class CrowdForesight:
             raise vci.divergence(people, lanes.bad)
         return ended
 
-    def _hedge(self, lanes: Lanes, trials: Trials, heats: Heats, judged: _Judged) -> Heats:
-        """Of all trials the one that is best where either hypothesis may be true."""
-        other = self._otherwise
-        assert other is not None
-        time_step = View(*self._view).time_step
+    def _hedge(
+        self, lanes: Lanes, trials: Trials, heats: Heats, judged: _Judged, other: Otherwise
+    ) -> tuple[int, bool, int]:
+        """As :meth:`_run`: of all trials the best one where either hypothesis may be true."""
+        time_step, n = View(*self._view).time_step, len(other.people)
+        if self._aside.people < n:  # what the trials lead to stays in their own lanes
+            self._aside = Lanes(BRANCHES, len(judged[0]), len(self._poses), n)
+        likelier, less = (lanes, self._pedestrians, self._halting), (self._aside, *other[:2])
 
         def cost(trials: Trials, rows: list[int], otherwise: bool) -> float:
-            whom = other[:2] if otherwise else (self._pedestrians, self._halting)
-            best, _, _ = self._run(lanes, trials, Heats(rows, [], []), False, judged, *whom)
-            own, others = lanes.arrays[3][:2, best]
+            among, people, halting = less if otherwise else likelier
+            raced = among, trials, Heats(rows, [], [])
+            best, _, _ = self._run(*raced, False, judged, people, halting)
+            own, others = among.arrays[3][:2, best]
             return float(own + time_step * others + trials.handicap[best]) if best >= 0 else inf
 
         rows = list(dict.fromkeys([*heats.first, *heats.content, *heats.wanting]))
-        return Heats([hedged(cost, trials, rows, other.likely, judged[1], time_step)], [], [])
+        return hedged(cost, trials, rows, other.likely, judged[1], time_step), False, 1
 
     def prefer(self) -> None:
         """Keep the positions under the latest manoeuvre as those of the preferred one."""
@@ -317,13 +317,10 @@ class CrowdForesight:
         self._preferred = True
 
     def _predict(self, distance: Array, speed: Array) -> None:
-        path = self._path
         if not self._copied:
             self._copy()
         fill_poses(
-            path.vertices,
-            path.stations,
-            path.headings,
+            *self._way,
             self._front,
             self._middle(distance),
             self._middle(speed),

@@ -1,5 +1,7 @@
 """An ego's path as its controller sees it: from the front bumper on, computed when asked for."""
 
+from functools import cached_property
+
 import numpy as np
 
 from giveway.geometry.kernel import Array
@@ -21,12 +23,16 @@ class PathView:
 
     def __init__(self, path: EgoPath) -> None:
         self._path = path
-        headings = np.unwrap(path.headings)
-        beyond = 3.0 * HALF  # it goes on straight
-        self._at = np.concatenate([[-beyond], path.stations, [path.length + beyond]])
-        steps = np.diff(self._at) * np.concatenate([headings[:1], headings, headings[-1:]])
-        self._turned = np.concatenate([[0.0], np.cumsum(steps)])  # the heading's integral
         self.station = 0.0
+
+    @cached_property
+    def _turned(self) -> tuple[Array, Array]:
+        """Stations [m], and the heading's integral up to there [rad.m]."""
+        headings = np.unwrap(self._path.headings)
+        beyond = 3.0 * HALF  # it goes on straight
+        at = np.concatenate([[-beyond], self._path.stations, [self._path.length + beyond]])
+        steps = np.diff(at) * np.concatenate([headings[:1], headings, headings[-1:]])
+        return at, np.concatenate([[0.0], np.cumsum(steps)])
 
     def remaining(self) -> float:
         """How much of the path is left [m]."""
@@ -49,7 +55,7 @@ class PathView:
         """
         at = np.clip(self.station + distances, -HALF, self._path.length + HALF)
         before, here, behind = (
-            np.interp(at + shift, self._at, self._turned) for shift in (-HALF, 0.0, HALF)
+            np.interp(at + shift, *self._turned) for shift in (-HALF, 0.0, HALF)
         )
         curvature: Array = (before - 2.0 * here + behind) / HALF**2
         return curvature

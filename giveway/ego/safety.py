@@ -1,19 +1,26 @@
 """The safety layer of one ego on its path."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from controller import Decision, LongitudinalModel, SafetyLayer, SafetyParameters
+from controller import (
+    Decision,
+    LongitudinalModel,
+    SafetyLayer,
+    SafetyParameters,
+    largest_safe_force,
+)
 from giveway.config import EgoRunConfig
 from giveway.ego.kerbs import NO_KERBS
 from giveway.geometry.bodies import VehicleShape
-from giveway.geometry.kernel import Array, kernel
+from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath, body_pose, segment_at
 from pedestrian_model import Crowd
 
 _FINEST = 0.25  # [m] between poses: a chord of a bend of 5 m radius is 1.6 mm off
-_MOST = 256  # poses
+MOST_POSES = 256  # of the front ahead
 
 
 class Guard:
@@ -37,7 +44,9 @@ class Guard:
     ) -> None:
         model = LongitudinalModel(config.vehicle.mass, config.vehicle.friction, time_step)
         self._layer = SafetyLayer(model, replace(limits, width=shape.width))
-        self._poses = FrontPoses(path, shape.length)
+        self._way = path.vertices, path.stations, path.headings
+        self._length = shape.length
+        self._poses = np.zeros((MOST_POSES, 4))
 
     def overrule(
         self,
@@ -58,50 +67,72 @@ class Guard:
             errors: (n,) [m] that their positions are off at most; None: as the limits say.
             kerbs: (n, 3) of those on sidewalks, see :meth:`giveway.ego.kerbs.Kerbs.of`.
         """
-        poses, spacing = self._poses.sample(front, self._layer.reach(speed))
-        safe = self._layer.filter(
-            decision.force, speed, poses, spacing, crowd.position, crowd.velocity, errors, kerbs
-        )
-        if not safe.acted:
-            return None
-        return decision._replace(force=safe.force, acting="safety", reason=safe.reason)
-
-
-class FrontPoses:
-    """The poses of a body's front along a path; the array is handed out again and again.
-
-    Args:
-        path: of the front's middle, and of the rear's.
-        length: of the body [m].
-    """
-
-    def __init__(self, path: EgoPath, length: float) -> None:
-        self.path = path
-        self.length = length
-        self._buffer = np.zeros((_MOST, 4))
-
-    def sample(self, front: float, reach: float) -> tuple[Array, float]:
-        """The poses (k, 4) x, y [m], cos, sin from the station ``front`` on, and their spacing [m].
-
-        Where the path is straight, from the rear bumper to ``reach`` [m] ahead of the front, one
-        pose says everything.
-        """
-        spacing = max(_FINEST, reach / (_MOST - 2))
-        path = self.path
-        count = fill_front_poses(
-            path.vertices,
-            path.stations,
-            path.headings,
+        layer = self._layer
+        safe, verdict = watch(
+            self._way,
             front,
-            self.length,
-            reach,
-            spacing,
-            self._buffer,
+            self._length,
+            layer.reach(speed),
+            self._poses,
+            decision.force,
+            speed,
+            crowd.position,
+            crowd.velocity,
+            layer.errors(len(crowd.position)) if errors is None else errors,
+            kerbs,
+            layer.memory,
         )
-        return self._buffer[:count], spacing
+        if not verdict:
+            return None
+        return decision._replace(force=safe, acting="safety", reason=layer.REASONS[verdict])
 
 
 @kernel
+def watch(
+    path: tuple[Array, Array, Array],
+    front: float,
+    length: float,
+    reach: float,
+    poses: Array,
+    force: float,
+    speed: float,
+    position: Array,
+    velocity: Array,
+    errors: Array,
+    kerbs: Array,
+    memory: tuple[Any, ...],
+) -> tuple[float, int]:
+    """As :func:`controller.largest_safe_force`, on a path.
+
+    Args:
+        path: vertices, stations and headings of the ego's.
+        front: the front bumper's station [m].
+        length: of the body [m].
+        reach: [m] ahead of the front that matters.
+        poses: (k, 4) scratch.
+        force: asked for [N].
+        speed: of the ego [m/s].
+        position: (n, 2) [m] people's.
+        velocity: (n, 2) [m/s] theirs.
+        errors: (n,) [m], or more.
+        kerbs: (n, 3), or none.
+        memory: of the safety layer.
+    """
+    spacing = spacing_of(reach, poses.shape[0])
+    count = fill_front_poses(*path, front, length, reach, spacing, poses)
+    ahead = poses[:count]
+    return largest_safe_force(
+        force, speed, ahead, spacing, position, velocity, errors, kerbs, *memory
+    )
+
+
+@inner
+def spacing_of(reach: float, most: int) -> float:
+    """The distance [m] between ``most`` poses, or fewer, that go as far as ``reach`` [m]."""
+    return max(_FINEST, reach / (most - 2))
+
+
+@inner
 def fill_front_poses(
     vertices: Array,
     stations: Array,
@@ -112,7 +143,11 @@ def fill_front_poses(
     spacing: float,
     poses: Array,
 ) -> int:
-    """Fill ``poses`` with x, y, cos, sin at front, front + spacing, ...; how many there are."""
+    """Fill ``poses`` with x, y, cos, sin at front, front + spacing, ...; how many there are.
+
+    Where the path is straight, from the rear bumper to ``reach`` [m] ahead of the front, one pose
+    says everything.
+    """
     straight = segment_at(stations, front - length) == segment_at(stations, front + reach)
     count = 1 if straight else min(2 + int(reach / spacing), poses.shape[0])
     for i in range(count):

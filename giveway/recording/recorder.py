@@ -139,9 +139,8 @@ class Recorder:
 
     def hasty(self, ego_id: str, pedestrians: Indices) -> None:
         """Note who set out for the road more suddenly than an ego's safety layer assumes."""
-        if len(pedestrians):
-            block = self._hasty.block(len(pedestrians))
-            block[:, 0], block[:, 1] = self._egos.index(ego_id), pedestrians
+        block = self._hasty.block(len(pedestrians))
+        block[:, 0], block[:, 1] = self._egos.index(ego_id), pedestrians
 
     def crowd(
         self, present: Indices, position: Array, velocity: Array, egos: Array, within: float

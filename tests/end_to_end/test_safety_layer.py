@@ -4,11 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from support.front_poses import front_poses
 
 from controller import Decision, SafetyParameters
 from giveway.api import RunResult
 from giveway.config import EgoRunConfig
-from giveway.ego.safety import FrontPoses, Guard
+from giveway.ego.safety import Guard
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
@@ -112,14 +113,14 @@ def person_at(x: float, y: float) -> Crowd:
 
 
 def test_on_a_straight_way_one_pose_says_everything() -> None:
-    way, _ = FrontPoses(EgoPath.through([(0.0, 0.0), (50.0, 50.0)]), 5.0).sample(14.0, 30.0)
+    way, _ = front_poses(EgoPath.through([(0.0, 0.0), (50.0, 50.0)]), 14.0, 30.0, 5.0)
     half = np.sqrt(0.5)
     np.testing.assert_allclose(way, [[14.0 * half, 14.0 * half, half, half]])
 
 
 def test_in_a_bend_the_poses_are_those_of_the_body() -> None:
     path = quarter_turn(8.0)
-    way, spacing = FrontPoses(path, 5.0).sample(18.0, 6.0)
+    way, spacing = front_poses(path, 18.0, 6.0, 5.0)
     assert len(way) * spacing > 6.0
     for i, (x, y, cos, sin) in enumerate(way):
         pose = path.pose(18.0 + i * spacing, 5.0)
@@ -128,7 +129,7 @@ def test_in_a_bend_the_poses_are_those_of_the_body() -> None:
 
 
 def test_a_way_of_any_length_is_sampled_to_its_end() -> None:
-    way, spacing = FrontPoses(quarter_turn(8.0), 5.0).sample(0.0, 5000.0)
+    way, spacing = front_poses(quarter_turn(8.0), 0.0, 5000.0, 5.0)
     assert (len(way) - 1) * spacing >= 5000.0
 
 

@@ -64,6 +64,28 @@ def test_select_and_concatenate_keep_routes_and_progress():
     assert len(Crowd.empty().concatenate(crowd)) == 3
 
 
+@pytest.mark.parametrize("mask", [[True, False, True], [False, True, True]])
+def test_a_selection_into_the_room_of_another_is_as_one_of_its_own(mask):
+    room = three().select(np.array([True, True, False]))
+    crowd = Crowd.create(
+        [(1, 0), (2, 1), (4, 1)],
+        np.ones((3, 2)),
+        [1.1, 1.2, 1.3],
+        [[(8, 9), (8, 8)], [(2, 0)], [(4, 3)]],
+        signals=[[0, -1], [-1], [2]],
+        priority=[0.0, 0.5, 1.0],
+    )
+    kept = room.select(np.ones(2, dtype=bool))
+    fits = len(room.waypoints) == 2 * sum(mask[:1]) + sum(mask[1:])
+    reused, own = crowd.select(np.array(mask), room), crowd.select(np.array(mask))
+    assert (reused is room) == fits
+    for field in fields(Crowd):
+        np.testing.assert_array_equal(getattr(reused, field.name), getattr(own, field.name))
+    assert reused.signals == own.signals == 3
+    if not fits:
+        np.testing.assert_array_equal(room.waypoints, kept.waypoints)
+
+
 def test_arrived_means_the_last_waypoint():
     crowd = Crowd.create(
         [(0, 0), (0, 0), (0, 3)],

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+from support.front_poses import front_poses
 
 from controller import (
     LongitudinalModel,
@@ -18,7 +19,6 @@ from controller import (
 )
 from giveway.ego.foresight import CrowdForesight, plan_predictor
 from giveway.ego.prospects import PASSED, View, assess
-from giveway.ego.safety import FrontPoses
 from giveway.ego.threats import Alarm, is_threat, outline
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import kernel
@@ -239,13 +239,12 @@ def test_whoever_stands_where_the_safety_layer_would_act_is_a_threat(name):
     path, m = PATHS[name], manoeuvre(3.98)
     layer = SafetyLayer(LongitudinalModel(), SafetyParameters())
     front = FRONT + m.distance[1]
-    ways = FrontPoses(path, LENGTH)
     acted = 0
     for ahead, aside in itertools.product(np.arange(0.7, 2.4, 0.1), (-1.6, -1.4, 1.4, 1.6)):
         x, y, heading = path.pose(front + ahead)
         there = np.array([[x - aside * np.sin(heading), y + aside * np.cos(heading)]])
         layer.reset()
-        way = ways.sample(front, layer.reach(3.98))
+        way = front_poses(path, front, layer.reach(3.98), LENGTH)
         if layer.filter(398.0, 3.98, *way, there, np.zeros((1, 2))).acted:
             acted += 1
             _, _, calm = assessed(path, np.repeat(there[None], N, axis=0), m)
