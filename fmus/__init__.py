@@ -2,6 +2,7 @@
 
 from fmus.description.model import FmuDescription
 from fmus.description.reading import describe
+from fmus.driving.kept_folder import keep_unpacked
 from fmus.driving.vehicle import VehicleFmu
 from fmus.errors import (
     FmuArchiveError,
@@ -68,6 +69,7 @@ __all__ = [
     "describe",
     "export_controller",
     "is_bundled",
+    "keep_unpacked",
     "make_controller_profile",
     "make_profile",
     "open_vehicle",

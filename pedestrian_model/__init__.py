@@ -1,5 +1,6 @@
 """The vehicle-crowd interaction (VCI) model: a social force model of pedestrians near vehicles."""
 
+from pedestrian_model._ahead import leap, start
 from pedestrian_model._jit import borrowed
 from pedestrian_model.conformance import Finding, check_model
 from pedestrian_model.crowd import Crowd
@@ -31,7 +32,7 @@ from pedestrian_model.plug_in import (
     Walkers,
 )
 from pedestrian_model.plugged_in import PluggedInModel
-from pedestrian_model.prediction import Predictor, leap, start, wish
+from pedestrian_model.prediction import Predictor, wish
 from pedestrian_model.protocol import CrowdPredictor, PedestrianModel
 from pedestrian_model.stepwise_prediction import StepwisePredictor
 from pedestrian_model.surroundings import OPEN_GROUND, Surroundings, Walls

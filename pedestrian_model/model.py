@@ -1,16 +1,17 @@
 """The crowd, stepped: Newton's law under the sum of the sub-forces."""
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pedestrian_model._ahead import walk_ahead
 from pedestrian_model._constants import pack
 from pedestrian_model._jit import inlined, kernel
 from pedestrian_model._routes import Line, Routes, aim
 from pedestrian_model._rows import Arrays, Workspace
-from pedestrian_model._step import FINE, march, parts
+from pedestrian_model._step import FINE
 from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import DivergenceError, ParameterError, SurroundingsError
 from pedestrian_model.parameters import SIM, VciParameters
@@ -28,6 +29,7 @@ CELL_LIST_FROM = 100
 SHARED_FROM = 1000
 #: More threads than this are taken for a mistake.
 MOST_THREADS = 256
+_NOWHERE: Final = np.empty((1, 0, 2))  # where nobody's position after a step is noted
 
 
 def substeps(time_step: float, longest: float = LONGEST_STEP) -> int:
@@ -153,17 +155,20 @@ class CrowdModel:
         n = crowd.position.shape[0]
         if n > self._workspace.capacity:
             self._workspace.reserve(n)
-        arrays = self._latest[2]
+        people = self._latest[2]
         if crowd is not self._latest[0] or surroundings is not self._latest[1]:
-            arrays = (*crowd.state, *crowd.wishes, *surroundings.arrays, *self._workspace.arrays)
-            self._latest = crowd, surroundings, arrays
+            state, memory = crowd.state, self._workspace.arrays
+            people = (*state, *crowd.wishes, *surroundings.arrays, *memory)
+            people += (*state, crowd.velocity)  # the crowd is its own memory for the state ahead:
+            self._latest = crowd, surroundings, people  # one kernel less to compile
         time = (self._dt, self._substeps)
         if self._team is not None and n >= max(SHARED_FROM, self.cell_list_from):
             bad = self._team.advance(
-                arrays, self._workspace, vehicles.array, self._constants, *time
+                people[:-4], self._workspace, vehicles.array, self._constants, *time
             )
         else:
-            bad = _advance(arrays, vehicles.array, self._constants, *time, self.cell_list_from)
+            law = (self._constants, *time, self.cell_list_from, 0.0)
+            bad = walk_ahead(people, vehicles.array[None], *law, _NOWHERE)
         if bad != FINE:
             raise divergence(bad, crowd, vehicles)
 
@@ -173,29 +178,6 @@ def _team(threads: int) -> "Team":
     from pedestrian_model._team import Team
 
     return Team(threads)
-
-
-@kernel
-def _advance(
-    arrays: Arrays,
-    vehicles: NDArray[np.float64],
-    constants: NDArray[Any],
-    dt: float,
-    substeps: int,
-    cell_list_from: int,
-) -> int:
-    """Advance the state in place by ``substeps`` steps of dt; ``FINE`` or the first bad index.
-
-    Args:
-        arrays: those of State, Scene (its routes too) and Scratch, one after the other.
-        vehicles: (m, 7).
-        constants: of the model.
-        dt: [s].
-        substeps: how many steps.
-        cell_list_from: the crowd size from which neighbours are found by a cell list.
-    """
-    state, scene, scratch = parts(arrays)
-    return march(state, scene, vehicles, scratch, constants, dt, substeps, cell_list_from)
 
 
 def unknown_signal(crowd: Crowd, surroundings: Surroundings) -> SurroundingsError:

@@ -1,16 +1,16 @@
 """Where the crowd will be: the model itself, applied N times under given vehicle poses."""
 
 import math
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pedestrian_model._ahead import walk_ahead
 from pedestrian_model._constants import pack
 from pedestrian_model._jit import borrowed, inlined, kernel
 from pedestrian_model._routes import Line, aim
-from pedestrian_model._rows import Arrays, Scratch, Workspace
-from pedestrian_model._step import FINE, Scene, State, march, parts
+from pedestrian_model._rows import Arrays, Workspace
+from pedestrian_model._step import FINE, Scene, parts
 from pedestrian_model.crowd import Crowd
 from pedestrian_model.errors import DivergenceError, ParameterError, VehicleError
 from pedestrian_model.model import (
@@ -113,7 +113,8 @@ class Predictor:
             )
         if not flags.c_contiguous or vehicles_trajectory.dtype != np.float64:
             raise VehicleError("vehicles_trajectory is expected to be C-contiguous float64")
-        bad = _predict(self.arrays(crowd, surroundings), vehicles_trajectory, *self.law, self._out)
+        people = self.arrays(crowd, surroundings)
+        bad = walk_ahead(people, vehicles_trajectory, *self.law, self._out)
         if bad != FINE:
             raise self.divergence(crowd, bad)
         return self._out
@@ -150,78 +151,6 @@ class Predictor:
         )
 
 
-class Ahead(NamedTuple):
-    """A state that is predicted, and memory."""
-
-    state: State
-    velocity: NDArray[np.float64]  # (n, 2) [m/s] before the latest step
-
-
-@inlined
-def start(arrays: Arrays) -> tuple[Ahead, Scene, Scratch]:
-    """The present state, ready for :func:`leap` to be changed, with what the crowd walks among.
-
-    Inlined, for compiled functions that predict step by step: handing so many arrays from one to
-    the next costs as much as the forces of ten people.
-
-    Args:
-        arrays: those of :meth:`Predictor.arrays`.
-    """
-    state, scene, scratch = parts(arrays[:-4])
-    memory = borrowed(arrays[-4:])
-    ahead = State(memory[0], memory[1], memory[2])
-    for i in range(state.position.shape[0]):
-        ahead.position[i, 0], ahead.position[i, 1] = state.position[i, 0], state.position[i, 1]
-        ahead.velocity[i, 0], ahead.velocity[i, 1] = state.velocity[i, 0], state.velocity[i, 1]
-        ahead.waypoint_index[i] = state.waypoint_index[i]
-    return Ahead(ahead, memory[3]), scene, scratch
-
-
-@inlined
-def leap(
-    ahead: Ahead,
-    scene: Scene,
-    vehicles: NDArray[np.float64],
-    scratch: Scratch,
-    constants: NDArray[Any],
-    dt: float,
-    substeps: int,
-    cell_list_from: int,
-    lead: float,
-) -> int:
-    """As :func:`march`, also for steps that stand for several of the crowd's own.
-
-    The forces are then those at the mean of the instants at which the own steps would have them:
-    people are moved on by ``lead`` [s] at their velocities, and back. And the mass is a greater
-    one, because each of the own steps would take back a part k_des dt/m of the speed that the one
-    before has gained (``pack``). So two steps of 0.05 s and one of 0.1 s differ less by half.
-
-    Args:
-        ahead: changed.
-        scene: what the crowd walks among.
-        vehicles: (m, 7) at that mean instant.
-        scratch: memory.
-        constants: of the model.
-        dt: [s] of a step.
-        substeps: how many.
-        cell_list_from: the crowd size from which neighbours are found by a cell list.
-        lead: [s].
-
-    Returns:
-        ``FINE`` or the first bad index.
-    """
-    (x, v, at), before = ahead
-    n = x.shape[0] if lead > 0.0 else 0
-    for i in range(n):
-        before[i, 0], before[i, 1] = v[i, 0], v[i, 1]
-        x[i, 0], x[i, 1] = x[i, 0] + lead * v[i, 0], x[i, 1] + lead * v[i, 1]
-    state = State(x, v, at)
-    insane = march(state, scene, vehicles, scratch, constants, dt, substeps, cell_list_from)
-    for i in range(n):
-        x[i, 0], x[i, 1] = x[i, 0] - lead * before[i, 0], x[i, 1] - lead * before[i, 1]
-    return insane
-
-
 @inlined
 def wish(x: float, y: float, target: int, i: int, scene: Scene) -> tuple[float, float, float]:
     """The velocity [m/s] that a pedestrian would have with nobody about, and for how long [s].
@@ -255,30 +184,3 @@ def fill_wishes(arrays: Arrays, wishes: NDArray[np.float64]) -> None:
     x, _, at, _ = borrowed(arrays[-4:])
     for i in range(x.shape[0]):
         wishes[i, 0], wishes[i, 1], wishes[i, 2] = wish(x[i, 0], x[i, 1], at[i], i, scene)
-
-
-@kernel
-def _predict(
-    arrays: Arrays,
-    vehicles: NDArray[np.float64],
-    constants: NDArray[Any],
-    dt: float,
-    substeps: int,
-    cell_list_from: int,
-    lead: float,
-    out: NDArray[np.float64],
-) -> int:
-    """Fill ``out`` (N, n, 2) with the positions of the next N steps; the state stays as it is.
-
-    As :func:`leap`, with ``vehicles`` (N, m, 7).
-    """
-    ahead, scene, scratch = start(arrays)
-    x = ahead.state.position
-    law = (constants, dt, substeps, cell_list_from, lead)
-    for k in range(out.shape[0]):
-        insane = leap(ahead, scene, vehicles[k], scratch, *law)
-        if insane != FINE:
-            return insane
-        for i in range(out.shape[1]):
-            out[k, i, 0], out[k, i, 1] = x[i, 0], x[i, 1]
-    return FINE

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NoReturn, Self
 
 from fmus.description.model import Value
+from fmus.driving.kept_folder import PREFIX, kept
 from fmus.driving.motion import Motion
 from fmus.driving.starting import reach, require_position, start_values
 from fmus.errors import FmuOutputError, FmuStartError, FmuStateError, FmuStepError
@@ -50,11 +51,12 @@ class VehicleFmu(Drivable):
     ) -> None:
         prepared = prepare(path, step_size=step_size, profile=profile, start_values=start_values)
         with ExitStack() as stack:  # if a later part fails, the earlier ones are undone
-            folder = stack.enter_context(
-                tempfile.TemporaryDirectory(prefix="vehicle-fmu-", ignore_cleanup_errors=True)
-            )
-            unpack(prepared, Path(folder))
-            self._set_up(prepared, Path(folder), stack)
+            folder = kept(prepared)
+            if folder is None:
+                own = tempfile.TemporaryDirectory(prefix=PREFIX, ignore_cleanup_errors=True)
+                folder = Path(stack.enter_context(own))
+                unpack(prepared, folder)
+            self._set_up(prepared, folder, stack)
 
     @classmethod
     def unpacked(cls, prepared: Prepared, folder: Path) -> Self:

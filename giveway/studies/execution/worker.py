@@ -40,10 +40,12 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
     with (Path(folder) / TRACEBACK_FILE).open("w", encoding="utf-8") as file:
         faulthandler.enable(file)
         heartbeat = Heartbeat(Path(folder))
+        from fmus import keep_unpacked
         from giveway.precompile import compile_kernels_once
         from giveway.studies.execution import perform as performing  # noqa: F401 - no run waits for it
         from giveway.sumo.library import import_libsumo
 
+        keep_unpacked()  # this worker's temporary files go with it
         import_libsumo()  # if it is missing, that is not the failure of a run
         compile_kernels_once()  # half a minute of compiling must not look like a hanging run
         line.send(READY)
