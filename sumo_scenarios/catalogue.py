@@ -4,6 +4,7 @@ import difflib
 import os
 import tomllib
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from sumo_scenarios.errors import ScenarioError
@@ -25,6 +26,7 @@ class Scenario:
     description: str  # one line, from the settings; empty without them
 
 
+@cache
 def available() -> tuple[str, ...]:
     """Name the bundled scenarios, in alphabetical order."""
     return tuple(sorted(config.parent.name for config in _ROOT.glob(f"*/*{_CONFIG_SUFFIX}")))

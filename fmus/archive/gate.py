@@ -45,9 +45,9 @@ TWICE: Final = "twice in the archive (capitals and how accents are coded do not 
 LOCAL_HEADER: Final = 30  # [bytes] before the name of a member in the archive
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Archive:
-    """An FMU's archive that has passed the gate."""
+    """An FMU's archive that has passed the gate; the same file gives the same one, for a while."""
 
     path: Path
     members: Mapping[str, zipfile.ZipInfo]  # files only, by their name

@@ -8,6 +8,7 @@ import math
 import os
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -51,6 +52,7 @@ def read_model(path: Path) -> Model:
     return model_of(open_archive(path))
 
 
+@lru_cache(maxsize=2)  # preparing a vehicle asks repeatedly
 def model_of(archive: Archive) -> Model:
     """The same as :func:`read_model` for an archive that is open already."""
     path, where = archive.path, f"{archive.path}: {DESCRIPTION}"

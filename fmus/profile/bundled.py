@@ -1,7 +1,7 @@
 """Where the shipped FMUs are, and how they are driven."""
 
 import hashlib
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Final, Literal
 
@@ -34,9 +34,9 @@ def bundled_fmu(fmi_version: FmiVersion = "2.0") -> Path:
 def is_bundled(path: Path) -> bool:
     """Whether this is a shipped FMU, or a copy of one, byte by byte."""
     try:
-        size = path.stat().st_size
         return any(
-            size == bundled_fmu(version).stat().st_size and _digest(path) == _ours(version)
+            _state(path)[1] == bundled_fmu(version).stat().st_size
+            and _digest(path, _state(path)) == _ours(version)
             for version in FILES
         )
     except OSError:
@@ -45,8 +45,16 @@ def is_bundled(path: Path) -> bool:
 
 @cache
 def _ours(version: FmiVersion) -> str:
-    return _digest(bundled_fmu(version))
+    path = bundled_fmu(version)
+    return _digest(path, _state(path))
 
 
-def _digest(path: Path) -> str:
+def _state(path: Path) -> tuple[int, int, int]:
+    """What differs as soon as a file does."""
+    status = path.stat()
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
+@lru_cache(maxsize=8)
+def _digest(path: Path, _state: tuple[int, int, int]) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()

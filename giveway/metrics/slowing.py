@@ -1,5 +1,7 @@
 """Whether people ever slowed an ego: its speed against what it drives there with nobody about."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -54,18 +56,15 @@ def slowing_begins(ego: EgoTrack, reference: float | None) -> int | None:
 
 def free_speed(ego: EgoTrack, reference: float | None) -> NDArray[np.float64]:
     """(T,) [m/s] what the ego drives with nobody about; nan where a stop or a vehicle is near."""
-    top = _reference(ego, reference)
     held = (ego.vehicle_gap < _HELD) | (ego.stop_gap < _HELD)
-    square = float(ego.speed[0]) ** 2
     way = np.diff(ego.position, prepend=ego.position[0])
-    free = np.full(len(ego.time), np.nan)
-    for k in range(len(ego.time)):
-        if held[k]:
-            square = float(ego.speed[k]) ** 2
-            continue
-        square = min(square + 2.0 * _RISE * max(float(way[k]), 0.0), float(top[k]) ** 2)
-        free[k] = np.sqrt(square)
-    return free
+    columns = held, ego.speed, way, _reference(ego, reference)
+    square, free = float(ego.speed[0]) ** 2, []
+    for stops, speed, driven, top in zip(*(column.tolist() for column in columns), strict=True):
+        rising = square + 2.0 * _RISE * max(driven, 0.0)
+        square = speed**2 if stops else min(rising, top**2)
+        free.append(math.nan if stops else math.sqrt(square))
+    return np.array(free)
 
 
 def _first_slowed(ego: EgoTrack, free: NDArray[np.float64]) -> int | None:

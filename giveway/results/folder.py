@@ -184,7 +184,7 @@ def _leave_incomplete(torn: Path, manifest: dict[str, Any]) -> None:
 
 def _summary(result: RunTables) -> dict[str, Any]:
     """The first ego's row, the other egos' rows, and the computing times."""
-    rows = [_plain(row) for row in result.summary_table.to_dict("records")]
+    rows = [_plain(row) for row in result.summary_rows]
     more = {"egos": rows} if len(rows) > 1 else {}
     return result.summary | more | {"timing": result.timing_summary}
 

@@ -1,5 +1,6 @@
 """What a run leaves behind as numbers: tracks, tables, summaries."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -230,8 +231,18 @@ class RunTables:
         return self.head | head | ego.summary
 
     @property
-    def summary_table(self) -> "pd.DataFrame":
+    def summary_rows(self) -> list[dict[str, Any]]:
         """One row per ego; of a run without one, how people walked."""
+        if len(self.egos) == 1 and self.walks is None:
+            names = [column.name for column in self.schemas["summary"]]
+            row = self._row(self.egos[0])
+            return [{name: row.get(name, math.nan) for name in names}]
+        rows = self.summary_table.to_dict("records")  # where a column has one type for all
+        return [{str(name): value for name, value in row.items()} for row in rows]
+
+    @property
+    def summary_table(self) -> "pd.DataFrame":
+        """The same as a table."""
         import pandas as pd
 
         names = [column.name for column in self.schemas["summary"]]

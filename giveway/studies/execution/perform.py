@@ -87,8 +87,7 @@ def twin_time(result: RunResult) -> float:
 
 def rows_of(result: RunResult) -> tuple[dict[str, Scalar], ...]:
     """The run's summary, one row per ego, rounded as ``summary.csv`` is."""
-    rows = result.summary_table.to_dict("records")
-    return tuple(rounded_row(row) for row in rows) or (rounded_row(result.head),)
+    return tuple(rounded_row(row) for row in result.summary_rows) or (rounded_row(result.head),)
 
 
 def _since(began: float) -> Computing:
