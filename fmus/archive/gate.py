@@ -118,6 +118,7 @@ def extract(archive: Archive, folder: Path, prefixes: Sequence[str]) -> None:
                 raise FmuFileError(f"{msg}; make room in, or name another, TMPDIR") from error
 
 
+@lru_cache(maxsize=4)
 def read_start(archive: Archive, name: str, size: int) -> bytes:
     """The first bytes of a member.
 
