@@ -1,7 +1,7 @@
 """The cost of the whole loop at 30 pedestrians, part by part, next to SUMO and the FMU alone.
 
 Run: python benchmarks/bench_loop.py [--pairs N] [--controller NAME] [--perception-model NAME]
-     [--people] [--largest RUNS]
+     [--horizon SECONDS] [--people] [--largest RUNS]
 
 The baseline makes the same moves, SUMO steps and FMU steps as a recorded run, with nothing in
 between. Both are timed in turn in one process; the ratio is what counts. ``--people`` compares 60
@@ -62,13 +62,21 @@ def baseline(result: RunResult) -> float:
         return perf_counter() - began
 
 
-def ready(controller: str, seed: int, people: int = 30, believed: str = "vci") -> CheckedRun:
-    settings = {
+def ready(
+    controller: str,
+    seed: int,
+    people: int = 30,
+    believed: str = "vci",
+    horizon: float | None = None,
+) -> CheckedRun:
+    settings: dict[str, object] = {
         "controller": controller,
         "seed": seed,
         "crowd": {"pedestrians": people},
         "perception": {"model": believed},
     }
+    if horizon is not None:
+        settings["planner"] = {"horizon": horizon}
     return preflight(*load([Layer("", settings)]))
 
 
@@ -104,9 +112,9 @@ def longest_control(controller: str, runs: int) -> tuple[float, float]:
     return float(found[0].max()), float(np.quantile(found[1], 0.9999))
 
 
-def show(controller: str, seed: int, pairs: int, believed: str) -> None:
+def show(controller: str, seed: int, pairs: int, believed: str, horizon: float | None) -> None:
     """Loop and baseline in turn, and the parts of the loop."""
-    checked = ready(controller, seed, believed=believed)
+    checked = ready(controller, seed, believed=believed, horizon=horizon)
     simulate(checked)  # loads the kernels, and warms the file cache
     results, ratios, busy = [], [], []
     for _ in range(pairs):
@@ -134,6 +142,7 @@ def main() -> None:
     parser.add_argument("--pairs", type=int, default=15, help="loop and baseline, in turn")
     parser.add_argument("--controller", action="append", choices=CONTROLLERS, help="these only")
     parser.add_argument("--perception-model", default="vci", help="that is believed in")
+    parser.add_argument("--horizon", type=float, help="of mpc's plans [s]; none: the default")
     parser.add_argument("--people", action="store_true", help="60 people over 30, instead")
     parser.add_argument("--largest", type=int, metavar="RUNS", help="longest control, instead")
     options = parser.parse_args()
@@ -148,7 +157,7 @@ def main() -> None:
             print(f"  longest: {longest:.2f} ms of CPU time")
             print(f"  wall clock's 99.99th percentile: {wall:.2f} ms")
         else:
-            show(controller, options.seed, options.pairs, options.perception_model)
+            show(controller, options.seed, options.pairs, options.perception_model, options.horizon)
 
 
 if __name__ == "__main__":
