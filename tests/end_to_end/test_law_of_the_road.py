@@ -22,7 +22,7 @@ def run(folder: Path, priority: str, *, twin: bool = False) -> RunResult:
     settings = {
         "scenario": "junction",
         "twin": twin,
-        "seed": 2,
+        "seed": 14,
         "regulation": {"priority": priority},
         "ego": {
             "route": ["east_out", "far_east_out"],  # from behind the junction on
