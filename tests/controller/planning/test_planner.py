@@ -7,7 +7,7 @@ from dataclasses import replace
 import daqp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from smoothing_cases import (
     FOLLOWING,
@@ -71,6 +71,7 @@ def test_the_force_is_that_of_the_plain_problems_optimum(plain_problem, seed, so
 
 
 @given(speed=speeds, force=forces, room=rooms, calm=st.floats(0.0, 25.0))
+@example(speed=4.0, force=-3096.4822905369288, room=(0, 2, 0.0, 0.0), calm=0.0)
 @settings(max_examples=60)
 def test_a_soft_corridor_always_leaves_a_plan(speed, force, room, calm):
     problem = SmoothingProblem(MODEL, FOLLOWING)
@@ -89,7 +90,8 @@ def test_a_soft_corridor_always_leaves_a_plan(speed, force, room, calm):
         assert plan.found
         assert "no QP solution" not in plan.status
         assert abs(plan.force) <= 8000.0
-        assert speed <= 1e-3 or abs(plan.force - force) <= 1000.0
+        # the bounds as they round: the difference of two forces may round to more than 1,000 N
+        assert speed <= 1e-3 or force - 1000.0 <= plan.force <= force + 1000.0
 
 
 @given(speed=speeds, force=forces, room=rooms)
