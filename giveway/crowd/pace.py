@@ -1,8 +1,8 @@
 """How fast people want to walk, learnt from how fast they are seen to walk.
 
 Others and the ego slow people down, hardly anything makes them faster than they like to be: the
-estimate rises to a faster pace at once, sinks to a slower one with patience, and whoever stands or
-is about to says nothing.
+estimate rises to a faster pace soon, sinks to a slower one with patience, and whoever stands, or
+nearly does, says nothing.
 """
 
 import math
