@@ -28,6 +28,7 @@ from giveway.precompile import compile_kernels_once
 from giveway.records.tracks import Timings
 
 CONTROLLERS = ("mpc", "pid-tuned", "mpc-paper", "pid-paper")
+AGAIN = 50  # runs with the longest control steps that are made again
 
 
 def baseline(result: RunResult) -> float:
@@ -93,23 +94,31 @@ def sixty_over_thirty(controller: str, pairs: int) -> float:
     return statistics.median(ratios)
 
 
-def longest_control(controller: str, runs: int) -> tuple[float, float]:
-    """Seconds of the longest control step but for each run's first: CPU time, and wall clock's.
-
-    Of the wall clock's, which the rest of the machine disturbs, the 99.99th percentile; the
-    same runs are made twice.
-    """
+def control_steps(controller: str, seed: int) -> np.ndarray:
+    """Seconds of every control step of a run but for its first, by the loop's clock."""
     column = [Timings.NAMES.index(name) for name in ("prediction", "control")]
-    found = []
+    return simulate(ready(controller, seed)).timings.seconds[1:, column].sum(axis=1)
+
+
+def longest_control(controller: str, runs: int) -> tuple[float, float, float]:
+    """Seconds of the longest control step but for each run's first.
+
+    By the thread's CPU time; the same where the runs with the longest ones are made twice again,
+    and the least of the three times counts, since what a step needs it needs each time; and the
+    99.99th percentile by the wall clock, which the rest of the machine disturbs.
+    """
+    seeds = range(1, runs + 1)
     simulate(ready(controller, 4))  # loads the kernels, some only when somebody comes near
-    for clock in (thread_time, perf_counter):
-        vars(loop)["perf_counter"] = clock
-        steps = [
-            simulate(ready(controller, seed)).timings.seconds[1:, column].sum(axis=1)
-            for seed in range(1, runs + 1)
-        ]
-        found.append(np.concatenate(steps))
-    return float(found[0].max()), float(np.quantile(found[1], 0.9999))
+    vars(loop)["perf_counter"] = thread_time
+    longest = {seed: control_steps(controller, seed) for seed in seeds}
+    first = max(float(steps.max()) for steps in longest.values())
+    for seed in sorted(seeds, key=lambda seed: -longest[seed].max())[:AGAIN]:
+        again = [control_steps(controller, seed) for _ in range(2)]
+        longest[seed] = np.minimum.reduce([longest[seed], *again])
+    each_time = max(float(steps.max()) for steps in longest.values())
+    vars(loop)["perf_counter"] = perf_counter
+    steps = np.concatenate([control_steps(controller, seed) for seed in seeds])
+    return first, each_time, float(np.quantile(steps, 0.9999))
 
 
 def show(controller: str, seed: int, pairs: int, believed: str, horizon: float | None) -> None:
@@ -152,9 +161,10 @@ def main() -> None:
             ratio = sixty_over_thirty(controller, options.pairs)
             print(f"{controller:10} a step with 60 people over one with 30: {ratio:.2f}")
         elif options.largest:
-            longest, wall = (1e3 * x for x in longest_control(controller, options.largest))
+            first, each, wall = (1e3 * x for x in longest_control(controller, options.largest))
             print(f"{controller}, control steps of {options.largest} runs but for each first one")
-            print(f"  longest: {longest:.2f} ms of CPU time")
+            print(f"  longest: {first:.2f} ms of CPU time")
+            print(f"  longest, the {AGAIN} runs with the longest made again: {each:.2f} ms")
             print(f"  wall clock's 99.99th percentile: {wall:.2f} ms")
         else:
             show(controller, options.seed, options.pairs, options.perception_model, options.horizon)

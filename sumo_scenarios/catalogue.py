@@ -45,7 +45,7 @@ def find(name_or_path: str | Path) -> Scenario:
     text = os.fspath(name_or_path)
     bundled = available()
     if isinstance(name_or_path, str) and text in bundled:
-        return _from_folder(_ROOT / text)
+        return _bundled(text)
     try:
         # abspath, not Path.resolve: the files that a linked .sumocfg names lie beside the link.
         path = Path(os.path.abspath(Path(text).expanduser()))  # noqa: PTH100
@@ -56,6 +56,11 @@ def find(name_or_path: str | Path) -> Scenario:
     except (OSError, RuntimeError) as error:  # RuntimeError: the ~user of a stranger
         raise ScenarioError(f"scenario {text!r} cannot be read: {error}") from error
     raise ScenarioError(_unknown(text, bundled))
+
+
+@cache
+def _bundled(name: str) -> Scenario:
+    return _from_folder(_ROOT / name)
 
 
 def _from_folder(folder: Path) -> Scenario:

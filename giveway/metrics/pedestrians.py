@@ -1,7 +1,8 @@
 """One row per pedestrian: how it walked, and how close the ego came to it."""
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,8 +90,30 @@ def pedestrian_metrics(
     Raises:
         ValueError: a record points outside the ego's track.
     """
+    return table_of(pedestrian_columns(ego, crowd, shape, body_radius))
+
+
+def table_of(columns: Mapping[str, Any]) -> "pd.DataFrame":
+    """The table of :func:`pedestrian_columns`."""
     import pandas as pd
 
+    return pd.DataFrame(columns, columns=[column.name for column in PEDESTRIAN_FIELDS])
+
+
+def pedestrian_columns(
+    ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
+) -> dict[str, Any]:
+    """The columns of :func:`pedestrian_metrics`, (n,) each: a table takes longer than all of them.
+
+    Args:
+        ego: as there.
+        crowd: as there.
+        shape: as there.
+        body_radius: as there.
+
+    Raises:
+        ValueError: as there.
+    """
     clear, ttc, drac = proximity(ego, crowd, shape, body_radius)
     groups = PedestrianGroups(crowd)
     time = ego.time[crowd.step]
@@ -98,7 +121,7 @@ def pedestrian_metrics(
     closest, soonest = groups.first_minimum(clear), groups.first_minimum(ttc)
     minimum_ttc = groups.at(ttc, soonest)
     on_course = np.isfinite(minimum_ttc)
-    columns = {
+    return {
         **_walks(crowd, groups, time),
         "minimum_clearance": groups.at(clear, closest),
         "time_of_minimum_clearance": groups.at(time, closest),
@@ -110,7 +133,6 @@ def pedestrian_metrics(
         "maximum_drac": -groups.at(-drac, groups.first_minimum(-drac)),
         "passed_first": missed.first,
     }
-    return pd.DataFrame(columns, columns=[column.name for column in PEDESTRIAN_FIELDS])
 
 
 def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> "pd.DataFrame":
@@ -155,7 +177,7 @@ def summarise_walks(table: "pd.DataFrame") -> WalkSummary:
 
 def _walks(
     crowd: CrowdTrack, groups: PedestrianGroups, time: NDArray[np.float64]
-) -> dict[str, object]:
+) -> dict[str, Any]:
     """The columns of how everybody walked; ``time`` (R,) [s] is that of the records."""
     first_seen, last_seen = groups.at(time, groups.first), groups.at(time, groups.last)
     path = groups.total(groups.walked(crowd))

@@ -1,8 +1,8 @@
 """A run in one row: the numbers by which runs and controllers are compared."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -132,7 +132,7 @@ SUMMARY_FIELDS = columns_of(Summary)
 
 def summarise(
     ego: EgoTrack,
-    per_pedestrian: "pd.DataFrame",
+    per_pedestrian: "pd.DataFrame | Mapping[str, NDArray[Any]]",
     critical: Critical,
     met: Anticipation,
     *,
@@ -153,7 +153,7 @@ def summarise(
 
     Args:
         ego: the ego's track, at least one instant.
-        per_pedestrian: the table of ``pedestrian_metrics``.
+        per_pedestrian: the table of ``pedestrian_metrics``, or its columns.
         critical: the drive's ``conflicts``.
         met: the drive's ``anticipation``.
         goal: the position that ends the run [m]; the time at which it is reached is interpolated
@@ -175,10 +175,16 @@ def summarise(
     travelled = float(ego.position[-1] - ego.position[0])
     waits = waiting_times(ego, stop_speed)
     jerk = np.diff(ego.acceleration) / np.diff(ego.time)
-    clearances = per_pedestrian["minimum_clearance"].to_numpy()
+
+    def column(name: str) -> NDArray[Any]:
+        return np.asarray(per_pedestrian[name])
+
+    clearances, encroached = column("minimum_clearance"), column("post_encroachment_time")
     brakes = hard_brakes(ego)
-    frontal = (per_pedestrian["contact"] == FRONTAL).to_numpy()
-    beyond = _beyond(per_pedestrian, people)
+    frontal = column("contact") == FRONTAL
+    beyond = np.zeros(len(frontal), dtype=np.bool_)
+    if people is not None:
+        beyond = _beyond(column("peak_acceleration"), people)
     beyond[hasty] = True
     return Summary(
         completed=bool(ego.position[-1] >= goal),
@@ -202,14 +208,14 @@ def summarise(
         minimum_clearance=_extreme(clearances, np.min),
         overlaps=int(np.count_nonzero(clearances < 0.0)),
         frontal_contacts=int(np.count_nonzero(frontal)),
-        side_contacts=int(np.count_nonzero(per_pedestrian["contact"] == SIDE)),
-        overlap_time=float(np.nansum(per_pedestrian["overlap_time"].to_numpy())),
-        minimum_ttc=_extreme(per_pedestrian["minimum_ttc"].to_numpy(), np.min),
+        side_contacts=int(np.count_nonzero(column("contact") == SIDE)),
+        overlap_time=float(np.nansum(column("overlap_time"))),
+        minimum_ttc=_extreme(column("minimum_ttc"), np.min),
         conflicts=critical.pedestrians,
         share_below_ttc=critical.share,
-        minimum_pet=_extreme(per_pedestrian["post_encroachment_time"].to_numpy(), np.min),
-        share_below_pet=_share_below(per_pedestrian["post_encroachment_time"], CRITICAL_PET),
-        maximum_drac=_extreme(per_pedestrian["maximum_drac"].to_numpy(), np.max),
+        minimum_pet=_extreme(encroached, np.min),
+        share_below_pet=_share_below(encroached, CRITICAL_PET),
+        maximum_drac=_extreme(column("maximum_drac"), np.max),
         minimum_ttc_moving=critical.minimum_ttc,
         vehicle_contacts=len(vehicles),
         vehicle_contact_time=float(sum(contact.duration for contact in vehicles)),
@@ -223,16 +229,13 @@ def summarise(
     )
 
 
-def _share_below(times: "pd.Series[float]", limit: float) -> float:
+def _share_below(times: NDArray[np.float64], limit: float) -> float:
     """The share of all pedestrians, met or not, whose time [s] is below a limit; nan: of none."""
-    return float(np.mean(times.to_numpy() < limit)) if len(times) else float("nan")
+    return float(np.mean(times < limit)) if len(times) else float("nan")
 
 
-def _beyond(per_pedestrian: "pd.DataFrame", people: WorstMotion | None) -> NDArray[np.bool_]:
+def _beyond(hardest: NDArray[np.float64], people: WorstMotion) -> NDArray[np.bool_]:
     """Which pedestrians accelerated harder than ``people`` allows, by more than rounding."""
-    if people is None:
-        return np.zeros(len(per_pedestrian), dtype=np.bool_)
-    hardest = per_pedestrian["peak_acceleration"].to_numpy(np.float64)
     with np.errstate(invalid="ignore"):
         return np.asarray(hardest > people.acceleration * _ROUNDING, dtype=np.bool_)
 

@@ -19,12 +19,12 @@ from giveway.metrics import (
     VehicleContact,
     anticipation,
     conflicts,
-    pedestrian_metrics,
     severities,
     summarise,
     vehicle_contacts,
 )
 from giveway.metrics.law import Drive, Ledger, Undisturbed, ledger
+from giveway.metrics.pedestrians import pedestrian_columns, table_of
 from giveway.recording.recorded import RecordedEgo, RecordedRows
 from giveway.records.outputs import Output
 from giveway.records.progress import Ending
@@ -82,7 +82,7 @@ class EgoResult:
         """One row per pedestrian: closest approach to this ego, TTC, PET; delay."""
         import pandas as pd
 
-        table = pedestrian_metrics(self.track, self.crowd, self.shape, self.body_radius)
+        table = table_of(self._columns)
         if self.effect is None:
             return table
         found = self.effect.delays
@@ -91,6 +91,11 @@ class EgoResult:
         more = pd.DataFrame(dict(zip(names, columns, strict=True)), index=self.effect.run.ids)
         more = more.reindex(table["id"]).reset_index(drop=True)
         return table.assign(**{name: more[name] for name in names})
+
+    @cached_property
+    def _columns(self) -> dict[str, Any]:
+        """The columns of :attr:`pedestrians` but for the delay's."""
+        return pedestrian_columns(self.track, self.crowd, self.shape, self.body_radius)
 
     @cached_property
     def conflicts(self) -> "pd.DataFrame":
@@ -153,7 +158,7 @@ class EgoResult:
         reference = None if set_speed == LANE else float(set_speed)
         figures = summarise(
             self.track,
-            self.pedestrians,
+            self._columns,
             conflicts(self.track, self.crowd, *body, config.record.stop_speed),
             anticipation(
                 self.track,

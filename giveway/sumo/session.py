@@ -16,7 +16,6 @@ import contextlib
 import itertools
 import math
 import operator
-import tempfile
 from collections.abc import Container, Iterable, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -33,6 +32,7 @@ from giveway.sumo.junctions import Junctions
 from giveway.sumo.lanes import Lanes
 from giveway.sumo.library import direct, import_libsumo
 from giveway.sumo.persons import ScenarioPersons
+from giveway.sumo.scratch import scratch
 from giveway.sumo.signal_plans import SignalPlans
 from giveway.sumo.stderr import NativeStderr, of_others
 from giveway.sumo.types import PEDESTRIAN_TYPE
@@ -81,7 +81,7 @@ class SumoSession:
         self._config_file = scenario.config_file
         self._native_log = native_log
         self._extra = options.extra
-        self._scratch = tempfile.TemporaryDirectory(prefix="giveway-")
+        self._scratch = scratch()
         try:
             self.start = prepare_start(scenario, options, Path(self._scratch.name), types=types)
             if careful and not _calls_somebody(scenario):

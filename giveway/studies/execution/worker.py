@@ -44,8 +44,10 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
         from giveway.precompile import compile_kernels_once
         from giveway.studies.execution import perform as performing  # noqa: F401 - no run waits for it
         from giveway.sumo.library import import_libsumo
+        from giveway.sumo.scratch import keep_scratch
 
         keep_unpacked()  # this worker's temporary files go with it
+        keep_scratch()
         import_libsumo()  # if it is missing, that is not the failure of a run
         compile_kernels_once()  # half a minute of compiling must not look like a hanging run
         line.send(READY)
