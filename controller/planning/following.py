@@ -31,7 +31,7 @@ def follow(
     plan: Motion,
     chosen: bool,
     soft: bool,
-    soon: int,
+    calmly: tuple[int, float],
     weights: tuple[Any, ...],
 ) -> tuple[int, bool, bool]:
     """Set the QP of the smooth plan, solve it exactly, and fill the plan.
@@ -40,7 +40,7 @@ def follow(
         state: the speed [m/s], the acceleration before [m/s^2], the force before [N], the speed
             wanted [m/s].
         best: the manoeuvre.
-        prospect: the arrays of what it would lead to; calm speeds are confined to ``soon``.
+        prospect: the arrays of what it would lead to; calm speeds become what is kept to.
         missing: stopping distance that it lacks [m].
         allowed: (N,) [m].
         lane_speeds: (N,) [m/s]; inf: any.
@@ -50,7 +50,8 @@ def follow(
         plan: filled, unless the QP has no solution or is unsolved.
         chosen: whether the manoeuvre was searched for; else the speed wanted is aimed at.
         soft: whether the corridor gives way.
-        soon: steps in which calm speeds are kept to.
+        calmly: steps in which calm speeds are kept to, as far as braking with the second [m/s^2]
+            can help it.
         weights: of the cost.
 
     Returns:
@@ -61,8 +62,10 @@ def follow(
     gap, _, calm = prospect
     nodes, intervals, limits, rows, lower, upper, target, _, gradients = problem
     corridor(best[0], best[1], gap, allowed, chosen, weights, room)
+    soon, gentle = calmly
     for i in range(len(calm)):
-        calm[i] = min(calm[i] if i < soon else np.inf, lane_speeds[i])
+        gently = max(calm[i], speed - gentle * limits[0] * (i + 1))
+        calm[i] = min(gently if i < soon else np.inf, lane_speeds[i])
     wanted = np.empty(len(nodes))
     for i in range(len(nodes)):
         wanted[i] = best[1][nodes[i]] if chosen else fastest

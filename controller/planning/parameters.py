@@ -65,6 +65,9 @@ class ManoeuvreParameters:
         require_not_negative("calm_time", self.calm_time, "s")
 
 
+_SLOW = 4.0  # [m/s] v_r of Yang & Özgüner 2019
+_GENTLE = 3.0  # [m/s^2] that passengers put up with
+
 _WEIGHTS = (
     "time_weight",
     "acceleration_weight",
@@ -128,6 +131,19 @@ class PlannerParameters:
         require_not_negative("jerk_weight", self.jerk_weight, "s^3")
         require_not_negative("block_growth", self.block_growth, "-")
         require(self.solver in ("osqp", "daqp"), "solver", self.solver, "'osqp' or 'daqp'")
+
+    @property
+    def calm_time(self) -> float:
+        """How long [s] the plan keeps to calm speeds: longer where it takes longer to get there."""
+        return self.manoeuvres.calm_time + max(0.0, self.reference_speed - _SLOW) / _GENTLE
+
+    @property
+    def calm_braking(self) -> float:
+        """What the plan brakes with at most [m/s^2] before what people could do, but need not.
+
+        At walking pace, up to v_r of the paper, as hard as it takes.
+        """
+        return _GENTLE if self.reference_speed > _SLOW else math.inf
 
 
 class Weights(NamedTuple):

@@ -29,8 +29,6 @@ from controller.protocol import Decision, Observation
 from controller.tuned_pid import TunedPid
 
 _SOLVED = Outcome.SOLVED  # whose class is slow to tell it
-_SLOW = 4.0  # [m/s] of the reference speed: where it is more, calm speeds are kept to for longer,
-_SOFT = 4.0  # [m/s^2] so that braking from it asks for no more
 
 
 class Plan(NamedTuple):
@@ -80,9 +78,8 @@ class Planner:
             problem.speeds_of,
             problem.gradients,
         )
-        faster = max(0.0, parameters.reference_speed - _SLOW)
-        calm_time = parameters.manoeuvres.calm_time + faster / _SOFT
-        self._soon = round(calm_time / model.time_step)
+        soon = round(parameters.calm_time / model.time_step)
+        self._calmly = soon, parameters.calm_braking
         self._plan = plan = Manoeuvre.empty(N)
         self._to = (plan.distance, plan.speed, plan.acceleration)
         self._corridor, self._any_speed = np.empty(N), np.full(N, inf)
@@ -170,7 +167,7 @@ class Planner:
             to,
             p.gap_choice,
             p.soft,
-            self._soon,
+            self._calmly,
             search.weights,
         )
         if corrections == NO_PLAN:

@@ -176,7 +176,7 @@ class Ego:
             if relevant is not None:
                 self._chosen = pedestrians = crowd.select(relevant, self._chosen)
             if foresight is not None:
-                behind = kerbs[relevant] if len(kerbs) and relevant is not None else kerbs
+                behind = self._kerbs.kept(pedestrians, kerbs, relevant) if self._kerbs else kerbs
                 off = 0.0 if errors is None or not len(errors) else _LIKELY * float(errors.mean())
                 who = numbers if relevant is None else numbers[relevant]
                 foresight.look(

@@ -9,12 +9,14 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from giveway.crowd.crossings import is_open
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
 from giveway.sumo.signal_plans import ChangeOf, SignalChange, untold
+from pedestrian_model import Crowd
 
 NO_KERBS: Array = np.zeros((0, 3))
 """Nobody is on a sidewalk."""
@@ -25,6 +27,7 @@ _FACING = 0.5  # cosine: the road is less than 60 degrees from the right angle t
 _BESIDE = 0.25  # [m] from the ego's side nobody is on a sidewalk, whatever the network says
 _MOUTH = 1.5  # [m] beside and before a crossing people are about to enter it
 _DEEPEST = 4.0  # [m] from the kerb: who is farther off is no matter
+_LOOK, _LOOKS = 0.5, 3  # [s] and how many: where people are by then is looked at
 _SOON = 3.0  # [s] before it turns green, people are about to use a crossing
 _BEHIND, _AHEAD = 10.0, 60.0  # [m] of the path from the front bumper, beside which people matter
 
@@ -97,6 +100,23 @@ class Kerbs:
         first, last = np.searchsorted(self._stations, (front - _BEHIND, front + _AHEAD))
         fill_kerbs(position, self._edges[first:last], self._kerb[first:last], self._open, found)
         return found
+
+    def kept(self, people: Crowd, kerbs: Array, whom: NDArray[np.bool_] | None) -> Array:
+        """(n, 3) as ``kerbs``, but 0 for those who are soon beside, before or on a crossing.
+
+        Plans take them for free to step on the road at once: else who gets there a few metres
+        before the ego would make it brake hard.
+
+        Args:
+            people: as they are seen; where they want to go next counts, and their velocity.
+            kerbs: (m, 3) from :meth:`of`.
+            whom: (m,) of these are the people; None: all.
+        """
+        kept = kerbs.copy() if whom is None else kerbs[whom]
+        way = people.waypoints, people.waypoint_start, people.waypoint_index
+        walks = people.position, people.velocity, people.desired_speed, *way
+        drop_kerbs(*walks, self._open, kept)
+        return kept
 
 
 def kerb_lines(position: Array, kerbs: Array) -> Array:
@@ -188,6 +208,45 @@ def fill_kerbs(position: Array, edges: Array, is_kerb: Array, mouths: Array, fou
             continue
         found[p, 0], found[p, 1] = to_x / nearest_kerb, to_y / nearest_kerb
         found[p, 2] = nearest_kerb
+
+
+@kernel
+def drop_kerbs(
+    position: Array,
+    velocity: Array,
+    desired_speed: Array,
+    waypoints: Array,
+    start: NDArray[np.int64],
+    index: NDArray[np.int64],
+    mouths: Array,
+    kerbs: Array,
+) -> None:
+    """Set to 0 the ``kerbs`` (n, 3) as in :meth:`Kerbs.kept`.
+
+    The other arrays are those of a crowd, and the mouths see :func:`_mouths`.
+    """
+    for p in range(len(kerbs)):
+        if kerbs[p, 2] <= 0.0:
+            continue
+        x, y = position[p, 0], position[p, 1]
+        at, last = start[p] + index[p], start[p + 1] - 1
+        for look in range(1, _LOOKS + 1):
+            left = desired_speed[p] * _LOOK
+            while left > 0.0:  # along the way, from one way-point to the next
+                to_x, to_y = waypoints[at, 0] - x, waypoints[at, 1] - y
+                far = np.sqrt(to_x * to_x + to_y * to_y)
+                share = 1.0 if far <= left else left / far
+                x, y = x + share * to_x, y + share * to_y
+                left -= far
+                if at == last:
+                    break
+                if left >= 0.0:
+                    at += 1
+            t = look * _LOOK
+            s_x, s_y = position[p, 0] + t * velocity[p, 0], position[p, 1] + t * velocity[p, 1]
+            if in_mouth(x, y, mouths) or in_mouth(s_x, s_y, mouths):
+                kerbs[p] = 0.0
+                break
 
 
 @inner
