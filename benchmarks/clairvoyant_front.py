@@ -84,7 +84,6 @@ class Task(NamedTuple):
 
     scene: str
     seed: int
-    gap: float | None  # [s] below which people are met; None: what makes sure of a second
 
 
 class Row(NamedTuple):
@@ -168,7 +167,7 @@ class Crowd:
         every = round(self.lattice.step / self.time_step)
         people = People(recorded.people.station[::every], recorded.people.offset[::every])
         flags = flags_of(people, self.lattice, rules_of(self.run))
-        gap = self.task.gap or certain_gap(self.lattice, self.time_step)
+        gap = certain_gap(self.lattice, self.time_step)
         stretches = stretches_of(recorded.people, self.lattice, self.bodies, self.time_step, gap)
         ego = self.run.egos[0]
         times = post_encroachment_time(
@@ -203,7 +202,7 @@ class Crowd:
         contact: float = 0.0,
     ) -> Row:
         met = self.lattice.step * float(np.count_nonzero(exact.at(at)))
-        return Row(*self.task[:2], *name, self.free, float(time), float(share), met, contact)
+        return Row(*self.task, *name, self.free, float(time), float(share), met, contact)
 
 
 def examine(task: Task) -> list[Row]:
@@ -218,11 +217,7 @@ def examine(task: Task) -> list[Row]:
 def examine_all(tasks: list[Task], jobs: int | None, kept: Path | None) -> pd.DataFrame:
     """All crowds; those whose rows are ``kept`` are not examined again, the others' are added."""
     there = kept is not None and kept.exists()
-    rows = (
-        pd.read_csv(kept, float_precision="round_trip")
-        if there
-        else pd.DataFrame(columns=Row._fields)
-    )
+    rows = pd.read_csv(kept) if there else pd.DataFrame(columns=Row._fields)
     done = set(zip(rows.scene, rows.seed, strict=True))
     left = [task for task in tasks if (task.scene, task.seed) not in done]
     with multiprocessing.get_context("spawn").Pool(jobs) as pool:
@@ -248,8 +243,13 @@ def picture(rows: pd.DataFrame) -> Figure:
     for axes in panels[:, 0]:
         axes.set_ylabel("delay saved [% of pid-tuned's]")
     for axes in panels[-1]:
-        axes.set_xlabel("people with PET < 1 s [%]")
-    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+        axes.set_xlabel("people left less than a second [%]")
+    figure.legend(
+        *panels[0, 0].get_legend_handles_labels(),
+        loc="outside lower center",
+        ncols=4,
+        columnspacing=1.5,
+    )
     return figure
 
 
@@ -257,18 +257,18 @@ def _draw(axes: Axes, group: Group) -> None:
     delay, share = group.delay.mean(), group.share.mean()
     enough = ENOUGH if len(group.parts) > 1 else IN_EACH
     box = [0.0, 100.0 * (share + MARGIN)], 100.0 * enough, 100.0
-    axes.fill_between(*box, color=LIGHT_GREY, linewidth=0.0, label="what is asked for")
+    axes.fill_between(*box, color=LIGHT_GREY, linewidth=0.0, label="where mpc is to be")
     for recording, colour in COLOURS.items():
         time, met = group.front(recording).T
-        before = "if nobody drove" if recording == NOBODY else f"before {recording}"
-        label = f"knowing what people do {before}"
+        before = "when nobody drives" if recording == NOBODY else f"before {recording}"
+        label = f"who knows what people do {before}"
         axes.plot(100.0 * met, 100.0 * (1.0 - time / delay), color=colour, label=label)
     for name, (mark, colour) in MARKS.items():
         means = group.means(name, DRIVEN).mean()
         saved = 1.0 - (means.time - means.free) / delay
         axes.plot(100.0 * means.share, 100.0 * saved, mark, color=colour, label=name)
     axes.axhline(0.0, color=GREY, linewidth=0.8)
-    axes.set(title=group.name, xlim=(0.0, None), ylim=(-60.0, 100.0))
+    axes.set(title=group.name, xlim=(0.0, None), ylim=(-80.0, 100.0))
     quiet_grid(axes)
 
 
@@ -277,13 +277,12 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=50)
     parser.add_argument("--first", type=int, default=551, help="the first seed")
     parser.add_argument("--scene", action="append", choices=SCENES, help="only this; repeatable")
-    parser.add_argument("--gap", type=float, help="[s] below which the search takes people as met")
     parser.add_argument("--jobs", type=int, default=None)
     parser.add_argument("--rows", type=Path, help="a CSV file to keep what was found, and go on")
     parser.add_argument("--figure", type=Path, help="where to draw the picture")
     options = parser.parse_args()
     seeds = range(options.first, options.first + options.seeds)
-    tasks = [Task(scene, seed, options.gap) for seed in seeds for scene in options.scene or SCENES]
+    tasks = [Task(scene, seed) for seed in seeds for scene in options.scene or SCENES]
     rows = examine_all(tasks, options.jobs, options.rows)
     show(rows)
     if options.figure is not None:

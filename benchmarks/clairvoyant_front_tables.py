@@ -235,6 +235,24 @@ def show(rows: pd.DataFrame) -> None:
             )
             print("| " + " | ".join(told) + " |")
 
+    beyond = faster_than_front(rows)
+    faster = beyond[beyond > 1e-6]
+    print(f"\n{faster.size} of {beyond.size} drives are faster than their own recording's front, "
+          f"by {faster.max(initial=0.0):.2f} s at most")  # fmt: skip
+
+
+def faster_than_front(rows: pd.DataFrame) -> np.ndarray:
+    """By how much drives are faster than the front of their recording at their share [s]."""
+    found = []
+    for _, crowd in rows.groupby(["scene", "seed"]):
+        driven = crowd[crowd.motion == DRIVEN].set_index("recording")
+        for recording, each in crowd[crowd.motion == FRONT].groupby("recording"):
+            if recording in driven.index:
+                front = convex(each[["time", "share"]].to_numpy())
+                drive = driven.loc[recording]
+                found.append(np.interp(-drive.share, -front[:, 1], front[:, 0]) - drive.time)
+    return np.array(found)
+
 
 def _row(group: Group, name: str, means: pd.DataFrame) -> None:
     mean = means.mean()
