@@ -1,18 +1,16 @@
-"""The fastest motion along a straight way through people whose whole future is known.
+"""The fastest motion through people whose whole future is known, without touching any of them.
 
-Dynamic programming on a lattice that the limits span by themselves: in steps of tau the
-acceleration changes by at most j tau = tau (du_max / h) / M, so accelerations are multiples of
-j tau, speeds of j tau^2 and stations of j tau^3 / 2. Motions on it are exact, nothing is rounded.
-What alpha v adds to du_max (at most 4 %) is left out.
+People become flags of each instant and station of the front bumper, flags become tolls, and the
+cheapest motion on the lattice is the fastest one.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from clairvoyant_lattice import Course, Lattice, Limits, cheapest
 
 from giveway.geometry.kernel import kernel
 
@@ -23,65 +21,12 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
     Flags = NDArray[np.uint8]
-    Values = NDArray[np.float32]
+
+__all__ = ["BELOW", "CONTACT", "CONTACT_PRICE", "Lattice", "Limits", "Motion", "People", "Rules"]
+__all__ += ["fastest", "flags_of", "people_along"]
 
 BELOW, CONTACT = 1, 2
 CONTACT_PRICE = 1e6  # [s per s] so that no delay buys a contact
-_SOON = 3.0  # [s] of delay; who is faster is found among fewer stations
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What the ego can do: the plant and actuators of Yang & Özgüner 2019, table 1."""
-
-    speed: float = 4.0  # v_r [m/s], never exceeded
-    braking: float = 8.0  # u_max / M [m/s^2]; drag would add to it
-    driving: float = 7.6  # (u_max - alpha v_r) / M [m/s^2]
-    jerk: float = 20.0  # (du_max / h) / M [m/s^3]
-    step: float = 0.1  # tau [s] of the lattice
-
-
-@dataclass(frozen=True)
-class Lattice:
-    """Whole numbers of steps; the units follow from the step and the jerk."""
-
-    speeds: int  # the highest speed
-    lowest: int  # acceleration, negative
-    highest: int  # acceleration
-    stations: int  # the goal
-    step: float  # [s]
-    station: float  # [m]
-    speed: float  # [m/s]
-
-    @classmethod
-    def of(cls, limits: Limits, goal: float) -> Lattice:
-        """The lattice of a drive of ``goal`` [m]."""
-        a = limits.jerk * limits.step
-        v, s = a * limits.step, a * limits.step**2 / 2.0
-        return cls(
-            speeds=int(limits.speed / v + 1e-9),
-            lowest=-int(limits.braking / a + 1e-9),
-            highest=int(limits.driving / a + 1e-9),
-            stations=round(goal / s),
-            step=limits.step,
-            station=s,
-            speed=v,
-        )
-
-    @property
-    def top(self) -> float:
-        """The highest speed [m/s]."""
-        return self.speed * self.speeds
-
-    @property
-    def shortest(self) -> float:
-        """Completion time [s] at the highest speed."""
-        return self.step * self.stations / (2 * self.speeds)
-
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """Of values: stations, speeds, accelerations."""
-        return self.stations, self.speeds + 1, self.highest - self.lowest + 1
 
 
 class People(NamedTuple):
@@ -165,17 +110,19 @@ def flags_of(people: People, lattice: Lattice, rules: Rules) -> Flags:
     return flags
 
 
-@cache
-def unhindered(lattice: Lattice) -> Values:
-    """Values (3, *lattice.shape) where nobody is in the way any more: time, below, contact."""
-    values = np.zeros((3, *lattice.shape), dtype=np.float32)
-    reach = lattice.station * (lattice.stations - np.arange(lattice.stations))
-    values[0] = (reach / lattice.top)[:, None, None]
-    flags = np.zeros(lattice.stations, dtype=np.uint8)
-    # So many steps it takes from a standstill at the start; then the values no longer change.
-    for _ in range(round(lattice.shortest / lattice.step) + 40):
-        values = _step(values, flags, 0.0, lattice, (0, lattice.stations))
-    return values
+class FlagTolls:
+    """What flags cost: ``below_price`` [s] for a second below d_safe, and contact."""
+
+    def __init__(self, flags: Flags, lattice: Lattice, below_price: float) -> None:
+        busy = np.flatnonzero(flags.any(axis=1))
+        self.last = int(busy[-1]) if busy.size else 0
+        self._flags = flags
+        prices = np.array([0.0, below_price, CONTACT_PRICE, below_price + CONTACT_PRICE])
+        self._prices = lattice.step * prices  # by flags
+
+    def fill(self, k: int, toll: Array) -> None:
+        """Write the tolls of the step from instant k: what is flagged at its end counts."""
+        arrival_tolls(self._prices[self._flags[k + 1]], toll)
 
 
 def fastest(flags: Flags, lattice: Lattice, speed: float, below_price: float) -> Motion:
@@ -188,41 +135,28 @@ def fastest(flags: Flags, lattice: Lattice, speed: float, below_price: float) ->
         below_price: [s] that a second below d_safe costs; a large one keeps d_safe wherever it can
             be kept.
     """
-    soon = lattice.shortest + _SOON
-    found = _fastest(flags, lattice, speed, below_price, soon)
-    proven = found.contact_time == 0.0 and (below_price < 1.0 or found.time_below == 0.0)
-    if proven and found.completion_time <= soon:
-        return found  # whatever was left out takes longer
-    return _fastest(flags, lattice, speed, below_price, np.inf)
+    course = cheapest(FlagTolls(flags, lattice, below_price), lattice, speed)
+    met = _met(flags, course, lattice)
+    below, contact = np.count_nonzero(met & BELOW), np.count_nonzero(met[1:] & CONTACT)
+    return Motion(course.time, lattice.step * below, lattice.step * contact)
 
 
-def _fastest(
-    flags: Flags, lattice: Lattice, speed: float, below_price: float, latest: float
-) -> Motion:
-    """As :func:`fastest`, without the stations from which the goal is not reached by ``latest``."""
-    busy = np.flatnonzero(flags.any(axis=1))
-    last = int(busy[-1]) if busy.size else 0
-    values = unhindered(lattice)
-    for k in range(last - 1, -1, -1):
-        left = lattice.top * (latest - k * lattice.step) / lattice.station  # can still be driven
-        first = 0 if np.isinf(latest) else max(0, int(lattice.stations - left))
-        reached = min(lattice.stations, 2 * lattice.speeds * k + 1)
-        if first < reached:
-            values = _step(values, flags[k + 1], below_price, lattice, (first, reached))
-    v = min(round(speed / lattice.speed), lattice.speeds)
-    time, below, contact = (float(part[0, v, -lattice.lowest]) for part in values)
-    start = lattice.step * float(flags[0, 0] & BELOW > 0)
-    return Motion(time, below + start, contact)
+def _met(flags: Flags, course: Course, lattice: Lattice) -> Flags:
+    """The flags where the course is, at each instant before the goal that has any."""
+    stations = course.stations[: len(flags)]
+    stations = stations[stations < lattice.stations]
+    return flags[np.arange(stations.size), stations]
 
 
-def _step(
-    values: Values, flags: Flags, price: float, lattice: Lattice, stations: tuple[int, int]
-) -> Values:
-    before = np.empty_like(values)
-    before[:, : stations[0]] = np.inf
-    before[:, stations[1] :] = np.inf
-    _improve(values, flags, price, lattice.step, lattice.lowest, *stations, before)
-    return before
+@kernel
+def arrival_tolls(price: Array, toll: Array) -> None:
+    """Have each step pay the ``price`` (stations,) of where it ends; nothing at the goal."""
+    steps, stations = toll.shape
+    for d in range(steps):
+        for s in range(stations - d):
+            toll[d, s] = price[s + d]
+        for s in range(max(0, stations - d), stations):
+            toll[d, s] = 0.0
 
 
 @kernel
@@ -252,39 +186,3 @@ def _flag(
                 first = int(np.floor((s - reach) / ds)) + 1
                 for n in range(max(0, first), min(stations, int(np.ceil((s + reach) / ds)))):
                     flags[k, n] |= CONTACT
-
-
-@kernel
-def _improve(
-    values: Values,
-    flags: Flags,
-    price: float,
-    tau: float,
-    lowest: int,
-    first: int,
-    reached: int,
-    before: Values,
-) -> None:
-    """Bellman's equation, one step back in time, for the stations from ``first`` on."""
-    _, goal, speeds, accelerations = values.shape
-    for s in range(first, reached):
-        for v in range(speeds):
-            for a in range(accelerations):
-                best, time, below, contact = np.inf, np.inf, 0.0, 0.0
-                for b in range(max(0, a - 1), min(accelerations, a + 2)):
-                    w = v + b + lowest
-                    if w < 0 or w >= speeds:
-                        continue
-                    n = s + v + w
-                    if n >= goal:
-                        t, below_s, contact_s = tau * (goal - s) / (n - s), 0.0, 0.0
-                    else:
-                        t = tau + values[0, n, w, b]
-                        below_s = values[1, n, w, b] + tau * ((flags[n] & BELOW) > 0)
-                        contact_s = values[2, n, w, b] + tau * ((flags[n] & CONTACT) > 0)
-                    cost = t + price * below_s + CONTACT_PRICE * contact_s
-                    if cost < best:
-                        best, time, below, contact = cost, t, below_s, contact_s
-                before[0, s, v, a] = time
-                before[1, s, v, a] = below
-                before[2, s, v, a] = contact
