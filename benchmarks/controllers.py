@@ -56,6 +56,7 @@ MARGINS = {
     "conflicts": ("conflicts", 0.2),
     "share_below_ttc": ("TTC < 1.5 s", 0.03),
     "share_below_pet": ("PET < 1 s", 0.02),
+    "share_below_pet_person_first": ("of these, the ego after the person", 0.02),
     "mean_people_delay": ("people's mean delay [s]", 0.2),
 }
 MORE_CONFLICTS = 0.4

@@ -11,6 +11,7 @@ from controller import WorstMotion
 from giveway.metrics.anticipation import Anticipation
 from giveway.metrics.conflicts import Critical
 from giveway.metrics.contacts import FRONTAL, SIDE
+from giveway.metrics.encroachment import PERSON
 from giveway.metrics.severity import CRITICAL_PET
 from giveway.metrics.slowing import slowed
 from giveway.metrics.standing import waiting_times
@@ -87,6 +88,9 @@ class Summary:
     ]
     share_below_pet: Annotated[
         float, Quantity(None, "share of all pedestrians whose post-encroachment time is below 1 s")
+    ]
+    share_below_pet_person_first: Annotated[
+        float, Quantity(None, "of all pedestrians those of them who were first: the ego came after")
     ]
     maximum_drac: Annotated[
         float, Quantity("m/s^2", "largest deceleration that the ego needed to spare somebody")
@@ -214,7 +218,10 @@ def summarise(
         conflicts=critical.pedestrians,
         share_below_ttc=critical.share,
         minimum_pet=_extreme(encroached, np.min),
-        share_below_pet=_share_below(encroached, CRITICAL_PET),
+        share_below_pet=_share(encroached < CRITICAL_PET),
+        share_below_pet_person_first=_share(
+            (encroached < CRITICAL_PET) & (column("passed_first") == PERSON)
+        ),
         maximum_drac=_extreme(column("maximum_drac"), np.max),
         minimum_ttc_moving=critical.minimum_ttc,
         vehicle_contacts=len(vehicles),
@@ -229,9 +236,9 @@ def summarise(
     )
 
 
-def _share_below(times: NDArray[np.float64], limit: float) -> float:
-    """The share of all pedestrians, met or not, whose time [s] is below a limit; nan: of none."""
-    return float(np.mean(times < limit)) if len(times) else float("nan")
+def _share(whom: NDArray[np.bool_]) -> float:
+    """The share of all pedestrians, met or not, who are meant; nan: of none."""
+    return float(np.mean(whom)) if len(whom) else float("nan")
 
 
 def _beyond(hardest: NDArray[np.float64], people: WorstMotion) -> NDArray[np.bool_]:

@@ -63,6 +63,7 @@ METRICS = (
     _lower("share_below_ttc", "share in conflict"),
     _higher("minimum_pet", "minimum post-encroachment time"),
     _lower("share_below_pet", "share of people with a short post-encroachment time"),
+    _lower("share_below_pet_person_first", "share of people whom the ego came close after"),
     _lower("maximum_drac", "maximum deceleration to avoid a crash"),
     _higher("minimum_ttc_moving", "minimum time to collision while moving"),
     _higher("ttc_at_slowing", "time to collision as slowing begins"),

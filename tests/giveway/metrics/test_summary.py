@@ -186,6 +186,7 @@ def test_what_never_occurred_is_empty(ego):
         "minimum_ttc_moving",
         "minimum_pet",
         "share_below_pet",
+        "share_below_pet_person_first",
         "maximum_drac",
         "ttc_at_slowing",
     }
@@ -200,6 +201,7 @@ def test_the_summary_of_the_crowd(ego):
             "contact": ["", "side", "frontal", ""],
             "minimum_ttc": [1.5, 0.0, nan, nan],
             "post_encroachment_time": [nan, 0.0, 0.8, nan],
+            "passed_first": ["", "contact", "person", ""],
             "maximum_drac": [2.0, 3.5, 0.0, nan],
         }
     )
@@ -210,6 +212,7 @@ def test_the_summary_of_the_crowd(ego):
     assert (summary.overlaps, summary.overlap_time) == (2, pytest.approx(0.4))
     assert (summary.minimum_ttc, summary.minimum_pet, summary.maximum_drac) == (0.0, 0.0, 3.5)
     assert summary.share_below_pet == 0.5  # of all four, met or not
+    assert summary.share_below_pet_person_first == 0.25
 
 
 def test_the_summary_of_a_single_instant(ego):
