@@ -268,7 +268,7 @@ class PlannerConfig(Section):
         0.5,
         "s",
         "of the plan in which nobody may be able to force an emergency stop; "
-        "above v_r = 4 m/s longer by (v_r - 4 m/s)/(4 m/s²)",
+        "above v_r = 4 m/s longer by (v_r - 4 m/s)/(3 m/s²), and braked for with 3 m/s² at most",
         ge=0,
         le=10,
         because="no plan is longer",

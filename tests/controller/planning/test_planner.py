@@ -154,7 +154,7 @@ class StepsOut:
 
 @pytest.mark.parametrize(("speed", "heeds"), [(4.0, False), (8.0, True), (12.0, True)])
 def test_the_faster_a_road_is_the_earlier_calm_speeds_are_kept_to(speed, heeds):
-    """At 4 m/s half a second before is soon enough."""
+    """At 4 m/s half a second before is soon enough; from 12 m/s it takes longer at 3 m/s^2."""
     parameters = PlannerParameters(reference_speed=speed)
     parameters = replace(parameters, manoeuvres=replace(parameters.manoeuvres, threat_weight=0.0))
     horizon = parameters.horizon
@@ -164,4 +164,5 @@ def test_the_faster_a_road_is_the_earlier_calm_speeds_are_kept_to(speed, heeds):
     )
     assert plan.found
     slowest = planner._plan.speed[24:31].min()
-    assert slowest == pytest.approx(speed / 2 if heeds else speed, rel=0.05)
+    gently = speed - 3.0 * 30 * MODEL.time_step
+    assert slowest == pytest.approx(max(speed / 2, gently) if heeds else speed, rel=0.05)

@@ -9,6 +9,7 @@ from giveway.ego.setting_out import SettingOut
 from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
 from giveway.sumo.signal_plans import SignalChange, untold
+from pedestrian_model import Crowd
 
 EAST = EgoPath.through([(0.0, 0.0), (100.0, 0.0)])
 WIDTH = 2.0
@@ -74,6 +75,39 @@ def test_before_a_red_light_people_are_on_the_sidewalk(state, change, has_kerb):
     beside.update({"tls": state})
     assert found_of(np.array([[60.0, -2.0]]), beside).any() == has_kerb
     assert found_of(np.array([[40.0, -2.0]]), beside).any()
+
+
+@pytest.mark.parametrize(
+    ("velocity", "ways", "keeps"),
+    [
+        ((1.2, 0.0), [(80.0, -3.0)], False),  # before the zebra in a second and a half
+        ((0.8, 0.0), [(55.2, -3.0)], True),
+        ((-1.2, 0.0), [(30.0, -3.0)], True),
+        ((0.0, 0.0), [(30.0, -3.0)], True),
+        ((-1.2, 0.0), [(80.0, -3.0)], False),  # pushed back, but on the way there
+        ((1.2, 0.0), [(55.3, -3.0), (55.3, -4.5)], False),  # the velocity leads there, not the way
+        ((0.0, -1.2), [(55.0, -3.1), (58.0, -3.0)], False),  # round a corner
+    ],
+)
+def test_who_soon_is_at_a_crossing_is_planned_for_as_there(velocity, ways, keeps):
+    beside = kerbs()
+    crowd = Crowd.create(
+        [[55.0, -3.0], [20.0, -3.0]], [velocity, (0.0, 0.0)], 1.2, [ways, [(10.0, -3.0)]]
+    )
+    now = beside.of(crowd.position, 15.0)
+    kept = beside.kept(crowd, now, None)
+    assert now[:, 2] == pytest.approx([1.25, 1.25])
+    assert kept[:, 2] == pytest.approx([1.25 * keeps, 1.25])
+    only = np.array([True, False])
+    assert np.array_equal(beside.kept(crowd.select(only), now, only), kept[:1])
+
+
+def test_where_the_light_stays_red_nobody_soon_is_at_a_crossing():
+    beside = kerbs(crossings=(SIGNALS,), change_of={"tls": SignalChange(9.0, "r")}.get)
+    beside.update({"tls": "r"})
+    crowd = Crowd.create([[55.0, -3.0]], [(1.2, 0.0)], 1.2, [[(80.0, -3.0)]])
+    now = beside.of(crowd.position, 15.0)
+    assert np.array_equal(beside.kept(crowd, now, None), now)
 
 
 def test_on_the_strip_that_the_ego_sweeps_there_is_no_sidewalk():
