@@ -109,10 +109,11 @@ class Judge:
         turn = np.array([[cos, -sin], [sin, cos]])  # from the network's frame into the ego's
         rows = np.flatnonzero(crowd.step == now)
         where = np.column_stack([crowd.x[rows], crowd.y[rows]])
-        to = self._kerbs.of(where, self._departure + float(ego.position[k]))
+        velocity = np.column_stack([crowd.vx[rows], crowd.vy[rows]])
+        to = self._kerbs.of(where, velocity, self._departure + float(ego.position[k]))
         front = np.array([ego.front_x[k] + gone * cos, ego.front_y[k] + gone * sin])
         there = (where - front) @ turn
-        walks = np.column_stack([crowd.vx[rows], crowd.vy[rows]]) @ turn
+        walks = velocity @ turn
         ways, stop = to[:, :2] @ turn, outline(speed, self._dt, alarm)
         found = []
         for i, row in enumerate(rows.tolist()):
@@ -129,7 +130,8 @@ class Judge:
         rows = np.flatnonzero(soon & (crowd.pedestrian == crowd.pedestrian[row]))
         where = np.column_stack([crowd.x[rows], crowd.y[rows]])
         front = self._departure + float(self._ego.position[now])
-        return bool((self._kerbs.of(where, front)[:, 2] > 0.0).all())
+        velocity = np.column_stack([crowd.vx[rows], crowd.vy[rows]])
+        return bool((self._kerbs.of(where, velocity, front)[:, 2] > 0.0).all())
 
 
 def table(files: list[Path], sidewalks: bool, hard: float) -> str:

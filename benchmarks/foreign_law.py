@@ -43,6 +43,7 @@ COUNTS = (
     "vehicle_contacts",
     "frontal_contacts",
     "hard_brakes",
+    "hard_brakes_without_cause",
 )
 HEADER = "| drives | arrived | " + " | ".join(name.replace("_", " ") for name in COUNTS) + " |"
 

@@ -182,10 +182,9 @@ class Loop:
     def _nobody_comes(self) -> bool:
         """Whether a scenario without an end has nobody left, and no ego is to be inserted."""
         sumo, waiting = self._parts.sumo, self._parts.departures.waiting
-        arrivals = self._parts.arrivals
         if sumo.end < np.inf or sumo.expects_more or not all(ego.taken_over for ego in waiting):
             return False
-        return arrivals is None or not arrivals.flows.keeps_coming
+        return self._parts.arrivals is None or not self._parts.arrivals.flows.keeps_coming
 
     def _progress(self, acting: str) -> Progress:
         elapsed, pedestrians = self._k * self._time_step, len(self._roster)
@@ -225,6 +224,7 @@ class Loop:
         background, meetings = self._mirror.background, self._meetings
         if background.ids or meetings.pending or any(ego.way.bounds for ego in self._egos):
             meetings.update(background, self._roster.crowd, self._egos)
+            self._mirror.mark_beside(self._egos)
         if self.followed is not None:
             self.followed.traffic.note(background)
         if background.ids:

@@ -61,6 +61,7 @@ class Mirror:
         self._since = 0  # control steps since SUMO's
         self._egos = 0
         self._driven: list[Ego] = []
+        self._near = _NONE  # the background vehicles that have rows
         self._angles = np.zeros(0)
         self._row = np.zeros(0)
         self.background = NO_VEHICLES
@@ -97,6 +98,7 @@ class Mirror:
             self._require_finite(background)
             drives = [(*ego.pose[:2], ego.vehicle.speed) for ego in egos]
             near = _relevant(background, pedestrians, drives, self._span)
+        self._near = near
         if self.poses.shape[1] != len(egos) + len(near) or self._driven != egos:
             self._allocate(egos, len(near))
         self._since = 0
@@ -114,6 +116,14 @@ class Mirror:
         close = None if self._long else _close(background, near, egos)
         self._bends.read(background, near, close)
         self._bends.fill(self.poses, self._egos, 0)
+
+    def mark_beside(self, egos: Sequence[Ego]) -> None:
+        """Tell egos which rows are of vehicles whose lanes lead them past their paths."""
+        ids, near = self.background.ids, self._near
+        for ego in egos:
+            names = ego.way.beside
+            rows = [ids[i] in names for i in near] if names else []
+            ego.beside = np.array(rows, dtype=np.bool_)
 
     def _require_finite(self, vehicles: BackgroundVehicles) -> None:
         bad = ~np.isfinite(vehicles.x + vehicles.y + vehicles.speed)

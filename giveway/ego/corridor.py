@@ -7,8 +7,9 @@ only beyond the sight of 100 m along the path, the distance is infinite.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
-from giveway.ego.leader import Leader, vehicles_in_front
+from giveway.ego.leader import NOBODY_BESIDE, Leader, vehicles_in_front
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.passage import BEHIND, SIGHT, look, window
 from giveway.geometry.path import EgoPath, body_pose
@@ -89,7 +90,12 @@ class Corridor:
         return self._ahead
 
     def closest_vehicle(
-        self, poses: Array, own: int, front: float, speed: float
+        self,
+        poses: Array,
+        own: int,
+        front: float,
+        speed: float,
+        beside: NDArray[np.bool_] = NOBODY_BESIDE,
     ) -> tuple[Leader, Array]:
         """The closest vehicle in front now, and the stations (N,) [m] of the closest at 1 ... N.
 
@@ -98,6 +104,7 @@ class Corridor:
             own: the ego's own row.
             front: the front bumper's station now [m].
             speed: the ego's speed [m/s], held over the horizon.
+            beside: of the last rows, those whose lanes lead them past the path; or none.
         """
         path, ahead = self.path, self._vehicles_ahead
         station, along = vehicles_in_front(
@@ -111,6 +118,7 @@ class Corridor:
             self.time_step,
             self.half_width,
             self._straight,
+            beside,
             ahead,
         )
         return Leader(station, along), ahead

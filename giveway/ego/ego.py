@@ -12,7 +12,7 @@ from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foreseeing import foresight_of
 from giveway.ego.kerbs import NO_KERBS
-from giveway.ego.leader import NO_LEADER, Following
+from giveway.ego.leader import NO_LEADER, NOBODY_BESIDE, Following
 from giveway.ego.path_view import PathView
 from giveway.ego.relevance import Nearby, Relevance
 from giveway.ego.safety import Guard
@@ -53,6 +53,7 @@ class Ego:
     Attributes:
         front: station of the front bumper [m].
         pose: where the front bumper's centre is, and the direction of the body.
+        beside: of the background vehicles' rows, see :func:`giveway.ego.leader.vehicles_in_front`.
     """
 
     front: float
@@ -101,7 +102,7 @@ class Ego:
         self._kerbs = way.kerbs if self._guard is not None else None
         self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
         self._foresight = foresight_of(waiting, path, shape, self.corridor.half_width, time_step)
-        self._force, self._eases_off = 0.0, False  # a brake, or drives off
+        self._force, self._eases_off, self.beside = 0.0, False, NOBODY_BESIDE
         self._heed_vehicles = config.regulation.vehicles
         self._locate()
         self._following = Following(
@@ -158,7 +159,7 @@ class Ego:
             errors = perception.errors
         kerbs, hasty = NO_KERBS, NOBODY
         if self._kerbs is not None:
-            kerbs = self._kerbs.of(crowd.position, front)
+            kerbs = self._kerbs.of(crowd.position, crowd.velocity, front)
             hasty = self._setting_out.beyond(numbers, crowd.velocity, kerbs)
         pedestrian, reachable = corridor.closest_now(crowd.position, front)
         closest = pedestrian
@@ -188,7 +189,7 @@ class Ego:
         to_clear = self.way.to_clear(front) if self.way.bounds else 0.0
         leader, waits = NO_LEADER, math.inf
         if self._heed_vehicles and poses.shape[1] > 1:
-            leader, vehicles = corridor.closest_vehicle(poses, row, front, speed)
+            leader, vehicles = corridor.closest_vehicle(poses, row, front, speed, self.beside)
             if self.way.merges is not None:
                 before, waits = self.way.merges.look(front, speed)
                 leader = min(leader, before)
@@ -255,8 +256,7 @@ class Ego:
         """What the controller is shown."""
         front, vehicle, leader = self.front, self.vehicle, seen.leader
         safe_distance = self.config.regulation.safe_distance
-        origin = front + self._origin
-        stop = seen.stop + self._origin + safe_distance
+        origin, stop = front + self._origin, seen.stop + self._origin + safe_distance
         vehicle_ahead, limit, lanes = math.inf, math.inf, None
         if not seen.stop == math.inf == leader.station:
             vehicle_ahead = self._following.station(leader, front, seen.to_clear)

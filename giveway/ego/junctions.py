@@ -28,6 +28,7 @@ class PathJunction(NamedTuple):
     movement: Movement  # the path's own
     movements: Mapping[int, Movement]  # of everybody, by number
     conflicts: Mapping[int, Conflict]  # with the path; the others' stations count from their lines
+    beside: frozenset[int]  # movements of other lanes that come nowhere near the path
     gap: Gap  # that its driver wants where no light shows green
     gap_at_lights: Gap
 
@@ -53,12 +54,14 @@ def junctions_on(
         way = _piece(path, passage.entry, passage.exit + _ONWARDS)
         apart = (width + BODY.width) / 2 + _ASIDE
         conflicts: dict[int, Conflict] = {}
-        for number in sorted(own.meets | own.yields_to):
-            if number not in movements or movements[number].source == own.source:
-                continue  # people's, or it is behind the same leader
-            other = movements[number]
+        beside = set[int]()
+        for number, other in sorted(movements.items()):
+            if other.source == own.source:
+                continue  # it is behind the same leader
             where = conflict(way, _way(other, lanes), apart)
-            if where is not None:
+            if where is None:
+                beside.add(number)
+            elif number in own.meets or number in own.yields_to:
                 conflicts[number] = _on_path(where, passage.entry, own.target == other.target)
         if conflicts:
             found.append(
@@ -69,6 +72,7 @@ def junctions_on(
                     own,
                     movements,
                     conflicts,
+                    frozenset(beside),
                     gap_of(own, at_lights=False, major=_is_major(own, movements)),
                     gap_of(own, at_lights=True, major=False),
                 )

@@ -5,10 +5,12 @@ walk on it or on open ground (docs/safety.md). Beside a crossing nobody counts a
 sidewalk, unless their light is red: there people are about to step on the road.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import shapely
+import shapely.ops
 from numpy.typing import NDArray
 
 from giveway.crowd.crossings import is_open
@@ -23,10 +25,12 @@ NO_KERBS: Array = np.zeros((0, 3))
 
 _NEAR = 10.0  # [m] from the path, to which kerbs are kept
 _PIECE = 2.0  # [m] of a kerb, at most
+_STRETCH = 20.0  # [m] of the path, for which kerbs are looked for at a time
 _FACING = 0.5  # cosine: the road is less than 60 degrees from the right angle to its kerb
 _BESIDE = 0.25  # [m] from the ego's side nobody is on a sidewalk, whatever the network says
 _MOUTH = 1.5  # [m] beside and before a crossing people are about to enter it
-_DEEPEST = 4.0  # [m] from the kerb: who is farther off is no matter
+_ON_LINE = 0.05  # [m]
+_DEEPEST = _NEAR  # [m] from the kerb: so wide are sidewalks at most
 _LOOK, _LOOKS = 0.5, 3  # [s] and how many: where people are by then is looked at
 _SOON = 3.0  # [s] before it turns green, people are about to use a crossing
 _BEHIND, _AHEAD = 10.0, 60.0  # [m] of the path from the front bumper, beside which people matter
@@ -60,8 +64,9 @@ class Kerbs:
         pieces = [_pieces(np.asarray(ring.coords)[:, :2]) for ring in _rings(area)]
         edges = np.concatenate([*pieces, np.empty((0, 4))])
         edges = edges[line.distance(shapely.linestrings(edges.reshape(-1, 2, 2))) <= _NEAR]
+        passed, stations = _passed(line, edges)
+        edges = edges[passed]
         middle = (edges[:, :2] + edges[:, 2:]) / 2.0
-        stations = shapely.line_locate_point(line, shapely.points(middle))
         away = path.points(stations) - middle
         away /= np.maximum(np.hypot(away[:, 0], away[:, 1]), 1e-9)[:, None]
         along = edges[:, 2:] - edges[:, :2]
@@ -89,16 +94,22 @@ class Kerbs:
             ]
             self._open = self._mouths[~np.array(closed)]
 
-    def of(self, position: Array, front: float) -> Array:
+    def of(self, position: Array, velocity: Array, front: float) -> Array:
         """(n, 3) unit vectors to the kerbs of people on sidewalks, and how far [m]; 0 for others.
+
+        Where a sidewalk becomes narrower the nearest kerb may begin ahead of somebody who walks
+        along it. If all of the kerb near them is beyond its line, that line counts instead of its
+        beginning, should they take longer to get there.
 
         Args:
             position: (n, 2) [m] of the people.
+            velocity: (n, 2) [m/s] theirs.
             front: station of the ego's front bumper [m].
         """
         found = np.zeros((len(position), 3))
         first, last = np.searchsorted(self._stations, (front - _BEHIND, front + _AHEAD))
-        fill_kerbs(position, self._edges[first:last], self._kerb[first:last], self._open, found)
+        edges, is_kerb = self._edges[first:last], self._kerb[first:last]
+        fill_kerbs(position, velocity, edges, is_kerb, self._open, found)
         return found
 
     def kept(self, people: Crowd, kerbs: Array, whom: NDArray[np.bool_] | None) -> Array:
@@ -148,6 +159,23 @@ def _pieces(ring: Array) -> Array:
     return np.concatenate([np.hstack([points[:-1], points[1:]]) for points in cut])
 
 
+def _passed(line: shapely.LineString, edges: Array) -> tuple[NDArray[np.int64], Array]:
+    """Which edges a path passes, and at which stations [m]: twice where it comes by again."""
+    lines = shapely.STRtree(shapely.linestrings(edges.reshape(-1, 2, 2)))
+    middles = shapely.points((edges[:, :2] + edges[:, 2:]) / 2.0)
+    which, where = [np.empty(0, dtype=np.int64)], [np.empty(0)]
+    for begin in np.arange(0.0, line.length, _STRETCH):
+        first, last = max(0.0, begin - _STRETCH), begin + 2.0 * _STRETCH
+        part = shapely.ops.substring(line, first, min(last, line.length))
+        near = np.sort(lines.query(part, predicate="dwithin", distance=_NEAR))
+        stations = first + shapely.line_locate_point(part, middles[near])
+        end = math.inf if begin + _STRETCH >= line.length else begin + _STRETCH
+        here = (begin <= stations) & (stations < end)
+        which.append(near[here])
+        where.append(stations[here])
+    return np.concatenate(which), np.concatenate(where)
+
+
 def _near(crossings: Sequence[Crossing], line: shapely.LineString) -> list[Crossing]:
     """The crossings near a path."""
     ways = [(crossing, shapely.LineString(crossing.ends)) for crossing in crossings]
@@ -177,11 +205,19 @@ def _stays_closed(
 
 
 @kernel
-def fill_kerbs(position: Array, edges: Array, is_kerb: Array, mouths: Array, found: Array) -> None:
+def fill_kerbs(
+    position: Array,
+    velocity: Array,
+    edges: Array,
+    is_kerb: NDArray[np.bool_],
+    mouths: Array,
+    found: Array,
+) -> None:
     """Fill ``found`` (n, 3) as in :meth:`Kerbs.of`.
 
     Args:
         position: (n, 2) [m].
+        velocity: (n, 2) [m/s].
         edges: (k, 4) [m] of sidewalks, which are on the left of each.
         is_kerb: (k,) whether the road is on the right.
         mouths: (c, 6) see :func:`_mouths`.
@@ -190,7 +226,7 @@ def fill_kerbs(position: Array, edges: Array, is_kerb: Array, mouths: Array, fou
     for p in range(position.shape[0]):
         x, y = position[p, 0], position[p, 1]
         closest = nearest_kerb = np.inf
-        inside = False
+        inside, nearest, beside = False, -1, False
         to_x = to_y = 0.0
         for i in range(edges.shape[0]):
             x_0, y_0 = edges[i, 0], edges[i, 1]
@@ -204,10 +240,34 @@ def fill_kerbs(position: Array, edges: Array, is_kerb: Array, mouths: Array, fou
                 closest, inside = distance, left
             if is_kerb[i] and distance < nearest_kerb:
                 nearest_kerb, to_x, to_y = distance, d_x, d_y
+                nearest, beside = i, 0.0 < share < 1.0
         if not inside or nearest_kerb > _DEEPEST or in_mouth(x, y, mouths):
             continue
         found[p, 0], found[p, 1] = to_x / nearest_kerb, to_y / nearest_kerb
         found[p, 2] = nearest_kerb
+        if not beside:
+            heed_line(nearest, edges, is_kerb, position[p], velocity[p], found[p])
+
+
+@inner
+def heed_line(
+    i: int, edges: Array, is_kerb: NDArray[np.bool_], here: Array, velocity: Array, kerb: Array
+) -> None:
+    """Let the line of edge ``i`` be the ``kerb`` (3,), see :meth:`Kerbs.of`, or leave it."""
+    e_x, e_y = edges[i, 2] - edges[i, 0], edges[i, 3] - edges[i, 1]
+    length = np.sqrt(e_x * e_x + e_y * e_y)
+    n_x, n_y = e_y / length, -e_x / length
+    depth = n_x * (edges[i, 0] - here[0]) + n_y * (edges[i, 1] - here[1])
+    pace, its_pace = n_x * velocity[0] + n_y * velocity[1], velocity @ kerb[:2]
+    if depth <= _ON_LINE or pace * kerb[2] >= its_pace * depth:
+        return
+    for k in range(edges.shape[0]):
+        for end in (0, 2):
+            d_x, d_y = edges[k, end] - here[0], edges[k, end + 1] - here[1]
+            near = is_kerb[k] and d_x * d_x + d_y * d_y <= _NEAR * _NEAR
+            if near and n_x * d_x + n_y * d_y < depth - _ON_LINE:
+                return
+    kerb[0], kerb[1], kerb[2] = n_x, n_y, depth
 
 
 @kernel

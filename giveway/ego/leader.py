@@ -7,6 +7,7 @@ from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from giveway.geometry.kernel import Array, kernel
 from giveway.geometry.passage import BEHIND, SIGHT, look, window
@@ -33,6 +34,7 @@ class Leader(NamedTuple):
 
 
 NO_LEADER = Leader(inf, 0.0)
+NOBODY_BESIDE: NDArray[np.bool_] = np.empty(0, dtype=np.bool_)
 
 
 class Following:
@@ -185,6 +187,7 @@ def vehicles_in_front(
     time_step: float,
     half_width: float,
     straight: int,
+    beside: NDArray[np.bool_],
     ahead: Array,
 ) -> tuple[float, float]:
     """The closest vehicle now (station, speed along the path); fills ``ahead`` for 1 ... N.
@@ -192,10 +195,14 @@ def vehicles_in_front(
     A vehicle that is in the corridor now is predicted to follow the path at its present speed, any
     other to go straight on for ``straight`` steps. So one ahead in a bend stays ahead, and one
     from the side arrives. Where N is longer than these steps, vehicles along the path beside it,
-    the same way or oncoming, are predicted to keep to their own lane. A vehicle in the corridor
-    behind the front bumper stays behind: it does not drive through the ego.
+    the same way or oncoming, are predicted to keep to their own lane, and what comes from the side
+    beyond the path's end is no matter. So do those who are ``beside`` (of the last vehicles), where
+    the network knows. A vehicle in the corridor behind the front bumper stays behind: it does not
+    drive through the ego.
     """
     N = ahead.shape[0]
+    known = poses.shape[1] - beside.shape[0]
+    end = stations[-1] if straight < N else np.inf
     first, last = window(stations, front, BEHIND)
     ahead[:] = np.inf
     nearest, its_speed = np.inf, 0.0
@@ -215,6 +222,8 @@ def vehicles_in_front(
             for k in range(N):
                 ahead[k] = min(ahead[k], station + (k + 1) * time_step * along)
             continue
+        if j >= known and beside[j - known]:
+            continue
         if straight < N:
             nearest_to_it, _ = project(vertices, stations, vehicle[0], vehicle[1])
             i = segment_at(stations, nearest_to_it)
@@ -231,5 +240,6 @@ def vehicles_in_front(
         for k in range(1, min(N, straight, poses.shape[0] - 1) + 1):
             at = front + k * advance
             station = outline_in_front(vertices, stations, first, last, poses[k, j], at, half_width)
-            ahead[k - 1] = min(ahead[k - 1], station)
+            if station <= end:
+                ahead[k - 1] = min(ahead[k - 1], station)
     return nearest, its_speed

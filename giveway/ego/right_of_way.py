@@ -12,7 +12,7 @@ does not enter a junction that a slow vehicle ahead keeps it from leaving.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import NamedTuple
 
 from giveway.ego.gaps import travel_time
@@ -77,6 +77,7 @@ class RightOfWay:
     Attributes:
         junctions: as above.
         systems: SUMO's ids of the traffic lights that govern them.
+        beside: the names of those whose lanes lead them past the ego's path at the next junctions.
     """
 
     def __init__(
@@ -105,6 +106,7 @@ class RightOfWay:
         self._staying: set[str] = set()  # others who will go on standing
         self._green: dict[tuple[str, int], float] = {}  # since when others' lights have been green
         self.systems = frozenset(place.movement.system for place in junctions) - {""}
+        self.beside: Set[str] = frozenset()
 
     @property
     def kept_free(self) -> list[tuple[float, float]]:
@@ -135,11 +137,14 @@ class RightOfWay:
         """
         passed, self._time = time - self._time, time
         before, self._stop = self._stop, math.inf
+        beside, others = set[str](), set[str]()
         for number in range(self._next, len(self.junctions)):
             place = self.junctions[number]
             if place.entry - front > SIGHT:
                 break
             first = number == self._next
+            for other in traffic.get(place.movement.junction, ()):
+                (beside if other.number in place.beside else others).add(other.name)
             letter = letter_of(place.movement, states)
             if first:
                 self._note(place, front, speed, passed, traffic)
@@ -150,6 +155,7 @@ class RightOfWay:
             needed = needed_braking(speed, stop + STOP_BEFORE - front)
             if stop < math.inf and (needed <= HARDEST or abs(stop - before) <= STOP_BEFORE):
                 self._stop = min(self._stop, max(stop, min(front, stop + STOP_BEFORE)))
+        self.beside = beside - others
 
     def stop_at(self, front: float, speed: float, leader: Leader = NO_LEADER) -> float:
         """Station [m] at which the front bumper has to stop; inf: nowhere.

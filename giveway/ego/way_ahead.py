@@ -1,7 +1,7 @@
 """What bounds the way ahead of an ego: lights, stops, crossings and junctions."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 
 from giveway.ego.crossings import Crossings
 from giveway.ego.giving_way import at_rest
@@ -56,6 +56,11 @@ class WayAhead:
         self.bounds = any(part is not None for part in parts)
         watched = [part for part in (lights, crossings, right_of_way, kerbs) if part is not None]
         self.systems = frozenset[str]().union(*(part.systems for part in watched))
+
+    @property
+    def beside(self) -> Set[str]:
+        """The names of vehicles whose lanes lead them past the path, at the next junctions."""
+        return frozenset() if self._right_of_way is None else self._right_of_way.beside
 
     def junctions(self, front: float) -> frozenset[str]:
         """SUMO's ids of the junctions whose traffic matters to an ego at ``front`` [m]."""

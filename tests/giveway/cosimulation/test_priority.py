@@ -37,7 +37,7 @@ def ego(
     other = movement(OTHER, "m", set(its), 1 if lights else -1)
     where = {OTHER: Conflict(55.0, 60.0, 4.0, 8.0)}
     gaps = MINOR_STRAIGHT, PERMITTED
-    place = PathJunction(50.0, 65.0, (), own, {OWN: own, OTHER: other}, where, *gaps)
+    place = PathJunction(50.0, 65.0, (), own, {OWN: own, OTHER: other}, where, frozenset(), *gaps)
     return SimpleNamespace(
         id="ego",
         front=front,

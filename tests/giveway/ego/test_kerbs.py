@@ -24,8 +24,9 @@ def kerbs(path=EAST, sidewalks=SIDEWALKS, crossings=(ZEBRA,), change_of=untold):
     return Kerbs(path, WIDTH, lambda place: sidewalks.intersection(place), crossings, change_of)
 
 
-def found_of(people, beside=None, front=15.0):
-    return (beside or kerbs()).of(people, front)
+def found_of(people, beside=None, front=15.0, velocity=None):
+    still = np.zeros_like(people) if velocity is None else velocity
+    return (beside or kerbs()).of(people, still, front)
 
 
 def test_who_is_on_a_sidewalk_has_a_kerb():
@@ -94,7 +95,7 @@ def test_who_soon_is_at_a_crossing_is_planned_for_as_there(velocity, ways, keeps
     crowd = Crowd.create(
         [[55.0, -3.0], [20.0, -3.0]], [velocity, (0.0, 0.0)], 1.2, [ways, [(10.0, -3.0)]]
     )
-    now = beside.of(crowd.position, 15.0)
+    now = beside.of(crowd.position, crowd.velocity, 15.0)
     kept = beside.kept(crowd, now, None)
     assert now[:, 2] == pytest.approx([1.25, 1.25])
     assert kept[:, 2] == pytest.approx([1.25 * keeps, 1.25])
@@ -106,7 +107,7 @@ def test_where_the_light_stays_red_nobody_soon_is_at_a_crossing():
     beside = kerbs(crossings=(SIGNALS,), change_of={"tls": SignalChange(9.0, "r")}.get)
     beside.update({"tls": "r"})
     crowd = Crowd.create([[55.0, -3.0]], [(1.2, 0.0)], 1.2, [[(80.0, -3.0)]])
-    now = beside.of(crowd.position, 15.0)
+    now = beside.of(crowd.position, crowd.velocity, 15.0)
     assert np.array_equal(beside.kept(crowd, now, None), now)
 
 
@@ -129,6 +130,45 @@ def test_in_a_bend_the_kerb_is_where_it_is_nearest():
     there = np.array([[14.25 * np.sin(0.7), 12.0 - 14.25 * np.cos(0.7)]])
     found = found_of(there, kerbs(bend, ring, ()), front=2.0)
     assert found[0] == pytest.approx([-np.sin(0.7), np.cos(0.7), 0.5], abs=0.02)
+
+
+def test_where_the_path_comes_by_again_there_are_kerbs_again():
+    """Round the block, and along the same road once more."""
+    block = [(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0)]
+    twice = EgoPath.through([*block, *block, block[0]])
+    people = np.array([[50.0, -2.25]])
+    assert found_of(people, kerbs(twice), front=30.0)[0] == pytest.approx([0.0, 1.0, 0.5])
+    assert found_of(people, kerbs(twice), front=430.0)[0] == pytest.approx([0.0, 1.0, 0.5])
+    assert not found_of(people, kerbs(twice), front=230.0).any()
+
+
+# The sidewalk becomes narrower at x = 40 m: its kerb is 1.5 m farther from the lane from there on.
+NARROWER = shapely.union_all(
+    [shapely.box(-5, -4.75, 40, -1.75), shapely.box(39, -4.75, 105, -3.25)]
+)
+
+
+@pytest.mark.parametrize(
+    ("velocity", "expected"),
+    [
+        ((1.3, 0.0), [0.0, 1.0, 0.25]),  # along it: the line of the kerb ahead
+        ((-1.3, 0.0), [np.sqrt(0.8), np.sqrt(0.2), np.sqrt(0.3125)]),  # away from where it begins
+        ((0.0, 1.3), [np.sqrt(0.8), np.sqrt(0.2), np.sqrt(0.3125)]),  # they are sooner at its line
+    ],
+)
+def test_of_a_kerb_that_begins_ahead_what_takes_longer_to_get_to_counts(velocity, expected):
+    people = np.array([[39.5, -3.5]])
+    found = found_of(people, kerbs(sidewalks=NARROWER, crossings=()), 30.0, np.array([velocity]))
+    assert found[0] == pytest.approx(expected)
+
+
+def test_a_line_that_other_kerbs_cross_does_not_count():
+    """The ego turns right, round the block that the person is on."""
+    right = EgoPath.through([(0.0, 0.0), (50.0, 0.0), (50.0, -50.0)])
+    block = shapely.union_all([shapely.box(-5, -60, 40, -1.75), shapely.box(39, -60, 48, -3.25)])
+    people, velocity = np.array([[39.5, -3.5]]), np.array([(1.3, 0.0)])
+    found = found_of(people, kerbs(right, block, ()), 30.0, velocity)
+    assert found[0] == pytest.approx([np.sqrt(0.8), np.sqrt(0.2), np.sqrt(0.3125)])
 
 
 def test_where_there_is_no_sidewalk_nobody_is_on_one():

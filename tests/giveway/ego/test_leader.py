@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from giveway.ego.leader import NO_LEADER, Following, Leader, given_up, vehicles_in_front
+from giveway.ego.leader import (
+    NO_LEADER,
+    Following,
+    Leader,
+    given_up,
+    vehicles_in_front,
+)
 from giveway.geometry.path import EgoPath
 
 DT = 0.05  # [s]
@@ -22,16 +28,26 @@ PATH = EgoPath.through(
 )
 
 
-def expected(x: float, y: float, heading: float, speed: float, straight: int) -> float:
+def expected(
+    x: float,
+    y: float,
+    heading: float,
+    speed: float,
+    straight: int,
+    *,
+    path: EgoPath = PATH,
+    beside: bool = False,
+) -> float:
     """How near [m] a vehicle is expected in front of an ego that is at the bend's begin."""
     steps = DT * speed * np.arange(N)
-    poses = np.zeros((N, 1, 7))
-    poses[:, 0, 0], poses[:, 0, 1] = x + steps * np.cos(heading), y + steps * np.sin(heading)
-    poses[:, 0, 2:] = heading, speed, 2.5, 2.5, 1.8
+    poses = np.zeros((N, 2, 7))
+    poses[:, 0, 0] = -40.0  # the ego's row
+    poses[:, 1, 0], poses[:, 1, 1] = x + steps * np.cos(heading), y + steps * np.sin(heading)
+    poses[:, 1, 2:] = heading, speed, 2.5, 2.5, 1.8
     ahead = np.empty(N)
     front, half_width = 40.0, 1.4
-    road = (PATH.vertices, PATH.stations, PATH.headings)
-    vehicles_in_front(*road, poses, -1, front, 4.0 * DT, DT, half_width, straight, ahead)
+    road, known = (path.vertices, path.stations, path.headings), np.array([beside])
+    vehicles_in_front(*road, poses, 0, front, 4.0 * DT, DT, half_width, straight, known, ahead)
     return float(ahead.min() - front)
 
 
@@ -48,6 +64,24 @@ def test_who_overtakes_in_a_bend_is_expected_to_keep_to_its_lane():
 def test_who_comes_from_the_side_is_still_expected(heading):
     x, y = 8.0 - 6.0 * np.cos(heading), 1.0 - 6.0 * np.sin(heading)
     assert expected(x, y, heading, 8.0, straight=20) < 12.0
+
+
+@pytest.mark.parametrize("heading", [np.pi / 2, -np.pi / 2])
+def test_whose_lane_leads_past_the_path_is_not_expected_on_it(heading):
+    """But where it is in front now, it is."""
+    x, y = 8.0 - 6.0 * np.cos(heading), 1.0 - 6.0 * np.sin(heading)
+    assert expected(x, y, heading, 8.0, straight=20, beside=True) == np.inf
+    there = 8.0, 1.0, heading, 8.0
+    assert expected(*there, straight=20, beside=True) < 12.0
+
+
+def test_who_crosses_beyond_the_end_of_the_path_is_no_matter():
+    """There the ego is at its goal."""
+    crossing = 8.0, -7.0, np.pi / 2, 8.0
+    ends = EgoPath.through([(-40.0, 0.0), (5.0, 0.0)])
+    goes_on = EgoPath.through([(-40.0, 0.0), (15.0, 0.0)])
+    assert expected(*crossing, straight=20, path=ends) == np.inf
+    assert expected(*crossing, straight=20, path=goes_on) < 8.0
 
 
 def kept(leader: Leader, speed: float, coming: float = np.inf, origin: float = 0.0) -> float:

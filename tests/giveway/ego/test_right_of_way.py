@@ -20,7 +20,12 @@ NOBODY = frozenset[int]()
 
 
 def junction(
-    state: str = "m", *, waiting: tuple[float, ...] = (), lights: bool = False, named: bool = True
+    state: str = "m",
+    *,
+    waiting: tuple[float, ...] = (),
+    lights: bool = False,
+    named: bool = True,
+    beside: frozenset[int] = NOBODY,
 ) -> PathJunction:
     system = "tls" if lights else ""
     yields_to = frozenset({OTHER}) if named else NOBODY
@@ -47,7 +52,7 @@ def junction(
     where = Conflict(55.0, 60.0, 4.0, 8.0)
     movements, conflicts = {OWN: own, OTHER: other}, {OTHER: where}
     gaps = MINOR_STRAIGHT, PERMITTED
-    return PathJunction(ENTRY, 65.0, waiting, own, movements, conflicts, *gaps)
+    return PathJunction(ENTRY, 65.0, waiting, own, movements, conflicts, beside, *gaps)
 
 
 def other(distance: float, speed: float = 10.0, standing: float = 0.0) -> Approach:
@@ -73,6 +78,27 @@ class Drive:
 
 def stop(place: PathJunction, front: float, speed: float, *others: Approach, **more: Any) -> float:
     return Drive(place).stop(front, speed, *others, **more)
+
+
+def test_it_knows_who_is_led_past_it() -> None:
+    past, across = 2, junction()
+    place = junction(beside=frozenset({past}))
+    aside = place.movements[OTHER]._replace(number=past, source="west_1", target="east_1")
+    place = place._replace(movements={**place.movements, past: aside})
+    one, two = other(20.0), other(12.0)._replace(name="second", number=past)
+    drive = Drive(place)
+    assert drive.keeps.beside == set()
+    drive.stop(30.0, 5.0, two, one)
+    assert drive.keeps.beside == {"second"}
+    drive.stop(31.0, 5.0, one)
+    assert drive.keeps.beside == set()
+    further = across._replace(
+        entry=80.0, exit=95.0, movement=across.movement._replace(junction="k")
+    )
+    keeps = RightOfWay([place, further], name="ego", length=5.0, gap=1.0, fastest=8.0)
+    keeps.look(30.0)
+    keeps.update(0.1, 30.0, 5.0, {}, {"j": [two], "k": [two._replace(number=OTHER)]})
+    assert keeps.beside == set()  # at the next junction its way crosses the ego's
 
 
 def test_it_waits_for_whoever_comes_within_its_critical_gap() -> None:
