@@ -14,9 +14,12 @@ import argparse
 import statistics
 from contextlib import ExitStack
 from time import perf_counter, process_time, thread_time
+from unittest.mock import patch
 
 import numpy as np
 
+from controller.least_squares import Outcome
+from controller.osqp_backend import OsqpBackend
 from giveway.api import RunResult, simulate
 from giveway.config.layers import Layer
 from giveway.config.loading import load
@@ -121,6 +124,21 @@ def longest_control(controller: str, runs: int) -> tuple[float, float, float]:
     return first, each_time, float(np.quantile(steps, 0.9999))
 
 
+def osqp_share(checked: CheckedRun) -> float:
+    """The share of the loop that OSQP's own calls take."""
+    solver, spent = OsqpBackend.solve, [0.0]
+
+    def timed(self: OsqpBackend, *arguments: np.ndarray) -> tuple[Outcome, int]:
+        began = perf_counter()
+        found = solver(self, *arguments)
+        spent[0] += perf_counter() - began
+        return found
+
+    with patch.object(OsqpBackend, "solve", timed):
+        result = simulate(checked)
+    return spent[0] / result.elapsed
+
+
 def show(controller: str, seed: int, pairs: int, believed: str, horizon: float | None) -> None:
     """Loop and baseline in turn, and the parts of the loop."""
     checked = ready(controller, seed, believed=believed, horizon=horizon)
@@ -143,6 +161,9 @@ def show(controller: str, seed: int, pairs: int, believed: str, horizon: float |
     for name in Timings.NAMES[:-1]:
         share = statistics.median(r.timing_summary["shares"][name] for r in results)
         print(f"  {name:10} {100 * share:5.1f} %")
+    osqp = statistics.median(osqp_share(checked) for _ in range(pairs))
+    if osqp > 0.0:
+        print(f"  of control, OSQP itself {100 * osqp:5.1f} %")
 
 
 def main() -> None:

@@ -30,6 +30,7 @@ _FACING = 0.5  # cosine: the road is less than 60 degrees from the right angle t
 _BESIDE = 0.25  # [m] from the ego's side nobody is on a sidewalk, whatever the network says
 _MOUTH = 1.5  # [m] beside and before a crossing people are about to enter it
 _ON_LINE = 0.05  # [m]
+_SETS_OUT = 0.6  # [m/s^2] by which kerbs are compared: a_k of docs/safety.md
 _DEEPEST = _NEAR  # [m] from the kerb: so wide are sidewalks at most
 _LOOK, _LOOKS = 0.5, 3  # [s] and how many: where people are by then is looked at
 _SOON = 3.0  # [s] before it turns green, people are about to use a crossing
@@ -77,7 +78,7 @@ class Kerbs:
         self._stations = stations[order]
         self._kerb = np.ascontiguousarray((facing >= _FACING)[order])
         self._crossings = _near(crossings, line)
-        self._mouths = self._open = _mouths(self._crossings)
+        self._mouths = self._open = self._opening = _mouths(self._crossings)
         self._change_of = change_of
         self.systems = frozenset(crossing.system for crossing in self._crossings) - {""}
 
@@ -88,11 +89,11 @@ class Kerbs:
         """Take note of the lights' states: of each system, one letter per movement (SUMO's)."""
         if self.systems:
             changes = {system: self._change_of(system) for system in self.systems}
-            closed = [
-                _stays_closed(crossing, states, changes.get(crossing.system))
-                for crossing in self._crossings
-            ]
-            self._open = self._mouths[~np.array(closed)]
+            closed = np.array(
+                [_closed_for(each, states, changes.get(each.system)) for each in self._crossings]
+            )
+            self._open = self._mouths[closed <= _SOON]
+            self._opening = self._mouths[closed <= _SOON + _LOOKS * _LOOK]
 
     def of(self, position: Array, velocity: Array, front: float) -> Array:
         """(n, 3) unit vectors to the kerbs of people on sidewalks, and how far [m]; 0 for others.
@@ -113,7 +114,9 @@ class Kerbs:
         return found
 
     def kept(self, people: Crowd, kerbs: Array, whom: NDArray[np.bool_] | None) -> Array:
-        """(n, 3) as ``kerbs``, but 0 for those who are soon beside, before or on a crossing.
+        """(n, 3) as ``kerbs``, but 0 for those who will soon be about to use a crossing.
+
+        They get beside, before or on it, or are there when it is about to be open.
 
         Plans take them for free to step on the road at once: else who gets there a few metres
         before the ego would make it brake hard.
@@ -126,7 +129,7 @@ class Kerbs:
         kept = kerbs.copy() if whom is None else kerbs[whom]
         way = people.waypoints, people.waypoint_start, people.waypoint_index
         walks = people.position, people.velocity, people.desired_speed, *way
-        drop_kerbs(*walks, self._open, kept)
+        drop_kerbs(*walks, self._opening, kept)
         return kept
 
 
@@ -192,16 +195,16 @@ def _mouths(crossings: Sequence[Crossing]) -> Array:
     return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
-def _stays_closed(
+def _closed_for(
     crossing: Crossing, states: Mapping[str, str], change: SignalChange | None
-) -> bool:
-    """Whether people have a red light before a crossing, and for some seconds yet."""
+) -> float:
+    """For how long [s] people will have a red light before a crossing; 0: they have none."""
     state = states.get(crossing.system, "")
     if not state or is_open(state, crossing.link, zebra=crossing.zebra):
-        return False
-    if change is None or change.time > _SOON:
-        return True
-    return not is_open(change.state, crossing.link, zebra=crossing.zebra)
+        return 0.0
+    if change is None or not is_open(change.state, crossing.link, zebra=crossing.zebra):
+        return math.inf  # as far as anybody knows
+    return change.time
 
 
 @kernel
@@ -258,8 +261,9 @@ def heed_line(
     length = np.sqrt(e_x * e_x + e_y * e_y)
     n_x, n_y = e_y / length, -e_x / length
     depth = n_x * (edges[i, 0] - here[0]) + n_y * (edges[i, 1] - here[1])
-    pace, its_pace = n_x * velocity[0] + n_y * velocity[1], velocity @ kerb[:2]
-    if depth <= _ON_LINE or pace * kerb[2] >= its_pace * depth:
+    pace = n_x * velocity[0] + n_y * velocity[1]
+    its_pace = kerb[0] * velocity[0] + kerb[1] * velocity[1]
+    if depth <= _ON_LINE or arrival(depth, pace) <= arrival(kerb[2], its_pace):
         return
     for k in range(edges.shape[0]):
         for end in (0, 2):
@@ -290,6 +294,9 @@ def drop_kerbs(
             continue
         x, y = position[p, 0], position[p, 1]
         at, last = start[p] + index[p], start[p + 1] - 1
+        if in_mouth(x, y, mouths):
+            kerbs[p] = 0.0
+            continue
         for look in range(1, _LOOKS + 1):
             left = desired_speed[p] * _LOOK
             while left > 0.0:  # along the way, from one way-point to the next
@@ -307,6 +314,13 @@ def drop_kerbs(
             if in_mouth(x, y, mouths) or in_mouth(s_x, s_y, mouths):
                 kerbs[p] = 0.0
                 break
+
+
+@inner
+def arrival(depth: float, pace: float) -> float:
+    """The time [s] in which somebody who sets out, and nears a kerb at ``pace`` [m/s], is there."""
+    faster = np.sqrt(max(0.0, pace * pace + 2.0 * _SETS_OUT * depth))
+    return float((faster - pace) / _SETS_OUT)
 
 
 @inner

@@ -111,6 +111,16 @@ def test_where_the_light_stays_red_nobody_soon_is_at_a_crossing():
     assert np.array_equal(beside.kept(crowd, now, None), now)
 
 
+@pytest.mark.parametrize(("opens", "keeps"), [(4.0, False), (9.0, True)])
+def test_who_waits_where_the_light_will_soon_turn_green_is_planned_for_as_on_the_road(opens, keeps):
+    beside = kerbs(crossings=(SIGNALS,), change_of={"tls": SignalChange(opens, "G")}.get)
+    beside.update({"tls": "r"})
+    crowd = Crowd.create([[60.0, -2.25]], [(0.0, 0.0)], 1.2, [[(60.0, 5.0)]])
+    now = beside.of(crowd.position, crowd.velocity, 15.0)
+    assert now[0, 2] == pytest.approx(0.5)
+    assert beside.kept(crowd, now, None)[0, 2] == pytest.approx(0.5 * keeps)
+
+
 def test_on_the_strip_that_the_ego_sweeps_there_is_no_sidewalk():
     """A network in which a sidewalk reaches into the lane."""
     over = shapely.union_all([SIDEWALKS, shapely.box(20, -4.75, 30, -0.5)])
