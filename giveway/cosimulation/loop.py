@@ -14,7 +14,6 @@ lag of one sample: position and speed do not depend on the force instantaneously
 algebraic loop.
 """
 
-import gc
 from time import perf_counter
 
 import numpy as np
@@ -33,6 +32,7 @@ from giveway.crowd.roster import Walking
 from giveway.ego.ego import Ego
 from giveway.errors import ControlError, CrowdError, VehicleError
 from giveway.geometry.kernel import Array
+from giveway.processes.garbage import full_collections_put_off
 from giveway.processes.heartbeat import INSTANT, MILLISECONDS, PHASE, Phase
 from giveway.processes.interrupts import DeferredInterrupt
 from giveway.recording.recorder import Recorder
@@ -91,18 +91,15 @@ class Loop:
         Raises:
             GivewayError: a part failed; everything recorded so far stays recorded.
         """
-        # No step is to wait while Python looks for garbage in all that exists by now (0.1 s).
-        gc.freeze()
         try:
-            ending = self._run(watcher, interrupt)
+            with full_collections_put_off():
+                ending = self._run(watcher, interrupt)
         except FmuError as error:
             raise VehicleError(f"step {self._k}: {error}") from error
         except ControllerError as error:
             raise ControlError(f"controller at step {self._k}: {error}") from error
         except PedestrianModelError as error:
             raise CrowdError(self._blame(error)) from error
-        finally:
-            gc.unfreeze()
         for ego in self._egos:
             self.endings.setdefault(ego.id, ending)
             self._remark_on_missed_stops(ego)
