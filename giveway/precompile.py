@@ -18,6 +18,7 @@ from controller import LongitudinalModel, Mpc, MpcParameters, branch_off
 from giveway._kernels.cache import FOLDERS, kernel_cache
 from giveway.processes.child import die_with
 from giveway.processes.interpreter import command
+from giveway.processes.processors import processors
 from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles, arrived
 from pedestrian_model.model import SHARED_FROM
 
@@ -144,7 +145,7 @@ def _compile_all() -> None:
 def _helper() -> Iterator[subprocess.Popen[bytes] | None]:
     """A process that compiles beside this one; None where no processor is left for it."""
     try:
-        helper = _started() if _processors() > 1 else None
+        helper = _started() if processors() > 1 else None
     except OSError:
         helper = None  # this process does it all
     try:
@@ -169,13 +170,6 @@ def help_compiling(parent: int) -> None:
     with _rarely_collected():
         for settings in _WALKS:
             _run(settings, measured=False)
-
-
-def _processors() -> int:
-    """How many this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _tiny_run() -> None:

@@ -16,10 +16,11 @@ from giveway.cli.printing import print_json
 from giveway.cli.study_summary import print_plan, print_summary
 from giveway.config.foreign_code import foreign_code
 from giveway.precompile import compile_kernels_once
+from giveway.processes.processors import processors
 from giveway.studies.definition import changed, read_definition
 from giveway.studies.finding import find_study
 from giveway.studies.plan import plan
-from giveway.studies.study import StudyOptions, StudyProgress, estimate, processors, run_study
+from giveway.studies.study import StudyOptions, StudyProgress, estimate, run_study
 from giveway.studies.varying import chosen, varied
 
 _REFRESH = 0.2  # [s] of wall clock between two redraws

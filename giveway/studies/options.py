@@ -1,9 +1,9 @@
 """How a study is computed, which its results do not depend on."""
 
-import os
 from dataclasses import dataclass
 
 from giveway.errors import ConfigError
+from giveway.processes.processors import processors
 from giveway.studies.execution import HANG_LIMIT, Executor, cluster_executor, local_executor
 
 
@@ -55,10 +55,3 @@ class StudyOptions:
             return cluster_executor(self.cluster, hang_limit=hang, run_limit=run)
         jobs = processors() if self.jobs is None else self.jobs
         return local_executor(jobs=jobs, hang_limit=hang, run_limit=run)
-
-
-def processors() -> int:
-    """How many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

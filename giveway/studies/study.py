@@ -22,7 +22,7 @@ from giveway.studies.folder import StudyFolder
 from giveway.studies.frames import runs_frame
 from giveway.studies.identity import software_identity
 from giveway.studies.lock import remove_derived_files, remove_study, reserved
-from giveway.studies.options import StudyOptions, processors
+from giveway.studies.options import StudyOptions
 from giveway.studies.output import write_tables
 from giveway.studies.plan import Plan, PlannedRun, plan
 from giveway.studies.record import RunRecord
@@ -35,7 +35,6 @@ __all__ = [
     "StudyOptions",
     "StudyProgress",
     "estimate",
-    "processors",
     "run_study",
 ]
 

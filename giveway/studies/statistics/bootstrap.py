@@ -3,16 +3,20 @@
 Efron 1987, "Better bootstrap confidence intervals", J. Am. Stat. Assoc. 82, 171-185.
 """
 
+import contextlib
 import functools
 import hashlib
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 import scipy  # scipy.stats is loaded where it is first used: that takes a second
 
 from giveway.geometry.kernel import Array
+from giveway.processes.processors import processors
 from giveway.studies.statistics.rounding import in_units
 
 BCA = "BCa"
@@ -21,6 +25,9 @@ CONSTANT = "constant"
 
 MOST_FOR_BCA = 10_000  # numbers; leaving each of n out once takes n^2 additions
 _NUMBERS_AT_ONCE = 300_000  # drawn: a few megabytes, which a processor's cache holds
+
+Item = TypeVar("Item")
+Row = TypeVar("Row")
 
 
 @dataclass(frozen=True)
@@ -54,6 +61,23 @@ def seed_of(names: Iterable[str]) -> int:
     return int.from_bytes(digest, "little")
 
 
+def side_by_side(function: Callable[[Item], Row], items: Sequence[Item]) -> list[Row]:
+    """What a function that takes intervals gives for each item, in their order.
+
+    On all processors: drawing and adding up, most of the work, leave Python to other threads.
+    """
+    with _quiet(), ThreadPoolExecutor(processors()) as pool:
+        return list(pool.map(function, items))
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Without scipy's remark on what varies too little: :class:`Interval` tells."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", scipy.stats.DegenerateDataWarning)
+        yield
+
+
 def mean_interval(sample: Array, *, confidence: float, resamples: int, seed: int) -> Interval:
     """The BCa interval of the mean.
 
@@ -83,8 +107,7 @@ def mean_interval(sample: Array, *, confidence: float, resamples: int, seed: int
         rng=np.random.default_rng(seed),
     )
     method = BCA if whole.size <= MOST_FOR_BCA else PERCENTILE
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore", scipy.stats.DegenerateDataWarning)
+    with _quiet(), np.errstate(all="ignore"):
         found = bootstrap(n_resamples=resamples, method=method)
     low, high = found.confidence_interval
     if not low < high:  # nan: BCa is not defined; the other way round: beyond the pole

@@ -12,7 +12,7 @@ from giveway.studies.columns import COMPARISON_COLUMNS, numbers_of
 from giveway.studies.contexts import other_factors
 from giveway.studies.definition import Comparison, Situation
 from giveway.studies.design import Design
-from giveway.studies.statistics.bootstrap import Interval, mean_interval, seed_of
+from giveway.studies.statistics.bootstrap import Interval, mean_interval, seed_of, side_by_side
 from giveway.studies.statistics.metrics import METRICS, Metric
 from giveway.studies.statistics.pairs import Pairs, paired
 from giveway.studies.statistics.rounding import mean, median, tabulated, to_decimals
@@ -82,12 +82,13 @@ def compare(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Da
     Raises:
         ConfigError: the study has no such factor, or the factor no such level.
     """
-    rows = [
-        _row(pairs, metric, situation, comparison)
+    wanted = [
+        (pairs, metric, situation)
         for pairs in paired(runs, design, comparison)
         for situation in SITUATIONS
         for metric in METRICS
     ]
+    rows = side_by_side(lambda of: _row(*of, comparison), wanted)
     names = [*other_factors(design, comparison), *(column.name for column in COMPARISON_COLUMNS)]
     frame = pd.DataFrame(rows, columns=[*names, "better", "direction", "excludes_zero"])
     numbers = numbers_of(COMPARISON_COLUMNS)

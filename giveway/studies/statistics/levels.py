@@ -7,8 +7,8 @@ from giveway.geometry.kernel import Array
 from giveway.studies.columns import LEVEL_COLUMNS, numbers_of
 from giveway.studies.definition import Comparison
 from giveway.studies.design import Cell, Design
-from giveway.studies.statistics.bootstrap import mean_interval, seed_of
-from giveway.studies.statistics.metrics import METRICS
+from giveway.studies.statistics.bootstrap import mean_interval, seed_of, side_by_side
+from giveway.studies.statistics.metrics import METRICS, Metric
 from giveway.studies.statistics.pairs import cleaned, without_result
 from giveway.studies.statistics.rounding import mean, tabulated
 
@@ -31,15 +31,22 @@ def levels(runs: pd.DataFrame, design: Design, comparison: Comparison) -> pd.Dat
     frame = cleaned(runs)
     frame = frame[~without_result(frame)]
     tables = dict(iter(frame.groupby(["cell", "ego"])))
-    rows = [
-        _row(cell, str(ego), metric.name, table[metric.name].to_numpy(np.float64), comparison)
-        | _slowed(cell, str(ego), metric.name, table, comparison)
-        | {"unit": metric.unit}
+    wanted = [
+        (cell, str(ego), metric, table)
         for cell in design.cells
         for (number, ego), table in tables.items()
         if number == cell.number
         for metric in METRICS
     ]
+
+    def row(of: tuple[Cell, str, Metric, pd.DataFrame]) -> dict[str, object]:
+        cell, ego, metric, table = of
+        values = table[metric.name].to_numpy(np.float64)
+        found = _row(cell, ego, metric.name, values, comparison)
+        found |= _slowed(cell, ego, metric.name, table, comparison)
+        return found | {"unit": metric.unit}
+
+    rows = side_by_side(row, wanted)
     names = [factor.name for factor in design.factors]
     frame = pd.DataFrame(rows, columns=[*names, *(column.name for column in LEVEL_COLUMNS)])
     return tabulated(frame, numbers_of(LEVEL_COLUMNS))

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import warnings
 from statistics import NormalDist, mean
 
 import numpy as np
@@ -11,7 +12,13 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose
 
-from giveway.studies.statistics.bootstrap import MOST_FOR_BCA, Interval, mean_interval, seed_of
+from giveway.studies.statistics.bootstrap import (
+    MOST_FOR_BCA,
+    Interval,
+    mean_interval,
+    seed_of,
+    side_by_side,
+)
 
 NORMAL = NormalDist()
 MASK = 2**64 - 1
@@ -147,3 +154,23 @@ def test_95_percent_cover_the_mean_of_100_pairs(draw, true: float, least: float)
         found = mean_interval(sample, confidence=0.95, resamples=499, seed=seed_of([str(seed)]))
         hits += found.low <= true <= found.high
     assert least <= hits / 2000 <= 0.96
+
+
+def test_side_by_side_there_are_the_same_intervals_in_the_same_order():
+    several = [np.random.default_rng(n).normal(size=50 + n).round(3) for n in range(40)]
+    several[7] = np.array([1.0] * 9 + [1.001])  # of which scipy would say that it varies too little
+
+    def found(n: int) -> Interval:
+        return mean_interval(several[n], confidence=0.95, resamples=499, seed=n)
+
+    before = list(warnings.filters)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        assert side_by_side(found, range(40)) == [found(n) for n in range(40)]
+    assert not told
+    assert warnings.filters == before
+
+
+def test_side_by_side_an_error_is_told():
+    with pytest.raises(ZeroDivisionError):
+        side_by_side(lambda n: 1 // n, [1, 0, 2])
