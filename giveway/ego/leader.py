@@ -196,9 +196,9 @@ def vehicles_in_front(
     other to go straight on for ``straight`` steps. So one ahead in a bend stays ahead, and one
     from the side arrives. Where N is longer than these steps, vehicles along the path beside it,
     the same way or oncoming, are predicted to keep to their own lane, and what comes from the side
-    beyond the path's end is no matter. So do those who are ``beside`` (of the last vehicles), where
-    the network knows. A vehicle in the corridor behind the front bumper stays behind: it does not
-    drive through the ego.
+    beyond the path's end is no matter. Whoever is ``beside`` (of the last vehicles) is predicted to
+    keep to the lane that leads it past the path. A vehicle in the corridor behind the front bumper
+    stays behind: it does not drive through the ego.
     """
     N = ahead.shape[0]
     known = poses.shape[1] - beside.shape[0]

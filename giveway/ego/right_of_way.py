@@ -120,8 +120,10 @@ class RightOfWay:
             self._stop = math.inf  # it was for the junction passed
             self._going = self._halted = False
             self._stood, self._followed = 0.0, -math.inf
-        near = self.junctions[self._next :]
-        return frozenset(p.movement.junction for p in near if p.entry - front <= SIGHT)
+        near = [place for place in self.junctions[self._next :] if place.entry - front <= SIGHT]
+        if not near:
+            self.beside = frozenset()  # nobody asks for an update there
+        return frozenset(place.movement.junction for place in near)
 
     def update(
         self, time: float, front: float, speed: float, states: Mapping[str, str], traffic: Traffic

@@ -63,7 +63,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
                 heartbeat.beat(Phase.LOADING)
                 line.send(*_answer(task, heartbeat, Path(folder)))
                 if next(runs) % _TIDY == 0:
-                    gc.collect()  # half a millisecond: a run leaves too little to start it
+                    gc.collect()  # a run leaves too little to start it
     os._exit(0)  # destructors of native code have nothing left to save
 
 

@@ -92,6 +92,9 @@ def test_it_knows_who_is_led_past_it() -> None:
     assert drive.keeps.beside == {"second"}
     drive.stop(31.0, 5.0, one)
     assert drive.keeps.beside == set()
+    drive.stop(31.5, 5.0, two)
+    assert drive.keeps.look(66.0) == set()
+    assert drive.keeps.beside == set()  # behind the last junction, where nobody is looked at
     further = across._replace(
         entry=80.0, exit=95.0, movement=across.movement._replace(junction="k")
     )
