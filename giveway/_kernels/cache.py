@@ -34,7 +34,7 @@ FOLDERS = "kernels-*"
 _LOCK = "saving.lock"
 _HOUSE = Path(__file__).resolve().parents[2]
 _OF_KERNELS = ("controller", "pedestrian_model")  # rooms whose constants go into kernels, too
-_KERNEL = re.compile(rb"^@(?:kernel|inner|inlined)\b|^def kernel\b", re.MULTILINE)
+_KERNEL = re.compile(rb"^@(?:kernel|unlocked|inner|inlined)\b|^def kernel\b", re.MULTILINE)
 
 
 @functools.cache

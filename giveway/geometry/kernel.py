@@ -25,6 +25,11 @@ def kernel(function: Function) -> Function:
     return cast("Function", njit(cache=True, **_STRICT)(function))
 
 
+def unlocked(function: Function) -> Function:
+    """As :func:`kernel`, without Python's lock: for what several threads call side by side."""
+    return cast("Function", njit(cache=True, nogil=True, **_STRICT)(function))
+
+
 def inner(function: Function) -> Function:
     """Compile ``function`` with the kernels that call it, and for nobody else.
 

@@ -10,12 +10,13 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import scipy  # scipy.stats is loaded where it is first used: that takes a second
+from numpy.typing import NDArray
 
-from giveway.geometry.kernel import Array
+from giveway.geometry.kernel import Array, unlocked
 from giveway.processes.processors import processors
 from giveway.studies.statistics.rounding import in_units
 
@@ -97,21 +98,51 @@ def mean_interval(sample: Array, *, confidence: float, resamples: int, seed: int
     if np.all(whole == whole[0]):
         value = float(whole[0]) / per_one
         return Interval(value, value, CONSTANT)
-    bootstrap = functools.partial(
+    interval = functools.partial(
         scipy.stats.bootstrap,
         (whole,),
         np.mean,
+        n_resamples=0,
         vectorized=True,
         confidence_level=confidence,
         batch=max(1, _NUMBERS_AT_ONCE // whole.size),
-        rng=np.random.default_rng(seed),
+        bootstrap_result=_Resampled(_resampled_means(whole, resamples, seed)),
     )
     method = BCA if whole.size <= MOST_FOR_BCA else PERCENTILE
     with _quiet(), np.errstate(all="ignore"):
-        found = bootstrap(n_resamples=resamples, method=method)
-    low, high = found.confidence_interval
+        low, high = interval(method=method).confidence_interval
     if not low < high:  # nan: BCa is not defined; the other way round: beyond the pole
         method = PERCENTILE
-        found = bootstrap(n_resamples=0, method=method, bootstrap_result=found)
-        low, high = found.confidence_interval
+        low, high = interval(method=method).confidence_interval
     return Interval(float(low) / per_one, float(high) / per_one, method)
+
+
+class _Resampled(NamedTuple):
+    """What scipy's bootstrap takes for the resamples that it has drawn."""
+
+    bootstrap_distribution: Array
+
+
+def _resampled_means(whole: Array, resamples: int, seed: int) -> Array:
+    """(resamples,) the means that scipy's bootstrap would draw with that seed, bit by bit.
+
+    Numbers that are whole add up exactly in any order; and half as many bits are drawn here as
+    scipy draws, of the same numbers, which takes half the time.
+    """
+    rng, means = np.random.default_rng(seed), np.empty(resamples)
+    rows = max(1, _NUMBERS_AT_ONCE // whole.size)
+    for first in range(0, resamples, rows):
+        part = means[first : first + rows]
+        which = rng.integers(0, whole.size, (part.size, whole.size), dtype=np.int32)
+        _add_up(whole, which, part)
+    return means / whole.size
+
+
+@unlocked
+def _add_up(numbers: Array, which: NDArray[np.int32], sums: Array) -> None:
+    """Fill ``sums`` (k,) with those of the ``numbers`` (n,) that each row of ``which`` names."""
+    for row in range(which.shape[0]):
+        total = 0.0
+        for column in range(which.shape[1]):
+            total += numbers[which[row, column]]
+        sums[row] = total

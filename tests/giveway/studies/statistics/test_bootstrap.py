@@ -7,6 +7,7 @@ from statistics import NormalDist, mean
 
 import numpy as np
 import pytest
+import scipy.stats
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -65,6 +66,23 @@ def test_ends_are_efrons_on_the_whole_bootstrap_distribution(
     found = mean_interval(np.array(sample), confidence=confidence, resamples=200_000, seed=1)
     assert found.method == "BCa"
     assert_allclose((found.low, found.high), expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("size", [2, 7, 30, 333, 2001])
+def test_the_interval_is_scipys_own_to_the_bit(size: int) -> None:
+    """It draws the numbers in half the bits, and adds them up without Python."""
+    sample = np.round(np.random.default_rng(size).gamma(2.0, 3.0, size), 6)
+    found = mean_interval(sample, confidence=0.9, resamples=999, seed=7)
+    scipys = scipy.stats.bootstrap(
+        (np.round(sample * 1e6),),
+        np.mean,
+        n_resamples=999,
+        confidence_level=0.9,
+        batch=max(1, 300_000 // size),
+        rng=np.random.default_rng(7),
+    )
+    low, high = (end / 1e6 for end in scipys.confidence_interval)
+    assert (found.low, found.high) == (low, high)
 
 
 def test_equal_numbers_have_themselves_as_interval() -> None:
