@@ -107,7 +107,7 @@ def require_same(task: Task) -> None:
             f"{task.run}; install the same versions on every machine; if they were changed "
             "meanwhile, go on with --resume"
         )
-    config = RunConfig.model_validate_json(task.config)
+    config = task.run_config
     try:
         files = {f"scenario {name}": file for name, file in _scenario_files(find(config.scenario))}
         files |= dict(_own_files(config))

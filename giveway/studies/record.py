@@ -5,7 +5,10 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
 from typing import Any
+
+from giveway.config import RunConfig
 
 Scalar = str | bool | int | float
 
@@ -35,6 +38,11 @@ class Task:
     config: str
     inputs: dict[str, str]
     software: str
+
+    @cached_property
+    def run_config(self) -> RunConfig:
+        """The configuration, read once."""
+        return RunConfig.model_validate_json(self.config)
 
 
 @dataclass(frozen=True)

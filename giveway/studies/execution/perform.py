@@ -14,7 +14,6 @@ import numpy as np
 
 from fmus.text import printable
 from giveway.api import simulate
-from giveway.config import RunConfig
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import GivewayError
 from giveway.processes.heartbeat import Phase
@@ -44,7 +43,7 @@ def perform(
     """
     began = perf_counter()
     journal = journal or Journal(None)
-    config = RunConfig.model_validate_json(task.config)
+    config = task.run_config
     try:
         checked = preflight(config, find(config.scenario))
         result = simulate(checked, journal=journal, native_log=native_log)

@@ -226,7 +226,6 @@ class Pool:
 
 def _named(task: Task, failure: str) -> str:
     """The failure, with the name of the controller that it happened in, if it is nobody of ours."""
-    from giveway.config import RunConfig
     from giveway.config.foreign_code import named_in
 
-    return named_in(failure, RunConfig.model_validate_json(task.config))
+    return named_in(failure, task.run_config)
