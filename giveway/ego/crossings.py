@@ -24,6 +24,7 @@ from giveway.crowd.crossings import (
     use_of,
 )
 from giveway.ego.giving_way import (
+    BEYOND,
     CRAWLING,
     HARDEST,
     STOP_BEFORE,
@@ -228,7 +229,7 @@ class Crossings:
             if too_late and not (first and waits):
                 continue
             nearest = front + speed * speed / (2.0 * HARDEST)
-            stop = max(entry - STOP_BEFORE, min(nearest, latest))
+            stop = max(entry - STOP_BEFORE, min(nearest, entry - BEYOND))
             self._waits_for = number if first else None
             if first:
                 self._place = min(self._place, stop)
