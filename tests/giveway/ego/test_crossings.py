@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from giveway.ego.crossings import Crossings, crossings_on
-from giveway.ego.giving_way import STOP_BEFORE
+from giveway.ego.giving_way import BEYOND, STOP_BEFORE
 from giveway.ego.leader import Leader
 from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
@@ -131,6 +131,13 @@ def test_in_the_last_metre_it_brakes_no_harder_than_3():
     stop = crossings().stop_at(19.4, 0.8, somebody)
     assert 19.4 + 0.8**2 / (2 * 3.0) <= stop <= 20.0
     assert crossings().stop_at(19.4, 1.6, somebody) == math.inf  # too late: over it and away
+
+
+@pytest.mark.parametrize("front", [16.6, 17.2, 18.4])
+def test_a_plan_that_may_lead_beyond_the_stop_does_not_lead_onto_the_crossing(front):
+    speed = math.sqrt(2 * 2.99 * (19.7 - front))  # it is just not too late yet
+    stop = crossings().stop_at(front, speed, walker(-2.0))
+    assert LINE - 0.11 <= stop <= 20.0 - BEYOND + 0.11
 
 
 def test_who_heads_for_the_side_of_a_crossing_wants_to_cross():
