@@ -24,7 +24,6 @@ from giveway.crowd.crossings import (
     use_of,
 )
 from giveway.ego.giving_way import (
-    BEYOND,
     CRAWLING,
     HARDEST,
     STOP_BEFORE,
@@ -161,6 +160,7 @@ class Crossings:
 
     Attributes:
         systems: SUMO's ids of the traffic lights that govern them.
+        latest: station [m] beyond which no plan leads while it stops for one; inf: it does not.
     """
 
     def __init__(
@@ -178,6 +178,7 @@ class Crossings:
         self._length, self._room = length, length + gap
         self._kerb_distance, self._kerb_time = kerb_distance, kerb_time
         self._next = 0
+        self.latest = math.inf
         self._waits_for: int | None = None  # a crossing, before the next one
         self._place = math.inf  # [m] where it does, or did before; inf: it has not
         self._states: Mapping[str, str] = {}
@@ -203,6 +204,7 @@ class Crossings:
             crowd: the pedestrians as the ego sees them.
             leader: the vehicle ahead.
         """
+        self.latest = math.inf
         while self._next < len(self._crossings) and self._crossings[self._next].entry < front:
             self._next += 1
             self._waits_for, self._place = None, math.inf
@@ -229,7 +231,8 @@ class Crossings:
             if too_late and not (first and waits):
                 continue
             nearest = front + speed * speed / (2.0 * HARDEST)
-            stop = max(entry - STOP_BEFORE, min(nearest, entry - BEYOND))
+            stop = max(entry - STOP_BEFORE, min(nearest, latest))
+            self.latest = latest
             self._waits_for = number if first else None
             if first:
                 self._place = min(self._place, stop)

@@ -11,7 +11,6 @@ from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foreseeing import foresight_of
-from giveway.ego.giving_way import BEYOND
 from giveway.ego.kerbs import NO_KERBS
 from giveway.ego.leader import NO_LEADER, NOBODY_BESIDE, Following
 from giveway.ego.path_view import PathView
@@ -32,6 +31,7 @@ from giveway.records.outputs import ROAD_GRADE
 from giveway.records.rows import STOP_SPEED, EgoRow
 from pedestrian_model import Crowd, Surroundings
 
+_BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
 _STRAIGHT = 1.0  # [s] for which other vehicles are predicted straight on; then the road may bend
 _LIKELY = 0.75  # of what positions are off at most, as plans count with it: the layer with all
 
@@ -201,7 +201,7 @@ class Ego:
             stop, stops_for = self.way.stop_at(front, speed, crowd, leader)
             stop, stops_for = min((stop, stops_for), (waits, "yield"))
         if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
-            allowed = stop + BEYOND + self._origin
+            allowed = min(stop + _BEYOND, self.way.latest) + self._origin
             ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
         return Seen(
             pedestrian,

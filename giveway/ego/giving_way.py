@@ -5,7 +5,6 @@ import math
 from giveway.ego.leader import Leader
 
 STOP_BEFORE = 1.0  # [m] before a line or a crossing the front bumper is to stand
-BEYOND = 0.5  # [m] beyond the place to stop at that a plan may lead to at most
 HARDEST = 3.0  # [m/s^2] of braking that anybody with priority may ask for
 CRAWLING = 2.0  # [m/s] a vehicle that is slower may come to a stand
 USUAL_SPEED = 13.9  # [m/s] that vehicles are expected to speed up to

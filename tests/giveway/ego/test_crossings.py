@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from giveway.ego.crossings import Crossings, crossings_on
-from giveway.ego.giving_way import BEYOND, STOP_BEFORE
+from giveway.ego.giving_way import STOP_BEFORE
 from giveway.ego.leader import Leader
 from giveway.ego.way_ahead import WayAhead
 from giveway.geometry.bodies import VehicleShape
@@ -136,8 +136,11 @@ def test_in_the_last_metre_it_brakes_no_harder_than_3():
 @pytest.mark.parametrize("front", [16.6, 17.2, 18.4])
 def test_a_plan_that_may_lead_beyond_the_stop_does_not_lead_onto_the_crossing(front):
     speed = math.sqrt(2 * 2.99 * (19.7 - front))  # it is just not too late yet
-    stop = crossings().stop_at(front, speed, walker(-2.0))
-    assert LINE - 0.11 <= stop <= 20.0 - BEYOND + 0.11
+    watched = crossings()
+    assert watched.latest == math.inf
+    assert LINE - 0.11 <= watched.stop_at(front, speed, walker(-2.0)) <= watched.latest
+    assert watched.latest == pytest.approx(19.7, abs=0.11)
+    assert watched.stop_at(front, speed, NOBODY) == watched.latest == math.inf
 
 
 def test_who_heads_for_the_side_of_a_crossing_wants_to_cross():
