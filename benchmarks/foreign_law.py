@@ -122,20 +122,31 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--route", action="append", default=[], help="edges of an inserted ego")
     options = parser.parse_args()
-    options.out.mkdir(parents=True, exist_ok=True)
-    scenario, results = options.scenario.absolute(), options.out / "drives.jsonl"
-    found = options.route
-    if not found:  # in a process of its own: SUMO may take it down
-        with ProcessPoolExecutor(1, get_context("spawn")) as pool:
-            found = pool.submit(cars, scenario, options.window, options.seed).result()
+    scenario = options.scenario.absolute()
+    found = options.route or cars_of(scenario, options.window, options.seed)
     if not found:
         parser.error(
             f"{scenario}: no car departs within {options.window:g} s; see --window, --route"
         )
     drawn = draw(found, options.drives, options.seed)
+    print(table(drive_all(scenario, drawn, options.out, options.jobs)))
+
+
+def cars_of(scenario: Path, window: float, seed: int) -> list[str]:
+    """:func:`cars`, in a process of its own: SUMO may take it down."""
+    with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+        return pool.submit(cars, scenario, window, seed).result()
+
+
+def drive_all(
+    scenario: Path, drawn: list[tuple[str, int]], out: Path, jobs: int
+) -> list[dict[str, Any]]:
+    """Make the drives that are not in the folder ``out`` yet, and read all of them."""
+    out.mkdir(parents=True, exist_ok=True)
+    results = out / "drives.jsonl"
     known = _read(results)
     with (
-        ProcessPoolExecutor(options.jobs, get_context("spawn")) as pool,
+        ProcessPoolExecutor(jobs, get_context("spawn")) as pool,
         results.open("a", encoding="utf-8") as file,
     ):
         left = [one for one in drawn if one not in known]
@@ -144,7 +155,7 @@ def main() -> None:
             file.write(json.dumps(done.result()) + "\n")
             file.flush()
     known = _read(results)
-    print(table([known[one] for one in drawn]))
+    return [known[one] for one in drawn]
 
 
 def draw(found: list[str], drives: int, seed: int) -> list[tuple[str, int]]:

@@ -13,6 +13,7 @@ from controller.planning.smoothing import fill, set_target, unfold
 NO_PLAN = -2  # the corridor is hard, and cannot be kept
 UNSOLVED = -1  # the exact methods did not end: OSQP has to
 _WORSE = 1e-6  # [m] by which a smoothed plan may come closer than the manoeuvre it follows
+_APPROACH = 0.8  # of the gentle braking, with which calm speeds are approached: the rest is spare
 
 Motion = tuple[Array, Array, Array]  # distance, speed, acceleration
 
@@ -63,6 +64,8 @@ def follow(
     nodes, intervals, limits, rows, lower, upper, target, _, gradients = problem
     corridor(best[0], best[1], gap, allowed, chosen, weights, room)
     soon, gentle = calmly
+    if gentle < np.inf:
+        approach_calmly(best[0], _APPROACH * gentle, calm)
     for i in range(len(calm)):
         gently = max(calm[i], speed - gentle * limits[0] * (i + 1))
         calm[i] = min(gently if i < soon else np.inf, lane_speeds[i])
@@ -79,6 +82,23 @@ def follow(
         speed, best, prospect, missing, allowed, problem, solver[1], plan, chosen, weights
     )
     return corrections, itself, holds
+
+
+@inner
+def approach_calmly(distance: Array, gentle: float, calm: Array) -> None:
+    """Lower ``calm`` (N,) [m/s] so that braking with ``gentle`` [m/s^2] keeps to all that follows.
+
+    Of somebody beside the way who could step on it, calm speeds tell where the hardest braking
+    would have to begin. A plan that is as fast as that everywhere would brake as hard.
+
+    Args:
+        distance: (N + 1,) [m] of the manoeuvre that they belong to.
+        gentle: [m/s^2].
+        calm: (N,) [m/s], changed.
+    """
+    for i in range(len(calm) - 2, -1, -1):
+        between = distance[i + 2] - distance[i + 1]
+        calm[i] = min(calm[i], np.sqrt(calm[i + 1] ** 2 + 2.0 * gentle * between))
 
 
 @kernel

@@ -27,7 +27,7 @@ from giveway.errors import ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.geometry.slope import Slope
-from giveway.records.way import EgoWay
+from giveway.records.way import EgoWay, JunctionOnWay
 from giveway.sumo.lane_path import LanePath
 from giveway.sumo.session import SumoSession
 from giveway.sumo.signal_plans import ChangeOf, untold
@@ -161,7 +161,10 @@ class Entrance:
             shape.length,
             crossings=self._session.lanes.crossings,
             lights=lane_path.lights,
-            junctions=[(place.entry, place.exit, place.waiting) for place in junctions],
+            junctions=[
+                JunctionOnWay(one.entry, one.exit, one.waiting, one.movement.has_stop_sign)
+                for one in junctions
+            ],
             stops=stops,
         )
         halts = Stops(stops, clock=self._session.time, time_step=self._time_step, hardest=hardest)

@@ -31,7 +31,7 @@ def way_of(
     *,
     crossings: Sequence[Crossing],
     lights: Sequence[Light],
-    junctions: Sequence[tuple[float, float, tuple[float, ...]]] = (),
+    junctions: Sequence[JunctionOnWay] = (),
     stops: Sequence[Stop] = (),
 ) -> EgoWay:
     """What stands on an ego's way.
@@ -43,7 +43,7 @@ def way_of(
         length: of the ego's body [m].
         crossings: of the network.
         lights: on the path.
-        junctions: entry, exit and waiting places [m] of each junction on the path.
+        junctions: on the path.
         stops: that it serves.
     """
     return EgoWay(
@@ -55,8 +55,12 @@ def way_of(
             StopLine(_rounded(light.station), light.system, light.link) for light in lights
         ),
         junctions=tuple(
-            JunctionOnWay(_rounded(entry), _rounded(leave), tuple(map(_rounded, waiting)))
-            for entry, leave, waiting in junctions
+            place._replace(
+                entry=_rounded(place.entry),
+                exit=_rounded(place.exit),
+                waiting=tuple(map(_rounded, place.waiting)),
+            )
+            for place in junctions
         ),
         halts=tuple(Halt(_rounded(stop.start), _rounded(stop.end)) for stop in stops),
     )

@@ -160,6 +160,7 @@ class Crossings:
 
     Attributes:
         systems: SUMO's ids of the traffic lights that govern them.
+        latest: station [m] beyond which no plan leads while it stops for one; inf: it does not.
     """
 
     def __init__(
@@ -177,6 +178,7 @@ class Crossings:
         self._length, self._room = length, length + gap
         self._kerb_distance, self._kerb_time = kerb_distance, kerb_time
         self._next = 0
+        self.latest = math.inf
         self._waits_for: int | None = None  # a crossing, before the next one
         self._place = math.inf  # [m] where it does, or did before; inf: it has not
         self._states: Mapping[str, str] = {}
@@ -202,6 +204,7 @@ class Crossings:
             crowd: the pedestrians as the ego sees them.
             leader: the vehicle ahead.
         """
+        self.latest = math.inf
         while self._next < len(self._crossings) and self._crossings[self._next].entry < front:
             self._next += 1
             self._waits_for, self._place = None, math.inf
@@ -229,6 +232,7 @@ class Crossings:
                 continue
             nearest = front + speed * speed / (2.0 * HARDEST)
             stop = max(entry - STOP_BEFORE, min(nearest, latest))
+            self.latest = latest
             self._waits_for = number if first else None
             if first:
                 self._place = min(self._place, stop)

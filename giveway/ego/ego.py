@@ -91,7 +91,7 @@ class Ego:
         )
         span = waiting.horizon * time_step
         self._relevance = Relevance(waiting, span, shape.length + self.corridor.half_width)
-        self._nearby = Nearby(waiting, path, span, shape.length, self.corridor.half_width)
+        self._nearby = Nearby(waiting, path, shape, span, self.corridor.half_width, time_step)
         self._view = PathView(path)
         self._chosen: Crowd | None = None  # memory for those who matter
         self._origin = -shape.length / 2 if config.regulation.gap_from == "centre" else 0.0
@@ -201,7 +201,7 @@ class Ego:
             stop, stops_for = self.way.stop_at(front, speed, crowd, leader)
             stop, stops_for = min((stop, stops_for), (waits, "yield"))
         if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
-            allowed = stop + _BEYOND + self._origin
+            allowed = min(stop + _BEYOND, self.way.latest) + self._origin
             ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
         return Seen(
             pedestrian,

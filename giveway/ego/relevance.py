@@ -4,12 +4,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from giveway.ego.waiting import WaitingEgo
+from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, inner, kernel
 from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
 
 PREDICT_ALL = 150  # pedestrians; of a larger crowd only those that matter to the ego are predicted
-MARGIN = 3.0  # [m] from what the ego can reach; who stays farther off is left out of a plan
+MARGIN = 3.0  # [m] from what the ego can reach; who stays farther off is left out of a plan,
+# unless the safety layer would act for somebody who is as far off
 
 Mask = NDArray[np.bool_]
 
@@ -50,32 +52,45 @@ class Nearby:
 
     Somebody counts who, at his present velocity, comes within ``MARGIN`` of the part of the path
     that the ego's body can be on within the horizon, or its safe distance ahead of that. Who is
-    left out would have to walk that far to meet the ego. What he does to others is left out, too:
-    docs/planner.md compares runs.
+    left out would have to walk that far to meet the ego, and the safety layer, if there is one,
+    does not act for him: the faster the ego is, the farther off it does.
+    What he does to others is left out, too: docs/planner.md compares runs.
 
     Args:
         waiting: the ego before its departure.
         path: the ego's.
+        shape: of its body.
         span: that it looks ahead [s].
-        length: of its body [m].
         half_width: of its corridor [m].
+        time_step: until its brake acts [s].
     """
 
     def __init__(
-        self, waiting: WaitingEgo, path: EgoPath, span: float, length: float, half_width: float
+        self,
+        waiting: WaitingEgo,
+        path: EgoPath,
+        shape: VehicleShape,
+        span: float,
+        half_width: float,
+        time_step: float,
     ) -> None:
-        config = waiting.config
+        config, safety = waiting.config, waiting.safety
         self._path, self._span = path, span
-        self._gain = config.mpc.force_limit / config.vehicle.mass / 2.0 * span * span
+        self._strongest = config.mpc.force_limit / config.vehicle.mass
+        self._gain = self._strongest / 2.0 * span * span
         wanted = config.reference_speed
         self._wanted = config.mpc.speed_max if isinstance(wanted, str) else wanted
-        self._behind, self._ahead = length, config.regulation.safe_distance
-        self._margin = half_width + MARGIN
+        self._behind, self._ahead = shape.length, config.regulation.safe_distance
+        self._half_width, self._time_step = half_width, time_step
+        self._body = 0.0 if safety is None else safety.body_radius
+        self._lunge = 0.0 if safety is None else safety.walking_acceleration
 
     def of(self, crowd: Crowd, front: float, speed: float) -> Mask:
         """(n,) who can matter to a plan from the station ``front`` [m] on at ``speed`` [m/s]."""
         path, span = self._path, self._span
         reach = min(speed * span + self._gain, max(speed, self._wanted) * span)
+        stop = self._time_step + speed / self._strongest
+        margin = max(MARGIN, self._body + self._lunge / 2.0 * stop * stop)
         mask = np.empty(len(crowd), dtype=np.bool_)
         come_near(
             path.vertices,
@@ -85,7 +100,7 @@ class Nearby:
             crowd.position,
             crowd.velocity,
             span,
-            self._margin,
+            self._half_width + margin,
             mask,
         )
         return mask

@@ -62,6 +62,11 @@ class WayAhead:
         """The names of vehicles whose lanes lead them past the path, at the next junctions."""
         return frozenset() if self._right_of_way is None else self._right_of_way.beside
 
+    @property
+    def latest(self) -> float:
+        """Station [m] beyond which no plan leads, before a crossing; inf: anywhere."""
+        return math.inf if self._crossings is None else self._crossings.latest
+
     def junctions(self, front: float) -> frozenset[str]:
         """SUMO's ids of the junctions whose traffic matters to an ego at ``front`` [m]."""
         return frozenset() if self._right_of_way is None else self._right_of_way.look(front)

@@ -38,6 +38,7 @@ class JunctionOnWay(NamedTuple):
     entry: float  # [m] station at which it begins
     exit: float  # [m] and ends
     waiting: tuple[float, ...]  # [m] stations in it at which a front bumper may wait
+    stop_sign: bool = False  # one has to stand before it first
 
 
 class Halt(NamedTuple):

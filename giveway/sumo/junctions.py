@@ -25,6 +25,11 @@ class Movement(NamedTuple):
     yields_to: frozenset[int]  # numbers of links whose vehicles go first
     meets: frozenset[int]  # numbers of links whose ways cross or join its own
 
+    @property
+    def has_stop_sign(self) -> bool:
+        """Whether one has to stand before it first; no light governs it."""
+        return self.state in ("s", "w") and not self.system
+
 
 class Junctions:
     """Reads the movements through junctions, each junction once.

@@ -32,6 +32,7 @@ _ABOUT, _SHORTEST = 20.0, 0.01  # [m] of path beyond what is looked at; a segmen
 _APART = 0.5  # [m] between points of its way
 _STARTING = 3.0  # [s] in which an ego drives off that departs standing
 _HALT = 1.0  # [m] about a scheduled stop
+_AT_LINE, _OVER_LINE = 4.0, 0.5  # [m] before and beyond a stop sign's line, one stands at it
 _POINTS = 5  # of a vehicle's middle line, front to rear
 _GO = np.array(list("GgOo"))
 
@@ -129,6 +130,9 @@ def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple
     for line in drive.way.lines:
         if front <= line.station <= front + SIGHT:
             yield ~np.isin(drive.letters(line.system, line.link, time), _GO), 0.0
+    for place in drive.way.junctions:
+        if place.stop_sign and place.entry - _AT_LINE <= front <= place.entry + _OVER_LINE:
+            yield np.arange(len(time)) == stand.begin, 0.0  # then it has stood there
     if any(halt.start - _HALT <= front <= halt.end + _HALT for halt in drive.way.halts):
         yield np.ones(len(time), dtype=np.bool_), 0.0
     yield _people_ahead(drive, stand), AHEAD

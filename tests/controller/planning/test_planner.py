@@ -166,3 +166,42 @@ def test_the_faster_a_road_is_the_earlier_calm_speeds_are_kept_to(speed, heeds):
     slowest = planner._plan.speed[24:31].min()
     gently = speed - 3.0 * 30 * MODEL.time_step
     assert slowest == pytest.approx(max(speed / 2, gently) if heeds else speed, rel=0.05)
+
+
+class BesideTheWay:
+    """Somebody who could step on the way 40 m ahead; the layer would act from full braking on."""
+
+    PLACE, CALM, FULLY = 40.0, 5.0, 8.0  # [m], [m/s], [m/s^2]
+
+    def __init__(self, horizon):
+        self.nobody = np.full(horizon, np.inf), np.zeros(horizon)
+        self.driven = 0.0
+
+    def fastest(self, station):
+        """From which the hardest braking still does [m/s]; beyond the place any."""
+        left = self.PLACE - station
+        return np.where(
+            left > 0.0, np.sqrt(self.CALM**2 + 2.0 * self.FULLY * np.maximum(left, 0.0)), np.inf
+        )
+
+    def prospect(self, manoeuvre):
+        calm = self.fastest(self.driven + manoeuvre.distance[1:])
+        return Prospect(*self.nobody, np.where(manoeuvre.speed[1:] > calm, calm, np.inf))
+
+    def prefer(self):
+        pass
+
+
+def test_what_could_happen_ahead_is_approached_gently():
+    """At 50 km/h: to be calm there without ever braking as hard as the calm speeds fall."""
+    parameters = PlannerParameters(reference_speed=13.9)
+    planner, beside = Planner(MODEL, parameters), BesideTheWay(parameters.horizon)
+    anywhere, speed, force, hardest = np.full(parameters.horizon, np.inf), 13.9, 0.0, 0.0
+    while beside.driven < beside.PLACE:
+        force = planner.plan(speed, force, 13.9, anywhere, beside).force
+        after = MODEL.decay * speed + MODEL.speed_per_force * force
+        hardest = max(hardest, (speed - after) / MODEL.time_step)
+        beside.driven, speed = beside.driven + MODEL.time_step * speed, after
+        assert speed <= beside.fastest(beside.driven) + 0.1
+    assert speed <= beside.CALM + 0.4
+    assert 2.0 < hardest < 3.5

@@ -35,7 +35,7 @@ def test_all_places_on_the_way_are_noted_in_its_order():
         5.0,
         crossings=[crossing("b", 40.0), crossing("a", 20.0), crossing("c", 20.0, y=30.0)],
         lights=[Light(17.0, "tls", 1)],
-        junctions=[(18.0, 30.0, (25.0,))],
+        junctions=[JunctionOnWay(18.0, 30.0, (25.0,), stop_sign=True)],
         stops=[Stop(48.0, 50.0, 10.0, -np.inf)],
     )
     assert [place.lane for place in way.crossings] == ["a", "b"]
@@ -46,7 +46,7 @@ def test_all_places_on_the_way_are_noted_in_its_order():
         2,
     )
     assert way.lines == (StopLine(17.0, "tls", 1),)
-    assert way.junctions == (JunctionOnWay(18.0, 30.0, (25.0,)),)
+    assert way.junctions == (JunctionOnWay(18.0, 30.0, (25.0,), stop_sign=True),)
     assert way.halts == (Halt(48.0, 50.0),)
     assert way.points == ((0.0, 0.0), (60.0, 0.0))
 

@@ -133,6 +133,16 @@ def test_in_the_last_metre_it_brakes_no_harder_than_3():
     assert crossings().stop_at(19.4, 1.6, somebody) == math.inf  # too late: over it and away
 
 
+@pytest.mark.parametrize("front", [16.6, 17.2, 18.4])
+def test_a_plan_that_may_lead_beyond_the_stop_does_not_lead_onto_the_crossing(front):
+    speed = math.sqrt(2 * 2.99 * (19.7 - front))  # it is just not too late yet
+    watched = crossings()
+    assert watched.latest == math.inf
+    assert LINE - 0.11 <= watched.stop_at(front, speed, walker(-2.0)) <= watched.latest
+    assert watched.latest == pytest.approx(19.7, abs=0.11)
+    assert watched.stop_at(front, speed, NOBODY) == watched.latest == math.inf
+
+
 def test_who_heads_for_the_side_of_a_crossing_wants_to_cross():
     """The way-point at the kerb is a line; its middle is 1.8 m aside."""
     aside = Crowd.create(

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import shapely
 import shapely.ops
 
-from giveway.ego.relevance import come_near
+from controller import SafetyParameters
+from giveway.config.layers import Layer
+from giveway.config.loading import load
+from giveway.ego.relevance import MARGIN, Nearby, come_near
+from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
+from pedestrian_model import Crowd
 
 angles = np.linspace(-np.pi / 2, np.pi / 2, 12)
 PATHS = {
@@ -47,3 +54,20 @@ def test_the_path_goes_on_straight_beyond_its_ends():
     people = np.array([(-9.0, 1.0), (66.0, 1.0), (72.0, 1.0)])
     assert list(near(path, -10.0, 20.0, people, still, 2.0)) == [True, False, False]
     assert list(near(path, 40.0, 70.0, people, still, 2.5)) == [False, True, True]
+
+
+HALF_WIDTH, STEP = 1.15, 0.05  # [m], [s]
+
+
+@pytest.mark.parametrize(("speed", "heeds"), [(4.0, False), (8.0, False), (13.9, True)])
+@pytest.mark.parametrize("layer", [True, False])
+def test_a_fast_ego_looks_as_far_aside_as_its_safety_layer_does(speed, heeds, layer):
+    """Who stands 4 m beside its corridor could be before it within the 1.8 s of a stop."""
+    config, _ = load([Layer("", {"scenario": "crossings"})])
+    safety = SafetyParameters(walking_acceleration=3.0)
+    waiting = SimpleNamespace(config=config.each_ego()[0], safety=safety if layer else None)
+    path, shape = PATHS["straight"], VehicleShape(5.0, 1.8)
+    nearby = Nearby(waiting, path, shape, 2.5, HALF_WIDTH, STEP)
+    there = [(20.0, HALF_WIDTH + MARGIN + aside) for aside in (-0.1, 1.0, 3.0)]
+    crowd = Crowd.create(there, np.zeros((3, 2)), 1.4, [[(20.0, 40.0)]] * 3)
+    assert list(nearby.of(crowd, 10.0, speed)) == [True, heeds and layer, False]

@@ -51,6 +51,15 @@ def test_a_moment_without_a_cause_counts():
     assert judged(track=track).summary.stops_without_cause == 1
 
 
+@pytest.mark.parametrize(
+    ("line", "sign", "stops"), [(31.0, True, 0), (31.0, False, 1), (29.0, True, 1), (35.0, True, 1)]
+)
+def test_one_stands_before_a_stop_sign(line, sign, stops):
+    track = to_a_stand(30.0, (1.5, 0.0), (6.0, 1.5))
+    place = JunctionOnWay(line, 40.0, (), stop_sign=sign)
+    assert judged(track=track, junctions=(place,)).summary.stops_without_cause == stops
+
+
 def test_a_drive_without_a_stop_has_none():
     assert judged(track=ego((15.0, 0.0))).violations == ()
 
@@ -82,6 +91,7 @@ def test_a_drive_without_a_stop_has_none():
         ({"vehicles": [car(43.0 + 4.0)], "crossings": (FAR_CROSSING,)}, 0),  # a blocked exit
         ({"vehicles": [car(44.0 + 4.0)], "crossings": (FAR_CROSSING,)}, 1),  # room enough
         ({"vehicles": [car(44.0 + 4.0)], "junctions": (JunctionOnWay(32.0, 40.0, ()),)}, 0),
+        ({"junctions": (JunctionOnWay(31.0, 40.0, (), stop_sign=True),)}, 1),  # for too long
         ({"lines": (StopLine(31.0, "tls", 0),), "lights": [(0.0, "r")]}, 0),
         ({"lines": (StopLine(31.0, "tls", 0),), "lights": [(0.0, "r"), (11.0, "G")]}, 0),
         ({"lines": (StopLine(31.0, "tls", 0),), "lights": [(0.0, "r"), (9.0, "G")]}, 1),
