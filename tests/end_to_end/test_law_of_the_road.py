@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from giveway.api import run_checked
+from giveway.api import run_checked, simulate
 from giveway.config.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
 from giveway.metrics.law import LAW_FIELDS
@@ -104,3 +104,12 @@ def test_where_the_law_has_no_say_the_files_are_the_same_as_ever(tmp_path: Path)
     assert not {column.name for column in LAW_FIELDS} & set(result.summary)
     assert not set(LAW) & {path.name for path in (tmp_path / "plaza").iterdir()}
     assert "ways" not in json.loads((tmp_path / "plaza" / "scene.json").read_text())
+
+
+def test_who_comes_up_to_a_crossing_late_is_stopped_for_before_it() -> None:
+    """In this drive a plan once led half a metre beyond the place to stop at, onto the crossing."""
+    checked = preflight(*load([as_layer({"scenario": "junction", "seed": 123})]))
+    summary = simulate(checked).summary
+    assert summary["completed"]
+    assert summary["encounters"] > 3
+    assert (summary["failures_to_yield"], summary["blocked_crossings"]) == (0, 0)
