@@ -18,8 +18,9 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
-from giveway.figures.study_rows import PUBLISHED, digits_for, number, pretty_unit, wrapped
+from giveway.figures.study_rows import PUBLISHED, wrapped
 from giveway.figures.style import BLACK, BLUE, GREY, ORANGE, quiet_grid, styled
+from giveway.records.writing import digits_for, number, pretty_unit
 
 BINS = 48
 TAIL = 2.5  # [%] of the differences at either end that the picture may leave out

@@ -16,10 +16,10 @@ from giveway.figures.study_rows import (
     horizontal_grid,
     label_rows,
     rows_height,
-    with_unit,
     wrapped,
 )
 from giveway.figures.style import BLACK, GREY, styled
+from giveway.records.writing import with_unit
 
 WHISKERS = (5.0, 25.0, 50.0, 75.0, 95.0)  # [%]
 

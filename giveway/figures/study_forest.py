@@ -16,10 +16,10 @@ from giveway.figures.study_rows import (
     horizontal_grid,
     label_rows,
     rows_height,
-    with_unit,
     wrapped,
 )
 from giveway.figures.style import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, styled
+from giveway.records.writing import with_unit
 
 LOOKS = {  # colour and marker
     "general": (BLUE, "o"),

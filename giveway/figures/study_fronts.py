@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from giveway.figures.study_rows import with_unit, wrapped
+from giveway.figures.study_rows import wrapped
 from giveway.figures.style import GREY, quiet_grid, styled
+from giveway.records.writing import with_unit
 
 _COLUMNS = 4  # of panels at most
 _PANEL = 2.5, 2.3  # [inch] width and height

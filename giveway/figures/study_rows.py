@@ -1,11 +1,9 @@
-"""What the pictures of a study share: colours of levels, rows with headings, numbers as text."""
+"""What the pictures of a study share: colours of levels, rows with headings."""
 
-import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
 from matplotlib.axes import Axes
 
 from giveway.figures.style import (
@@ -118,32 +116,3 @@ def horizontal_grid(axes: Axes) -> None:
     quiet_grid(axes)
     axes.grid(visible=False, axis="y")
     axes.spines["left"].set_visible(False)
-
-
-def number(value: float, digits: int = 2) -> str:
-    """A number with a true minus sign; N.A. where there is none."""
-    if not math.isfinite(value):
-        return "N.A."
-    text = f"{value:.{digits}f}"
-    if float(text) == 0.0:
-        text = text.removeprefix("-")
-    return text.replace("-", "−")
-
-
-def digits_for(width: float) -> int:
-    """Decimals that show an interval of that width with two significant digits or more."""
-    if not math.isfinite(width) or width <= 0.0:
-        return 2
-    if 1.0 <= width < 10.0:
-        return 2
-    return int(np.clip(1 - math.floor(math.log10(width)), 0, 4))
-
-
-def with_unit(text: str, unit: str) -> str:
-    """Text and unit, as "Time [s]"; without a unit the text alone."""
-    return f"{text} [{pretty_unit(unit)}]" if unit else text
-
-
-def pretty_unit(unit: str) -> str:
-    """The unit as it is printed: m/s², not m/s^2."""
-    return unit.replace("^2", "²").replace("^3", "³").replace(".", "·")

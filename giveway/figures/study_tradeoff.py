@@ -9,8 +9,9 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
 
-from giveway.figures.study_rows import with_unit, wrapped
+from giveway.figures.study_rows import wrapped
 from giveway.figures.style import GREY, quiet_grid, styled
+from giveway.records.writing import with_unit
 
 SAME_PLACE = 0.05  # of the picture's width and height
 DOT = 4.0  # [pt] half of what a point takes up

@@ -16,9 +16,9 @@ from shapely import LineString
 from giveway.config.presets import parameters_of
 from giveway.config.regulation import CORRIDOR_MARGIN
 from giveway.errors import ResultsError
-from giveway.figures.study_rows import pretty_unit
 from giveway.geometry.path import angle_to_heading, angles_to_headings
 from giveway.metrics import SUMMARY_FIELDS
+from giveway.records.writing import pretty_unit
 from giveway.replays.contours import influence_contours
 from giveway.replays.events import events, why
 from giveway.replays.marks import pack_marks

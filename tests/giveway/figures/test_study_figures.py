@@ -21,14 +21,13 @@ from giveway.figures.study_forest import Estimate, ForestColumn, forest_figure
 from giveway.figures.study_pairs import PairSide, pair_figure
 from giveway.figures.study_rows import (
     Row,
-    digits_for,
     label_rows,
     level_colours,
-    number,
     row_places,
 )
 from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
 from giveway.figures.style import BLUE, GREY, ORANGE
+from giveway.records.writing import digits_for, number
 
 NAN = math.nan
 TIME = DifferenceColumn("general", "completion time", "s")

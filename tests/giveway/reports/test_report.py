@@ -14,9 +14,10 @@ import pytest
 from matplotlib.figure import Figure
 
 from giveway.errors import GivewayError, ResultsError
-from giveway.reports import example_pairs, shown_runs, worst_runs, write_report
+from giveway.reports.choice import example_pairs, worst_runs
 from giveway.reports.embedding import inline_svg
 from giveway.reports.findings import cautions
+from giveway.reports.page import shown_runs, write_report
 from giveway.reports.wording import digits_for, number
 from giveway.studies.statistics import METRICS, PUBLISHED
 

@@ -10,7 +10,8 @@ import sys
 
 import pytest
 
-from giveway.reports import shown_runs, with_replays
+from giveway.reports import with_replays
+from giveway.reports.page import shown_runs
 from giveway.reports.with_replays import write_report_of
 from giveway.studies.folder import StudyFolder
 
