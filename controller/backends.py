@@ -1,12 +1,14 @@
-"""Which solver works on a least-squares problem: the one place where the choice is made."""
+"""Which solver works on a least-squares problem: the one place where the choice is made.
+
+A solver is imported when it is set up: OSQP and scipy's sparse matrices take a tenth of a second,
+and most drives never need them.
+"""
 
 from typing import Protocol
 
 from controller._jit import Array
-from controller.daqp_backend import DaqpBackend
 from controller.defaults import SolverName
 from controller.least_squares import LeastSquares, Outcome
-from controller.osqp_backend import OsqpBackend
 
 
 class Backend(Protocol):
@@ -30,5 +32,10 @@ def make_backend(name: SolverName, problem: LeastSquares, iteration_limit: int) 
     Raises:
         SolverMissingError, SolverSetupError: the solver cannot be used.
     """
-    backend = OsqpBackend if name == "osqp" else DaqpBackend
-    return backend(problem, iteration_limit)
+    if name == "osqp":
+        from controller.osqp_backend import OsqpBackend
+
+        return OsqpBackend(problem, iteration_limit)
+    from controller.daqp_backend import DaqpBackend
+
+    return DaqpBackend(problem, iteration_limit)

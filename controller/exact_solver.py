@@ -4,7 +4,7 @@ import numpy as np
 
 from controller._jit import Array, kernel
 from controller.active_set import INFEASIBLE, solve_exactly
-from controller.backends import make_backend
+from controller.backends import Backend, make_backend
 from controller.defaults import SolverName
 from controller.least_squares import LeastSquares, Outcome
 from controller.verification import certifies_infeasibility, refine
@@ -18,8 +18,9 @@ class ExactSolver:
     A solve starts from the active set of the solve before, made exact, or from an exact solve. The
     solver then only has to confirm that start. Its answer is refined to rounding, and counts only
     if the optimality conditions hold by our own arithmetic. A problem that always has a solution
-    is left to the solver only where the exact methods do not end at such an optimum. A fresh
-    instance, or one after :meth:`reset`, gives the same bytes for the same sequence of problems.
+    is left to the solver only where the exact methods do not end at such an optimum, and OSQP is
+    not even set up before that. A fresh instance, or one after :meth:`reset`, gives the same bytes
+    for the same sequence of problems.
 
     Args:
         problem: to be solved; its arrays are changed in place between solves.
@@ -53,8 +54,12 @@ class ExactSolver:
 
     def reset(self) -> None:
         """Forget earlier problems."""
-        self._backend = make_backend(self._solver, self._problem, self._limit)
+        hardly_needed = self._box is None and self._solver == "osqp"
+        self._backend: Backend | None = None if hardly_needed else self._made()
         self._multipliers[:] = 0.0
+
+    def _made(self) -> Backend:
+        return make_backend(self._solver, self._problem, self._limit)
 
     def solve(self) -> tuple[Outcome, int]:
         """The outcome for the problem as it is now, and the iterations.
@@ -69,7 +74,8 @@ class ExactSolver:
                 return _SOLVED, corrections
         if not self._start():
             return Outcome.CERTIFIED, 0
-        outcome, iterations = self._backend.solve(self.solution, self._multipliers)
+        self._backend = backend = self._backend or self._made()
+        outcome, iterations = backend.solve(self.solution, self._multipliers)
         if outcome is _INFEASIBLE and self._certified():
             outcome = Outcome.CERTIFIED
         if outcome is _SOLVED or self._box is None:
