@@ -81,6 +81,9 @@ def _visits(line: _Line, shape: VehicleShape, crossing: CrossingOnWay) -> list[A
     if not len(near):
         return []
     stations = np.arange(near[0] - 1.0, min(near[-1] + 1.0, line.stations[-1]), _STEP)
+    behind = np.minimum(np.searchsorted(near, stations), len(near) - 1)
+    away = np.minimum(abs(stations - near[behind - 1]), abs(stations - near[behind]))
+    stations = stations[away <= 1.0]  # a way may come by again, much later
     u, w = base.place(*_outline(line, shape, stations))
     inside: NDArray[np.bool_] = (u >= 0.0) & (u <= length) & (np.abs(w) <= crossing.width / 2)
     areas = []

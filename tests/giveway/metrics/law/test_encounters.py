@@ -54,6 +54,16 @@ def test_an_area_beyond_the_end_of_the_drive_counts_for_nothing():
     assert len(areas_of(drive(THROUGH, goal=21.0))) == 1
 
 
+def test_a_way_that_comes_by_again_has_an_area_each_time():
+    """Once round the block: what is far from the crossing in between is not looked at."""
+    block = ((0.0, -1.75), (60.0, -1.75), (60.0, 400.0), (-40.0, 400.0), (-40.0, -1.75))
+    first, again = areas_of(drive(THROUGH, points=(*block, (45.0, -1.75))))
+    assert (first.entry, first.leave) == pytest.approx((20.0, 29.0), abs=0.06)
+    assert again.entry - first.entry == pytest.approx(2 * (100.0 + 401.75), abs=0.06)
+    assert again.leave - first.leave == pytest.approx(2 * (100.0 + 401.75), abs=0.06)
+    assert (first.low, first.high) == pytest.approx((again.low, again.high))
+
+
 @pytest.mark.parametrize(
     "person",
     [
