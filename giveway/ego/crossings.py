@@ -33,7 +33,7 @@ from giveway.ego.giving_way import (
 from giveway.ego.leader import NO_LEADER, Leader
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
-from giveway.geometry.path import EgoPath
+from giveway.geometry.path import EgoPath, fine_near
 from giveway.sumo.crossings import Crossing
 from giveway.sumo.signal_plans import ChangeOf, untold
 from pedestrian_model import Crowd
@@ -91,7 +91,7 @@ def crossings_on(
         if not len(near):
             continue
         along = (other - kerb) / length
-        stations = np.arange(near[0], min(near[-1] + _COARSE, path.length), _SAMPLE)
+        stations = fine_near(near, _COARSE, near[0], path.length, _SAMPLE)
         outline = _outlines(path, shape, stations)
         u, w = place_on(outline.reshape(-1, 2), kerb, along)
         u, w = u.reshape(outline.shape[:2]), w.reshape(outline.shape[:2])

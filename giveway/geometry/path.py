@@ -112,6 +112,25 @@ def points_at(vertices: Array, stations: Array, at: Array) -> Array:
     return np.stack([np.interp(at, stations, column) for column in vertices.T], axis=-1)
 
 
+def fine_near(near: Array, reach: float, begin: float, end: float, step: float) -> Array:
+    """Stations [m] from ``begin`` by ``step`` within ``reach`` of any of ``near``, before ``end``.
+
+    A long way may come by a place again: what is between is left out.
+
+    Args:
+        near: (n,) [m] in rising order, one at least.
+        reach: [m].
+        begin: [m] of which all are whole steps away.
+        end: [m].
+        step: [m].
+    """
+    stations = np.arange(begin, min(near[-1] + reach, end), step)
+    after = np.minimum(np.searchsorted(near, stations), len(near) - 1)
+    off = np.minimum(abs(stations - near[after - 1]), abs(stations - near[after]))
+    close: Array = stations[off <= reach]
+    return close
+
+
 @kernel
 def segment_at(stations: Array, station: float) -> int:
     """Index of the segment that ``station`` [m] lies on; the first or last one beyond the ends."""

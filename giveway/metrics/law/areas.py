@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
-from giveway.geometry.path import points_at
+from giveway.geometry.path import fine_near, points_at
 from giveway.metrics.law.drive import Drive, runs
 from giveway.records.way import CrossingOnWay
 
@@ -80,10 +80,7 @@ def _visits(line: _Line, shape: VehicleShape, crossing: CrossingOnWay) -> list[A
     near = coarse[away <= (length + crossing.width) / 2 + shape.length + shape.width + 1.0]
     if not len(near):
         return []
-    stations = np.arange(near[0] - 1.0, min(near[-1] + 1.0, line.stations[-1]), _STEP)
-    behind = np.minimum(np.searchsorted(near, stations), len(near) - 1)
-    away = np.minimum(abs(stations - near[behind - 1]), abs(stations - near[behind]))
-    stations = stations[away <= 1.0]  # a way may come by again, much later
+    stations = fine_near(near, 1.0, near[0] - 1.0, line.stations[-1], _STEP)
     u, w = base.place(*_outline(line, shape, stations))
     inside: NDArray[np.bool_] = (u >= 0.0) & (u <= length) & (np.abs(w) <= crossing.width / 2)
     areas = []

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from giveway.ego.corridor import Corridor
 from giveway.errors import ScenarioError
-from giveway.geometry.path import EgoPath
+from giveway.geometry.path import EgoPath, fine_near
 
 L_SHAPE = [(0, 0), (10, 0), (10, 20)]  # 10 m east, then 20 m north
 
@@ -23,6 +23,14 @@ def corridor(points: list[tuple[float, float]], horizon: int = 3) -> Corridor:
         walking_speed_limit=2.5,
         body_length=5.0,
     )
+
+
+def test_stations_near_some_places_leave_out_what_is_between() -> None:
+    near = np.array([10.0, 11.0, 500.0])
+    stations = fine_near(near, 1.0, 9.0, 500.3, 0.25)
+    assert stations == pytest.approx([*np.arange(9.0, 12.01, 0.25), *np.arange(499.0, 500.3, 0.25)])
+    every = np.arange(9.0, 500.3, 0.25)
+    assert set(stations) <= set(every)  # to the bit
 
 
 def test_pose_along_an_l_shaped_path() -> None:
