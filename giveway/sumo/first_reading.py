@@ -16,10 +16,10 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from giveway._environment import user_cache
-from giveway.errors import SumoError
+from giveway.errors import InstallationError, SumoError
 from giveway.processes.causes import cause_of_end
 from giveway.processes.child import is_supervised
 from giveway.sumo.library import import_libsumo, version
@@ -30,6 +30,7 @@ _MODULE: Final = "giveway.sumo.first_reading"
 _ROUTE_STEPS: Final = "--route-steps"  # 0: all routes are read at once, not as they depart
 _ADDRESS: Final = re.compile(r"[^/\\\s]{2,}:\d+")
 _DONE: Final = "read"
+_SPARED: Final = ("numpy", "pyproj", "lxml")  # half of what libsumo's Python takes to load
 _known: set[str] = set()
 
 
@@ -101,9 +102,21 @@ def _digest(config_file: Path, files: Sequence[Path]) -> str:
     return digest.hexdigest()
 
 
+def _bare_libsumo() -> Any:
+    """SUMO without what its tools import if it is there, and reading has no use for."""
+    modules: dict[str, Any] = sys.modules
+    modules.update(dict.fromkeys(_SPARED))
+    try:
+        return import_libsumo()
+    except InstallationError:
+        for name in _SPARED:
+            del modules[name]
+        return import_libsumo()
+
+
 def main(command: Sequence[str]) -> None:
     """Read, step once, and say so; a refusal in words is an answer too."""
-    sumo = import_libsumo()
+    sumo = _bare_libsumo()
     with suppress(Exception):  # libsumo's own kinds
         sumo.start(list(command))
         sumo.simulationStep()
