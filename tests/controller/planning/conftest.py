@@ -43,27 +43,23 @@ class PlainProblem:
     def intervals(self) -> Array:
         return np.diff(self.nodes, prepend=0) * self.model.time_step
 
-    def cost(self, v: Array) -> float:
-        p, h, total = self.parameters, self.intervals, 0.0
-        before, acceleration = self.speed, self.acceleration
-        for i in range(len(h)):
-            a = (v[i] - before) / h[i]
-            apart = h[0] if i == 0 else (h[i] + h[i - 1]) / 2.0
-            jerk = (a - acceleration) / apart
-            total += h[i] * (v[i] - self.wanted[i]) ** 2
-            total += p.effort_weight * h[i] * a**2 + p.jerk_weight * apart * jerk**2
-            before, acceleration = v[i], a
-        return total
+    def cost(self, v: Array) -> Array:
+        """(...) of the plans ``v`` (..., n)."""
+        p, h = self.parameters, self.intervals
+        apart = np.concatenate([h[:1], (h[1:] + h[:-1]) / 2.0])
+        a = np.diff(v, prepend=self.speed) / h
+        jerk = np.diff(a, prepend=self.acceleration) / apart
+        error = h * (v - self.wanted) ** 2
+        return (error + p.effort_weight * h * a**2 + p.jerk_weight * apart * jerk**2).sum(axis=-1)
 
     def quadratic(self) -> tuple[Array, Array]:
         """P, q of 1/2 v'Pv + q'v: differences of the cost, which are exact for a quadratic."""
         n = len(self.nodes)
-        e, zero, f = np.eye(n), np.zeros(n), self.cost
-        q = np.array([(f(e[i]) - f(-e[i])) / 2.0 for i in range(n)])
-        P = np.array(
-            [[f(e[i] + e[j]) - f(e[i]) - f(e[j]) + f(zero) for j in range(n)] for i in range(n)]
-        )
-        return P, q
+        e, f = np.eye(n), self.cost
+        each = f(e)
+        pairs = f(e[:, None] + e[None, :])
+        P = pairs - each[:, None] - each[None, :] + f(np.zeros(n))
+        return P, (each - f(-e)) / 2.0
 
     def rows(self) -> tuple[Array, Array, Array]:
         """G, lower, upper of all limits but the corridor's."""
