@@ -21,7 +21,12 @@ from fmus.errors import (
     FmuVariableError,
 )
 from fmus.interfaces.vehicle import Vehicle
-from fmus.isolation import IsolatedController, IsolatedVehicle, open_vehicle
+from fmus.isolation import (
+    IsolatedController,
+    IsolatedVehicle,
+    open_vehicle,
+    processes_reused,
+)
 from fmus.profile.bundled import bundled_fmu, is_bundled
 from fmus.profile.controller_preparation import (
     PreparedController,
@@ -75,6 +80,7 @@ __all__ = [
     "open_vehicle",
     "prepare",
     "prepare_controller",
+    "processes_reused",
     "read_controller_profile",
     "read_profile",
 ]

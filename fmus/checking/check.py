@@ -11,6 +11,7 @@ from fmus.checking.manoeuvres import Attempt, Opener, Phase, Trace, try_to_drive
 from fmus.checking.scale import known_masses
 from fmus.checking.self_check import Convergence, convergence, milliseconds, plain, remedy
 from fmus.errors import FmuCrashError, FmuError, FmuOutputError, FmuStepError
+from fmus.isolation import processes_reused
 from fmus.profile.vehicle_profile import VehicleProfile
 
 DEFAULT_MASS = 1000.0  # [kg] M of the controllers' model, where nobody says otherwise
@@ -50,6 +51,7 @@ class CheckReport:
         return all(finding.verdict != "fail" for finding in self.findings)
 
 
+@processes_reused()
 def check(
     opener: Opener,
     *,

@@ -20,6 +20,7 @@ from fmus.checking.remarks import fit_remarks, saturation_remarks
 from fmus.checking.saturation import force_limits
 from fmus.checking.sides import Sides, fit_apart, side_remarks
 from fmus.errors import FmuOutputError, FmuProfileError, FmuStartError
+from fmus.isolation import processes_reused
 from fmus.profile.advice import gain_line
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
@@ -73,6 +74,7 @@ class Identification:
         return [prepare(trace, (limits[0], limits[1])) for trace in self.tests]
 
 
+@processes_reused()
 def identify(
     opener: Opener,
     *,

@@ -20,6 +20,7 @@ from fmus.errors import (
     FmuProfileError,
     FmuStartError,
 )
+from fmus.isolation import processes_reused
 
 DIVISORS = (1, 2, 5, 10, 20, 50, 100)  # of the step, tried from coarse to fine
 RELATIVE = 0.05  # of the largest speed or distance of the finer run
@@ -100,6 +101,7 @@ def remedy(result: Convergence) -> str:
     return f"add `step = {result.advised:g}` to [fmu] of the profile"
 
 
+@processes_reused()
 def convergence(
     opener: Opener, fmu_step: float, *, force: float = 4000.0, start_speed: float = 0.0
 ) -> Convergence:

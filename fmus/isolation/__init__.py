@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from fmus.driving.vehicle import VehicleFmu
 from fmus.isolation.isolated_controller import IsolatedController
 from fmus.isolation.isolated_vehicle import IsolatedVehicle
+from fmus.isolation.watchdog_process import processes_reused
 from fmus.profile.bundled import is_bundled
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from fmus.interfaces.vehicle import Vehicle
     from fmus.profile.vehicle_profile import VehicleProfile
 
-__all__ = ["IsolatedController", "IsolatedVehicle", "open_vehicle"]
+__all__ = ["IsolatedController", "IsolatedVehicle", "open_vehicle", "processes_reused"]
 
 
 def open_vehicle(

@@ -9,6 +9,7 @@ from pathlib import Path
 from time import sleep
 from typing import Final
 
+LOG: Final = "watchdog.log"  # in the vehicle's folder: what its watchdog has to say
 _ROUNDS: Final = 50  # of looking for processes: those killed may have started others
 _PAUSE: Final = 0.02  # [s] for killed processes to disappear
 

@@ -104,10 +104,10 @@ class FmuProcess:
             if not done:
                 raise self._reported_error(text, state)
         except (TimeoutError, EOFError, GarbledError) as problem:
-            self.failed = True
+            self.failed, self._host.sound = True, False
             raise self._crash(what, when(), problem, timeout) from None
         except BaseException:  # Ctrl-C: the reply would be taken for that of the next step
-            self.failed = True
+            self.failed, self._host.sound = True, False
             raise
         return state
 
@@ -151,10 +151,12 @@ class FmuProcess:
             if not self.failed:
                 client.ask(QUIT, (), _END_TIMEOUT)
         except TimeoutError:
+            self._host.sound = False
             self.warnings.append(
                 f"{self.path.name}: the FMU did not end within {_END_TIMEOUT:g} s; killed"
             )
         except (EOFError, GarbledError):
+            self._host.sound = False
             cause = self._host.end_process(_END_PATIENCE).cause
             self.warnings.append(f"{self.path.name}: the FMU's process {cause} when it was ended")
         finally:

@@ -22,9 +22,13 @@ class PortableHost:
     Args:
         path: of the FMU.
         folder: temporary.
+
+    Attributes:
+        sound: see :class:`fmus.isolation.process_host.ProcessHost`.
     """
 
     def __init__(self, path: Path, folder: Path) -> None:
+        self.sound = True
         self._path, self._folder = path, folder
         self._process: subprocess.Popen[bytes] | None = None
         self._printed = PrintedTail()

@@ -14,7 +14,13 @@ from fmus.isolation.worker import Order
 
 
 class ProcessHost(Protocol):
-    """Starts and ends the processes of one FMU."""
+    """Starts and ends the processes of one FMU.
+
+    Attributes:
+        sound: the FMU has not crashed, hung or broken its connection so far.
+    """
+
+    sound: bool
 
     def start_process(self) -> socket.socket:
         """Start a new process for the FMU and return the connection to it.

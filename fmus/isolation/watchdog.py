@@ -1,11 +1,12 @@
-"""The watchdog of one vehicle: a process that starts the FMU's processes and ends them (Linux).
+"""The watchdog of a vehicle: a process that starts the FMU's processes and ends them (Linux).
 
 It never runs an FMU itself. For every episode it forks a worker from its own clean state, with
 everything imported. It reads what the worker prints, so that a flood of output neither blocks the
 worker nor fills a disk. When the worker ends it kills every process that the FMU may have started,
 however it hid. The watchdog, not the vehicle's process, is the FMU's parent.
 
-When the vehicle's process has ended, the watchdog removes the temporary folder and ends too.
+When the vehicle's process has ended, the watchdog removes the temporary folder and ends too. When
+the vehicle is closed it may be told to wait for another one, with nothing left of the first.
 """
 
 import ctypes
@@ -16,15 +17,16 @@ import select
 import signal
 import socket
 import sys
+import tempfile
 import warnings
 from contextlib import suppress
 from pathlib import Path
 from time import monotonic, sleep
 from typing import Final
 
-from fmus.isolation.cleanup import remove
+from fmus.isolation.cleanup import LOG, remove, scratch_of
 from fmus.isolation.exit_report import ExitReport, PrintedTail, out_of_memory_kills
-from fmus.isolation.wire import END_WORKER, MESSAGE, START_WORKER
+from fmus.isolation.wire import END_WORKER, MESSAGE, RETIRE, SERVE, START_WORKER
 from fmus.isolation.worker import Order, read_order, serve
 
 _CHECK_INTERVAL: Final = 1000  # [ms] between checks that the vehicle's process still runs
@@ -48,18 +50,23 @@ def main(control: int, parent: int, folder: str) -> None:
     """
     # os.fork warns of threads (Python 3.12): those of libraries sleep, and no FMU has run here.
     warnings.simplefilter("ignore", DeprecationWarning)
+    folders = [Path(folder)]
     try:
         order = read_order(folder)
         order.import_ahead()
         with socket.socket(fileno=control) as connection:
-            _Watchdog(connection, parent, order).run()
+            _Watchdog(connection, parent, order, folders).run()
     finally:
-        remove(Path(folder))
+        for place in folders:
+            remove(place)
 
 
 class _Watchdog:
-    def __init__(self, control: socket.socket, parent: int, order: Order) -> None:
+    def __init__(
+        self, control: socket.socket, parent: int, order: Order, folders: list[Path]
+    ) -> None:
         self._control, self._parent, self._order = control, parent, order
+        self._folders = folders  # the vehicle's; none while there is no vehicle
         self._worker: int | None = None
         self._report: ExitReport | None = None
         self._printed, self._output = PrintedTail(), -1
@@ -97,17 +104,39 @@ class _Watchdog:
             message, files, _flags, _sender = socket.recv_fds(self._control, MESSAGE, 1)
             if not message:
                 return False
-            number, what, argument = message.split(b" ")
+            number, what, argument = message.split(b" ", 2)
             answer = b""
             if what == START_WORKER:
                 self._fork(files[0])
             elif what == END_WORKER:
                 answer = self._end_worker(int(argument) / 1e3).encoded()
+            elif what == RETIRE:
+                self._retire()
+            elif what == SERVE:
+                self._serve(Path(os.fsdecode(argument)))
             self._control.send(b"%s %s" % (number, answer))
         except OSError as error:
             sys.stderr.write(f"{error}\n")  # the vehicle reads it, if it still runs
             return False
         return True
+
+    def _retire(self) -> None:
+        """Leave nothing of the vehicle, and wait for another one."""
+        self._end_worker()
+        os.chdir("/")
+        _print_to(Path(os.devnull))
+        while self._folders:
+            remove(self._folders.pop())
+
+    def _serve(self, folder: Path) -> None:
+        """Serve the vehicle of a folder as one for which this process was started."""
+        self._folders.append(folder)
+        scratch = str(scratch_of(folder))
+        os.environ["TMPDIR"] = tempfile.tempdir = scratch
+        os.chdir(scratch)
+        _print_to(folder / LOG)
+        self._order = read_order(str(folder))
+        self._order.import_ahead()
 
     def _fork(self, connection: int) -> None:
         self._end_worker()
@@ -174,6 +203,13 @@ class _Watchdog:
             self._poll.unregister(self._output)
             os.close(self._output)
             self._output = -1
+
+
+def _print_to(file: Path) -> None:
+    target = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    os.dup2(target, 1)
+    os.dup2(target, 2)
+    os.close(target)
 
 
 def _become_worker(watchdog: int, connection: int, output: int) -> socket.socket:

@@ -26,6 +26,8 @@ FAILED: Final = b"fail"  # the same numbers; the text is the error
 TEXT_LIMIT: Final = 1 << 16  # [bytes]
 START_WORKER: Final = b"fork"  # to the watchdog, with the worker's end of the connection
 END_WORKER: Final = b"end"  # with a patience [ms], before it is killed; answered by its report
+RETIRE: Final = b"retire"  # to the watchdog of a closed vehicle: end all, and wait for the next
+SERVE: Final = b"serve"  # to one that waits, with the folder of the next vehicle
 MESSAGE: Final = 4096  # [bytes] from and to the watchdog at most
 CONNECTION_LOST: Final = 113  # exit status of a process whose connection has been closed
 

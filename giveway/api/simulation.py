@@ -8,6 +8,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TypeVar
 
+from fmus import processes_reused
 from giveway.api.outcome import judged, outcome, with_twin
 from giveway.cosimulation.assembly import Driven, assemble
 from giveway.cosimulation.loop import Loop
@@ -55,7 +56,7 @@ def simulate(
             watcher(Progress(0.0, clock, math.nan, math.nan, math.nan, "", 0))
         return not interrupt.requested
 
-    with ExitStack() as stack:
+    with processes_reused(), ExitStack() as stack:
         parts = assemble(checked, stack, outputs=outputs, native_log=native_log, goes_on=goes_on)
         recorder = Recorder(journal)
         loop = Loop(parts, recorder, follow=checked.config.twin)

@@ -110,11 +110,15 @@ def _battery(connection: Connection, config: str, what: str) -> None:
     step = effective.time_step or PAPER_STEP
     if what == CONTROLLER.what:
         from controller import check_controller
+        from fmus import processes_reused
         from giveway.config.controller_fmu import setup_of
         from giveway.ego import plug_in
 
         (own,) = effective.each_ego()
-        found = check_controller(plug_in.maker(own), setup_of(own, step), begins=connection.send)
+        with processes_reused():
+            found = check_controller(
+                plug_in.maker(own), setup_of(own, step), begins=connection.send
+            )
         connection.send([(finding.rule, finding.problem) for finding in found])
     else:
         from giveway.crowd import models

@@ -43,7 +43,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
     with (Path(folder) / TRACEBACK_FILE).open("w", encoding="utf-8") as file:
         faulthandler.enable(file)
         heartbeat = Heartbeat(Path(folder))
-        from fmus import keep_unpacked
+        from fmus import keep_unpacked, processes_reused
         from giveway.precompile import compile_kernels_once
         from giveway.studies.execution import perform as performing  # noqa: F401 - no run waits for it
         from giveway.sumo.library import import_libsumo
@@ -56,7 +56,7 @@ def main(connection: int, folder: str, parent: int, token: str = "") -> None:
         gc.freeze()  # what is loaded stays
         line.send(READY)
         runs = itertools.count(1)
-        with contextlib.suppress(EOFError):
+        with contextlib.suppress(EOFError), processes_reused():
             while message := line.receive():
                 task = Task(**json.loads(message[1]))
                 heartbeat.step(0, 0.0)

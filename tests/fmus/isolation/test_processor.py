@@ -55,7 +55,7 @@ def test_the_fmu_is_where_its_vehicle_is_and_the_vehicle_may_go_anywhere(isolate
     vehicle.start()
     for _ in range(40):
         vehicle.step(100.0)
-    watchdog = vehicle._process._host._process.pid
+    watchdog = vehicle._process._host._watchdog.process.pid
     (worker,) = Path(f"/proc/{watchdog}/task/{watchdog}/children").read_text().split()
     assert len(os.sched_getaffinity(int(worker))) == 1
     assert os.sched_getaffinity(0) == usual

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from fmus import FmuCrashError, bundled_fmu
+from fmus import FmuCrashError, bundled_fmu, processes_reused
 from fmus.isolation import IsolatedVehicle
 from fmus.isolation.cleanup import remove
 from fmus.profile.bundled import BUNDLED_PROFILE
@@ -49,6 +49,13 @@ def crash(tmp_path):
 
 def test_processes_that_no_watchdog_can_end_any_more(crash):
     assert "no answer within 1 s while it was loaded" in crash("ORPHANS", 1.0)
+
+
+def test_so_they_are_where_the_watchdog_has_served_another_vehicle(crash):
+    with processes_reused():
+        with IsolatedVehicle(bundled_fmu(), step_size=0.05) as vehicle:
+            vehicle.start()
+        assert "no answer within 1 s while it was loaded" in crash("ORPHANS", 1.0)
 
 
 def test_a_watchdog_that_was_stopped_goes_on(crash):

@@ -1,0 +1,163 @@
+"""A watchdog as its vehicle's process sees it, and those that wait for the next vehicle (Linux)."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Final
+
+from fmus.isolation.cleanup import LOG, kill_marked
+from fmus.isolation.spawning import END_TIMEOUT, IMPORT_TIMEOUT, kill_group, spawn
+from fmus.isolation.wire import MESSAGE, RETIRE, SERVE
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+_waiting: Final[list[WatchdogProcess]] = []
+_scopes: Final[list[None]] = []
+
+
+class WatchdogProcess:
+    """A watchdog, see :mod:`fmus.isolation.watchdog`; it imports while its vehicle goes on.
+
+    Args:
+        path: of the FMU, named in errors.
+        folder: of the vehicle, temporary; the watchdog removes it when this process has ended.
+
+    Attributes:
+        process: the watchdog.
+        has_answered: at least once.
+
+    Raises:
+        FmuCrashError: it cannot be started.
+    """
+
+    def __init__(self, path: Path, folder: Path) -> None:
+        self.has_answered = False
+        self._number = 0  # of the last request
+        self._owner, self._setting = os.getpid(), _setting()
+        self._folders = [folder]  # one whose TMPDIR it was started with, and the present one
+        self._control, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        arguments = ("watchdog", control.fileno(), self._owner, folder)
+        with control, (folder / LOG).open("wb") as log:
+            self.process = spawn(
+                path, *arguments, folder=folder, output=log, pass_fds=(control.fileno(),)
+            )
+
+    def ask(self, what: bytes, argument: bytes, timeout: float, *files: int) -> bytes:
+        """Its answer; answers to earlier, interrupted requests are skipped.
+
+        Args:
+            what: is asked for.
+            argument: of that.
+            timeout: [s].
+            files: to be handed over.
+
+        Raises:
+            OSError: there is none.
+        """
+        self._number += 1
+        self._resume()
+        self._control.settimeout(timeout)
+        socket.send_fds(self._control, [b"%d %s %s" % (self._number, what, argument)], files)
+        while True:
+            message = self._control.recv(MESSAGE)
+            number, _, answer = message.partition(b" ")
+            if not message:
+                raise ConnectionResetError
+            if int(number) == self._number:
+                self.has_answered = True
+                return answer
+
+    def end(self) -> None:
+        """End it: closing its socket ends it and all that it watches over."""
+        self._resume()
+        self._control.close()
+        if not self.has_answered:  # it is still importing and would not notice the closed socket
+            self.process.kill()
+        try:
+            self.process.wait(END_TIMEOUT)
+        except subprocess.TimeoutExpired:
+            kill_group(self.process)
+        if self.process.returncode:  # it was killed, so it could not clean up
+            self.kill_workers()
+
+    def kill_workers(self) -> None:
+        """Kill what it watches over, without it."""
+        for folder in self._folders:
+            kill_marked(folder)
+
+    def serve(self, folder: Path) -> bool:
+        """Serve another vehicle, in its ``folder``; False: it cannot, and is to be ended."""
+        if self._setting != _setting() or self.process.poll() is not None:
+            return False
+        self._folders[1:] = [folder]
+        return self._does(SERVE, os.fsencode(folder), IMPORT_TIMEOUT)
+
+    def retire(self) -> bool:
+        """End the vehicle's process and remove its folder, as :meth:`serve`."""
+        return self._does(RETIRE, b"", END_TIMEOUT)
+
+    def is_ours(self) -> bool:
+        """Whether this process has started it, and is no fork of that."""
+        return self._owner == os.getpid()
+
+    def _does(self, what: bytes, argument: bytes, timeout: float) -> bool:
+        try:
+            self.ask(what, argument, timeout)
+        except (OSError, ValueError):
+            return False
+        return True
+
+    def _resume(self) -> None:
+        """Let it go on: an FMU may have stopped it with a signal."""
+        with suppress(OSError):
+            self.process.send_signal(signal.SIGCONT)
+
+
+def _setting() -> object:
+    """What a watchdog takes over from the process that starts it."""
+    return dict(os.environ), list(sys.path)
+
+
+@contextmanager
+def processes_reused() -> Iterator[None]:
+    """Within, the watchdog of a closed vehicle serves the next one instead of a new one.
+
+    It has imported everything and has never run an FMU; each start of one is a new process as ever.
+    The watchdog of an FMU that has crashed, hung or broken its connection is ended as without. On
+    leaving the outermost such block all that wait are ended. Other systems than Linux have none.
+    """
+    _scopes.append(None)
+    try:
+        yield
+    finally:
+        _scopes.pop()
+        while not _scopes and _waiting:
+            one = _waiting.pop()
+            if one.is_ours():
+                one.end()
+
+
+def watchdog_for(path: Path, folder: Path) -> WatchdogProcess:
+    """A watchdog for a vehicle: one that waits, or a new one; see :class:`WatchdogProcess`."""
+    while _waiting:
+        one = _waiting.pop()
+        if one.is_ours():
+            if one.serve(folder):
+                return one
+            one.end()
+    return WatchdogProcess(path, folder)
+
+
+def let_wait(watchdog: WatchdogProcess) -> bool:
+    """Have the watchdog of a closed vehicle wait for the next; False: it is to be ended."""
+    if not (_scopes and watchdog.is_ours() and watchdog.retire()):
+        return False
+    _waiting.append(watchdog)
+    return True
