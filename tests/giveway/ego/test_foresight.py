@@ -36,7 +36,6 @@ HALF_WIDTH, CONFLICT_TIME, FADING = 1.25, 1.5, 0.5
 FRONT = 20.0  # [m]
 WORST = SafetyParameters().worst
 ALARM = Alarm(RADIUS, 0.05, WORST.acceleration, WORST.speed, 8.0, heeded=True)
-NOWHERE = shapely.Point()
 EDGE = 1e-6
 
 angles = np.linspace(-np.pi / 2, np.pi / 2, 200)
@@ -93,14 +92,13 @@ def conflicts_at(path, people, m, i):
         for back, side in ((0, 1), (0, -1), (1, -1), (1, 1))
     ]
     body = shapely.Polygon(corners)
-    wider = body.buffer(RADIUS, quad_segs=4000)
-    shapely.prepare(wider)
+    shapely.prepare(wider := body.buffer(RADIUS, quad_segs=4000))
     relative = (people[i + 1] - people[i]) / DT - m.speed[i + 1] * towards
     surely, perhaps = 0.0, 0
     for p, w in zip(people[i], relative, strict=True):
         course = shapely.LineString([p, p + w * (CONFLICT_TIME + FADING)])
-        met = shapely.intersection(course, wider) if wider.intersects(course) else NOWHERE
-        if not met.is_empty:
+        if wider.intersects(course):
+            met = shapely.intersection(course, wider)
             begin = min(np.hypot(*(np.array(met.coords) - p).T)) / np.hypot(*w)
             surely += np.clip((CONFLICT_TIME + FADING - begin) / FADING, 0.0, 1.0)
         perhaps += abs(body.distance(course) - RADIUS) <= EDGE
