@@ -130,7 +130,7 @@ def main() -> None:
         for kind, block in (
             ("in-process", contextlib.nullcontext),
             ("isolated", contextlib.nullcontext),
-            ("the next one", processes_reused),  # from the watchdog of the one before, as in studies
+            ("the next one", processes_reused),  # from the same watchdog, as in studies
         ):
             with block():
                 set_up(kind, version)
