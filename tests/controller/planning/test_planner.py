@@ -205,3 +205,47 @@ def test_what_could_happen_ahead_is_approached_gently():
         assert speed <= beside.fastest(beside.driven) + 0.1
     assert speed <= beside.CALM + 0.4
     assert 2.0 < hardest < 3.5
+
+
+class WalksUp(BesideTheWay):
+    """Somebody who walks up to the way, 30 m ahead: the later one is there, the slower is calm."""
+
+    PLACE, PACE, FAR = 30.0, 1.3, 3.9  # [m], [m/s], [m] from where they stop, 0.7 m beside the way
+
+    def __init__(self, horizon):
+        super().__init__(horizon)
+        self.time, self.asked = 0.0, 0
+
+    def fastest(self, station, time):
+        beside = np.maximum(self.FAR - self.PACE * time, 0.0)
+        left = self.PLACE - station
+        calm = (2.0 + 2.0 * beside) ** 2 + 2.0 * self.FULLY * np.maximum(left, 0.0)
+        return np.where(left > 0.0, np.sqrt(calm), np.inf)
+
+    def prospect(self, manoeuvre):
+        self.asked += 1
+        times = self.time + MODEL.time_step * np.arange(1, len(manoeuvre.distance))
+        calm = self.fastest(self.driven + manoeuvre.distance[1:], times)
+        return Prospect(*self.nobody, np.where(manoeuvre.speed[1:] > calm, calm, np.inf))
+
+
+def test_who_walks_up_to_the_way_is_nearer_when_a_slower_plan_gets_there():
+    """What the fast manoeuvre is calm before is not calm for the plan: no braking at the last."""
+    parameters = PlannerParameters(reference_speed=13.9)
+    planner, beside = Planner(MODEL, parameters), WalksUp(parameters.horizon)
+    anywhere, speed, force, hardest = np.full(parameters.horizon, np.inf), 12.5, 0.0, 0.0
+    while beside.driven < beside.PLACE - 0.5:
+        force = planner.plan(speed, force, 13.9, anywhere, beside).force
+        after = MODEL.decay * speed + MODEL.speed_per_force * force
+        hardest = max(hardest, (speed - after) / MODEL.time_step)
+        beside.driven, speed = beside.driven + MODEL.time_step * speed, after
+        beside.time += MODEL.time_step
+    assert speed <= beside.fastest(beside.driven, beside.time)
+    assert hardest < 3.25
+
+
+def test_at_walking_pace_no_plan_is_asked_about_once_more():
+    parameters = PlannerParameters()
+    planner, beside = Planner(MODEL, parameters), WalksUp(parameters.horizon)
+    planner.plan(4.0, 0.0, 4.0, np.full(parameters.horizon, np.inf), beside)
+    assert beside.asked == planner._search.tried
