@@ -102,24 +102,6 @@ def approach_calmly(distance: Array, gentle: float, calm: Array) -> None:
 
 
 @kernel
-def calm_as_planned(distance: Array, gentle: float, found: Array, calm: Array) -> None:
-    """Lower ``calm`` (N,) [m/s] to what is calm under the plan, and approached calmly.
-
-    The manoeuvre's calm speeds are those before people who meet an ego that drives as fast as it.
-    Slowed down by them it comes later, when who walks up to its way is nearer.
-
-    Args:
-        distance: (N + 1,) [m] of the plan.
-        gentle: [m/s^2] that calm speeds are approached with, as in :func:`follow`.
-        found: (N,) [m/s] the calm speeds under the plan, changed.
-        calm: (N,) [m/s] those under the manoeuvre, changed.
-    """
-    approach_calmly(distance, _APPROACH * gentle, found)
-    for i in range(len(calm)):
-        calm[i] = min(calm[i], found[i])
-
-
-@kernel
 def unfold_and_judge(
     speed: float,
     best: Motion,

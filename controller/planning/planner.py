@@ -18,7 +18,6 @@ from controller.model import LongitudinalModel
 from controller.planning.following import (
     NO_PLAN,
     UNSOLVED,
-    calm_as_planned,
     follow,
     take_over,
     unfold_and_judge,
@@ -29,7 +28,6 @@ from controller.planning.smoothing import SmoothingProblem
 from controller.protocol import Decision, Observation
 from controller.tuned_pid import TunedPid
 
-_BEHIND = 2.0  # [m] at the horizon's end: a plan that is farther behind its manoeuvre is slower
 _SOLVED = Outcome.SOLVED  # whose class is slow to tell it
 
 
@@ -133,8 +131,7 @@ class Planner:
             chosen = search.choose(*seen, end, to_clear)
         else:
             chosen = search.follow(*seen)
-        state = (speed, before, previous_force, fastest)
-        return self._smooth(state, allowed, foresight, chosen, lane_speeds)
+        return self._smooth(speed, previous_force, before, fastest, allowed, chosen, lane_speeds)
 
     def _acceleration(self, speed: float, force: float) -> float:
         """The one that ``force`` [N] gave at this speed; at standstill none."""
@@ -144,20 +141,22 @@ class Planner:
 
     def _smooth(
         self,
-        state: tuple[float, float, float, float],
+        speed: float,
+        previous_force: float,
+        before: float,
+        fastest: float,
         allowed: Array,
-        foresight: Foresight | None,
         chosen: str,
         lane_speeds: Array | None,
     ) -> Plan:
         """The QP within the manoeuvre's corridor; the manoeuvre itself where that is better."""
         p, search, plan = self.parameters, self._search, self._plan
-        speed, _, previous_force, _ = state
-        best, to = search.best, self._to
+        best = search.best
+        to = self._to
         prospect = (search.gap, search.conflicts, search.calm)
         judged = (search.missing, allowed)
-        problem = (
-            state,
+        corrections, itself, holds = follow(
+            (speed, before, previous_force, fastest),
             best,
             prospect,
             *judged,
@@ -171,10 +170,6 @@ class Planner:
             self._calmly,
             search.weights,
         )
-        corrections, itself, holds = follow(*problem)
-        if corrections >= 0 and self._slower_than(best, itself) and foresight is not None:
-            calm_as_planned(to[0], p.calm_braking, foresight.prospect(plan).calm, search.calm)
-            corrections, itself, holds = follow(*problem)
         if corrections == NO_PLAN:
             search.forget()
             return Plan(0.0, False, "infeasible: cannot keep the distance", 0, chosen, search.tried)
@@ -202,15 +197,6 @@ class Planner:
         search.keep(plan, holds)
         force = self._force(speed, previous_force)
         return Plan(force, True, status, corrections, chosen, search.tried)
-
-    def _slower_than(self, best: tuple[Array, Array, Array], itself: bool) -> bool:
-        """Whether the plan falls so far behind the manoeuvre that people do otherwise under it.
-
-        That is looked at on roads only, where calm speeds are approached: at walking pace there is
-        little to fall behind.
-        """
-        on_roads = self.parameters.calm_braking < inf and not itself
-        return on_roads and bool(self._to[0][-1] < best[0][-1] - _BEHIND)
 
     def _force(self, speed: float, previous_force: float) -> float:
         """What drives the plan's next speed, within the actuator's limits [N]."""
