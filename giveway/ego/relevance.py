@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from giveway.ego.waiting import WaitingEgo
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, inner, kernel
-from giveway.geometry.path import EgoPath, segment_at
+from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
 
 PREDICT_ALL = 150  # pedestrians; of a larger crowd only those that matter to the ego are predicted
@@ -50,11 +50,10 @@ class Relevance:
 class Nearby:
     """Tells who is near enough for an ego that predicts the crowd again for each manoeuvre.
 
-    Somebody counts who, at his present velocity or where his way leads beyond its next corner,
-    comes within ``MARGIN`` of the part of the path that the ego's body can be on within the
-    horizon, or its safe distance ahead of that. Who is left out would have to walk that far to meet
-    the ego, and the safety layer, if there is one, does not act for him: the faster the ego is, the
-    farther off it does.
+    Somebody counts who, at his present velocity, comes within ``MARGIN`` of the part of the path
+    that the ego's body can be on within the horizon, or its safe distance ahead of that. Who is
+    left out would have to walk that far to meet the ego, and the safety layer, if there is one,
+    does not act for him: the faster the ego is, the farther off it does.
     What he does to others is left out, too: docs/planner.md compares runs.
 
     Args:
@@ -104,20 +103,6 @@ class Nearby:
             self._half_width + margin,
             mask,
         )
-        turn_near(
-            path.vertices,
-            path.stations,
-            front - self._behind,
-            front + reach + self._ahead,
-            crowd.position,
-            crowd.desired_speed,
-            crowd.waypoints,
-            crowd.waypoint_start,
-            crowd.waypoint_index,
-            span,
-            self._half_width + margin,
-            mask,
-        )
         return mask
 
 
@@ -147,70 +132,8 @@ def come_near(
         mask: (n,).
     """
     mask[:] = False
-    for j in range(len(mask)):
-        v_x, v_y = span * velocity[j, 0], span * velocity[j, 1]
-        mask[j] = _passes(
-            vertices,
-            stations,
-            begin,
-            end,
-            position[j, 0],
-            position[j, 1],
-            v_x,
-            v_y,
-            margin,
-        )
-
-
-@kernel
-def turn_near(
-    vertices: Array,
-    stations: Array,
-    begin: float,
-    end: float,
-    position: Array,
-    desired_speed: Array,
-    waypoints: Array,
-    start: NDArray[np.int64],
-    index: NDArray[np.int64],
-    span: float,
-    margin: float,
-    mask: Mask,
-) -> None:
-    """Set in ``mask`` who comes as near beyond the next corner of the way that he means to walk.
-
-    The arrays of people are those of a crowd, the others as in :func:`come_near`.
-    """
-    for j in range(len(mask)):
-        at, last = start[j] + index[j], start[j + 1] - 1
-        x, y = waypoints[at, 0], waypoints[at, 1]
-        far = np.sqrt((x - position[j, 0]) ** 2 + (y - position[j, 1]) ** 2)
-        left = span * desired_speed[j] - far
-        while not mask[j] and left > 0.0 and at < last:
-            at += 1
-            to_x, to_y = waypoints[at, 0] - x, waypoints[at, 1] - y
-            far = np.sqrt(to_x * to_x + to_y * to_y)
-            share = 1.0 if far <= left else left / far
-            to_x, to_y, left = share * to_x, share * to_y, left - far
-            mask[j] = _passes(vertices, stations, begin, end, x, y, to_x, to_y, margin)
-            x, y = x + to_x, y + to_y
-
-
-@inner
-def _passes(
-    vertices: Array,
-    stations: Array,
-    begin: float,
-    end: float,
-    p_x: float,
-    p_y: float,
-    v_x: float,
-    v_y: float,
-    margin: float,
-) -> bool:
-    """Whether who walks (v_x, v_y) [m] from (p_x, p_y) comes near, see :func:`come_near`."""
     last = len(stations) - 2
-    for i in range(segment_at(stations, begin), segment_at(stations, end) + 1):
+    for i in range(last + 1):
         low = begin if i == 0 else max(begin, stations[i])
         high = end if i == last else min(end, stations[i + 1])
         if low > high:
@@ -218,14 +141,14 @@ def _passes(
         x_0, y_0, length = vertices[i, 0], vertices[i, 1], stations[i + 1] - stations[i]
         e_x, e_y = (vertices[i + 1, 0] - x_0) / length, (vertices[i + 1, 1] - y_0) / length
         x_0, y_0 = x_0 + (low - stations[i]) * e_x, y_0 + (low - stations[i]) * e_y
-        # In the segment's frame: along it and to its left.
-        x = (p_x - x_0) * e_x + (p_y - y_0) * e_y
-        y = (p_y - y_0) * e_x - (p_x - x_0) * e_y
-        to_x = x + v_x * e_x + v_y * e_y
-        to_y = y + v_y * e_x - v_x * e_y
-        if not _farther(x, y, to_x, to_y, high - low, margin):
-            return True
-    return False
+        for j in range(len(mask)):
+            if not mask[j]:
+                # In the segment's frame: along it and to its left.
+                x = (position[j, 0] - x_0) * e_x + (position[j, 1] - y_0) * e_y
+                y = (position[j, 1] - y_0) * e_x - (position[j, 0] - x_0) * e_y
+                to_x = x + span * (velocity[j, 0] * e_x + velocity[j, 1] * e_y)
+                to_y = y + span * (velocity[j, 1] * e_x - velocity[j, 0] * e_y)
+                mask[j] = not _farther(x, y, to_x, to_y, high - low, margin)
 
 
 @inner

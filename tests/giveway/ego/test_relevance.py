@@ -12,7 +12,7 @@ import shapely.ops
 from controller import SafetyParameters
 from giveway.config.layers import Layer
 from giveway.config.loading import load
-from giveway.ego.relevance import MARGIN, Nearby, come_near, turn_near
+from giveway.ego.relevance import MARGIN, Nearby, come_near
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import Crowd
@@ -54,51 +54,6 @@ def test_the_path_goes_on_straight_beyond_its_ends():
     people = np.array([(-9.0, 1.0), (66.0, 1.0), (72.0, 1.0)])
     assert list(near(path, -10.0, 20.0, people, still, 2.0)) == [True, False, False]
     assert list(near(path, 40.0, 70.0, people, still, 2.5)) == [False, True, True]
-
-
-def beyond_the_corner(position, waypoints, length):
-    """What somebody walks of ``length`` [m] beyond the first of the way-points; None: nothing."""
-    way = shapely.LineString([position, *waypoints])
-    corner = shapely.LineString([position, waypoints[0]]).length
-    turns = len(waypoints) > 1 and corner < length
-    return shapely.ops.substring(way, corner, length) if turns else None
-
-
-@pytest.mark.parametrize("seed", range(20))
-@pytest.mark.parametrize("name", PATHS)
-def test_whose_way_comes_near_beyond_its_next_corner_counts_too(name, seed):
-    path, g, n = PATHS[name], np.random.default_rng(seed), 60
-    begin, margin = g.uniform(5.0, 20.0), g.uniform(1.0, 6.0)
-    end = begin + g.uniform(1.0, 25.0)
-    position = np.array(path.pose((begin + end) / 2.0)[:2]) + g.uniform(-25.0, 25.0, (n, 2))
-    ways = [there + np.cumsum(g.uniform(-3.0, 3.0, (g.integers(1, 5), 2)), 0) for there in position]
-    crowd = Crowd.create(position, np.zeros((n, 2)), g.uniform(0.5, 2.0, n), ways)
-    people = crowd.desired_speed, crowd.waypoints, crowd.waypoint_start, crowd.waypoint_index
-    mask = g.uniform(size=n) < 0.1
-    known, line = mask.copy(), shapely.LineString(path.vertices)
-    args = (begin, end, position, *people, SPAN, margin, mask)
-    turn_near(path.vertices, path.stations, *args)
-    part, near, clear = shapely.ops.substring(line, begin, end), known.copy(), np.full(n, True)
-    for j in range(n):
-        left = beyond_the_corner(position[j], ways[j], SPAN * crowd.desired_speed[j])
-        if left is not None and not known[j]:
-            distance = part.distance(left)
-            near[j], clear[j] = distance <= margin, abs(distance - margin) > EDGE
-    assert np.array_equal(mask[clear], near[clear])
-    assert 0 < mask.sum() < n
-
-
-def test_who_is_about_to_turn_towards_the_road_is_predicted():
-    """He walks away from it, along the other road, to the corner half a second ahead."""
-    config, _ = load([Layer("", {"scenario": "crossings"})])
-    waiting = SimpleNamespace(config=config.each_ego()[0], safety=None)
-    path, shape = PATHS["straight"], VehicleShape(5.0, 1.8)
-    nearby = Nearby(waiting, path, shape, 2.5, HALF_WIDTH, STEP)
-    there, away = [(40.0, 5.0)], [(0.0, 1.4)]
-    over = Crowd.create(there, away, 1.4, [[(40.0, 5.6), (40.0, -5.0)]])
-    onward = Crowd.create(there, away, 1.4, [[(40.0, 5.6), (40.0, 15.0)]])
-    assert list(nearby.of(over, 10.0, 13.9)) == [True]
-    assert list(nearby.of(onward, 10.0, 13.9)) == [False]
 
 
 HALF_WIDTH, STEP = 1.15, 0.05  # [m], [s]
