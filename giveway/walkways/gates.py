@@ -61,7 +61,9 @@ def passages(gates: Array, start: tuple[float, float]) -> Array:
     The half width is the usable one plus a body's radius, which is the whole walkway and nothing
     beside it. Some gates are reached from behind their line, as round a corner to a kerb. Their
     direction of passage is the one in which people come; with the gate's own direction, they would
-    have passed it before they reach it.
+    have passed it before they reach it. Where people wait for a light the line stays the kerb's
+    whichever way they come: a line along their way would lead onto the roadway, and be pushed
+    along.
 
     Args:
         gates: (k, 7).
@@ -75,7 +77,7 @@ def passages(gates: Array, start: tuple[float, float]) -> Array:
     steps[1:] -= gates[:-1, :2]
     lengths = np.hypot(steps[:, 0], steps[:, 1])
     ahead = steps[:, 0] * rows[:, 0] + steps[:, 1] * rows[:, 1]
-    askew = (ahead < _ASKEW * lengths) & (lengths > _THERE)
+    askew = (ahead < _ASKEW * lengths) & (lengths > _THERE) & (gates[:, 6] < 0)
     if askew.any():
         rows[askew, :2] = steps[askew] / lengths[askew, None]
     return rows

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from giveway.walkways import WalkNetwork, WalkRoute
+    from tests.giveway.walkways.conftest import Built
 
 AVENUE = ["A1B1", "B1C1"]  # eastwards through B1
 
@@ -153,6 +154,28 @@ def test_one_waits_on_the_kerb_for_each_crossing_on_the_way(grid: WalkNetwork) -
     assert route.waypoints[wait, 0] == pytest.approx(120.0 - 3.2 - 0.4)
     assert route.waypoints[wait + 1, 0] == pytest.approx(120.0 + 3.2 + 0.4)
     np.testing.assert_allclose(route.passages[wait, :2], [1.0, 0.0], atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["grid", "spider", "random"])
+def test_one_waits_along_the_kerb_whichever_way_one_comes(
+    built: Callable[[str], Built], name: str
+) -> None:
+    network = built(name).network
+    edges, crossings = network._survey.edges, network._survey.crossings
+    waits = 0
+    for pair in itertools.permutations(edges, 2):
+        line = edges[pair[0]].lane.shape
+        for position in (tuple(line[0]), tuple(line.mean(axis=0)), tuple(line[-1])):
+            route = walk(network, list(pair), position=position)
+            for wait in np.flatnonzero(route.signals >= 0) if route.gaps == 0 else ():
+                shape = crossings[network.signals[route.signals[wait]].crossing].shape
+                ends = shape[[0, -1]]
+                near = np.argmin(np.hypot(*(ends - route.waypoints[wait]).T))
+                way = shape[1] - shape[0] if near == 0 else shape[-2] - shape[-1]
+                across = way / np.hypot(*way)
+                np.testing.assert_allclose(route.passages[wait, :2], across, atol=1e-6)
+                waits += 1
+    assert waits > 50
 
 
 def test_no_crossing_no_signal(grid: WalkNetwork) -> None:
