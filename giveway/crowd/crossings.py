@@ -100,23 +100,11 @@ def turning_in(
         way = onwards - there
         onward = (way @ along) / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9)
         u, _ = place_on(there, kerb, along)
-        near = np.hypot(*(_nearest(crowd, np.minimum(at, last), position) - position).T) <= reach
+        near = np.hypot(*(there - position).T) <= reach
         forth = near & (np.abs(u) <= _WAITING) & (onward >= _ONWARD)
         back = near & (np.abs(u - length) <= _WAITING) & (onward <= -_ONWARD)
         turns = np.where(turns == 0.0, forth.astype(np.float64) - back, turns)
     return turns
-
-
-def _nearest(crowd: Crowd, at: NDArray[np.intp], position: Array) -> Array:
-    """(k, 2) [m] the points of the way-points' lines ``at`` (k,) that are nearest to positions.
-
-    People cut the corner: who comes along a wide crossing steps onto it at its near edge.
-    """
-    there, passage = crowd.waypoints[at], crowd.waypoint_passage[at]
-    left = np.column_stack([-passage[:, 1], passage[:, 0]])
-    aside = ((position - there) * left).sum(axis=1)
-    nearest: Array = there + np.clip(aside, -passage[:, 2], passage[:, 2])[:, None] * left
-    return nearest
 
 
 def have_priority(use: Use, can_enter: NDArray[np.bool_] | bool) -> NDArray[np.bool_]:

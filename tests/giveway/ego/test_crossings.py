@@ -206,16 +206,6 @@ def test_who_walks_along_the_road_and_is_going_to_turn_in(x, then, stops):
     assert (crossings(kerb_time=3.5).stop_at(NEAR, 4.0, walks) < math.inf) == stops
 
 
-def test_who_walks_along_the_road_steps_onto_a_wide_crossing_at_its_near_edge():
-    """The line at the kerb begins 1.75 m before its middle, towards which nobody walks."""
-    way = [(22.0, -4.0), (22.0, 10.0)]
-    walks = Crowd.create([[17.5, -4.5]], [[1.4, 0.0]], 1.4, [way], passages=[[(0, 1, 1.75)] * 2])
-    assert crossings(kerb_time=1.9).stop_at(NEAR, 4.0, walks) == math.inf  # 2.8 m to the line
-    assert crossings(kerb_time=2.1).stop_at(NEAR, 4.0, walks) < math.inf
-    as_points = Crowd.create([[17.5, -4.5]], [[1.4, 0.0]], 1.4, [way])
-    assert crossings(kerb_time=2.1).stop_at(NEAR, 4.0, as_points) == math.inf
-
-
 @pytest.mark.parametrize(
     ("y", "change", "stops"),
     [
