@@ -133,6 +133,14 @@ def test_in_the_last_metre_it_brakes_no_harder_than_3():
     assert crossings().stop_at(19.4, 1.6, somebody) == math.inf  # too late: over it and away
 
 
+@pytest.mark.parametrize("front", [8.0, 14.0, 17.5])
+def test_who_could_be_let_pass_by_the_law_is_let_pass(front):
+    """The ledger's encounters are those for whom a stop at the crossing itself takes 3 m/s^2."""
+    entry = 20.0
+    speed = math.sqrt(2 * 2.95 * (entry - front))
+    assert LINE - 0.11 <= crossings().stop_at(front, speed, walker(-2.0)) <= 19.81
+
+
 @pytest.mark.parametrize("front", [16.6, 17.2, 18.4])
 def test_a_plan_that_may_lead_beyond_the_stop_does_not_lead_onto_the_crossing(front):
     speed = math.sqrt(2 * 2.99 * (19.7 - front))  # it is just not too late yet
