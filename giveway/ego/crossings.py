@@ -44,9 +44,7 @@ _BESIDE = 0.8  # [m] from the ego's side to the middle of somebody who is not in
 _BEFORE, _AFTER = 1.0, 0.5  # [s] between the ego and whoever passes its way after or before it
 _PATIENCE = 4.5  # [s] away from the ego's way, and a little more than an encounter's 4 s
 _CLEAR = 0.3  # [m] before the crossing it stops at the latest
-_LAST = (
-    2.0  # [m] before the crossing; farther away, who may ask for a stop at it is given one there
-)
+_LAST = 2.0  # [m] before the crossing; farther away a stop at it counts as in time, as by the law
 _SURE = 1.0  # [s] in addition, before it starts again; else it would creep on bit by bit
 _PULL_AWAY = 1.5  # [m/s^2] of the ego that has waited
 _SIGHT = 60.0  # [m] before a crossing from which on people are looked at
