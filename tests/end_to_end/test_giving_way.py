@@ -46,7 +46,7 @@ def turning(priority):
     """When the ego's front comes onto the southern crossing, and who is in its way there then."""
     ego = {"route": ["west_in", "south_out"], "depart_time": 82.0, "depart_position": 70.0}
     regulation = {"priority": priority, "reference_speed": SLOWLY}
-    run = {"scenario": "junction", "seed": 11, "regulation": regulation}
+    run = {"scenario": "junction", "seed": 26, "regulation": regulation}
     run["perception"] = {"signal_plans": False}  # it stands before the red light
     result = giveway.run(run | {"ego": ego | {"travel_distance": 70.0}})
     ego = result.ego
