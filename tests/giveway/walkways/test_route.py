@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,10 +19,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles
-
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from giveway.walkways import WalkNetwork, WalkRoute
 
@@ -156,66 +153,6 @@ def test_one_waits_on_the_kerb_for_each_crossing_on_the_way(grid: WalkNetwork) -
     assert route.waypoints[wait, 0] == pytest.approx(120.0 - 3.2 - 0.4)
     assert route.waypoints[wait + 1, 0] == pytest.approx(120.0 + 3.2 + 0.4)
     np.testing.assert_allclose(route.passages[wait, :2], [1.0, 0.0], atol=1e-9)
-
-
-def kerb_of(network: WalkNetwork, route: WalkRoute, wait: int) -> tuple[np.ndarray, np.ndarray]:
-    """Where the crossing begins before which a route waits, and the direction across the road."""
-    shape = network._survey.crossings[network.signals[route.signals[wait]].crossing].shape
-    if np.argmin(np.hypot(*(shape[[0, -1]] - route.waypoints[wait]).T)) == 1:
-        shape = shape[::-1]
-    way = shape[1] - shape[0]
-    return shape[0], way / np.hypot(*way)
-
-
-def waits_of(network: WalkNetwork) -> Iterator[tuple[WalkRoute, int]]:
-    """Where people wait on the ways from one edge into another: the way, and which way-point."""
-    edges = network._survey.edges
-    for pair in itertools.permutations(edges, 2):
-        x, y = edges[pair[0]].lane.shape.mean(axis=0)
-        route = walk(network, list(pair), position=(float(x), float(y)))
-        if route.gaps == 0:
-            yield from ((route, wait) for wait in np.flatnonzero(route.signals >= 0))
-
-
-def test_one_waits_along_the_kerb_whichever_way_one_comes(grid: WalkNetwork) -> None:
-    waits = 0
-    for route, wait in waits_of(grid):
-        _, across = kerb_of(grid, route, wait)
-        np.testing.assert_allclose(route.passages[wait, :2], across, atol=1e-6)
-        waits += 1
-    assert waits > 50
-
-
-def test_who_waits_in_a_crowd_is_not_pushed_far_onto_the_roadway(grid: WalkNetwork) -> None:
-    model, closed = CrowdModel(), Surroundings(closed=np.ones(len(grid.signals), dtype=bool))
-    meeting = defaultdict(dict)  # those who come to the same place by different ways
-    for route, wait in waits_of(grid):
-        if wait > 0:
-            before = tuple(route.waypoints[wait - 1].round(1))
-            meeting[tuple(route.waypoints[wait].round(1))][before] = route, wait
-    crowds = [list(comers.values()) for comers in meeting.values() if len(comers) > 1]
-    assert len(crowds) > 20
-    for comers in crowds:
-        starts, ways = [], []
-        for route, wait in comers:
-            step = route.waypoints[wait] - route.waypoints[wait - 1]
-            for behind in (0.5, 1.2, 1.9):  # three of them, one behind the other
-                starts.append(route.waypoints[wait - 1] - behind * step / np.hypot(*step))
-                whole = route.waypoints, route.passages, route.signals
-                ways.append([array[wait:] for array in whole])
-        waypoints, passages, signals = zip(*ways, strict=True)
-        crowd = Crowd.create(
-            starts,
-            np.zeros((len(starts), 2)),
-            1.4,
-            waypoints,
-            passages=passages,
-            signals=signals,
-        )
-        kerb, across = kerb_of(grid, *comers[0])
-        for _ in range(800):
-            model.advance(crowd, Vehicles.empty(), closed)
-        assert ((crowd.position - kerb) @ across < 0.6).all()  # 1.4 m on a line along their way
 
 
 def test_no_crossing_no_signal(grid: WalkNetwork) -> None:
