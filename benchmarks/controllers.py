@@ -224,6 +224,8 @@ def main() -> None:
             "all scenes": table(options.folder, "controller", COLUMNS),
         }
     for name, lines in found.items():
+        if not lines:
+            continue  # the study lacks the scenes for it
         if options.write:
             write(name, lines)
         else:

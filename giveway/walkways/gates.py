@@ -62,8 +62,8 @@ def passages(gates: Array, start: tuple[float, float]) -> Array:
     beside it. Some gates are reached from behind their line, as round a corner to a kerb. Their
     direction of passage is the one in which people come; with the gate's own direction, they would
     have passed it before they reach it. Where people wait for a light the line stays the kerb's
-    whichever way they come: a line along their way would lead onto the roadway, and be pushed
-    along.
+    whichever way they come: a line across their way may lead onto the roadway, and others push
+    them along it.
 
     Args:
         gates: (k, 7).

@@ -40,6 +40,15 @@ class Built:
     network: WalkNetwork
 
 
+def kerb_of(network: WalkNetwork, route: WalkRoute, wait: int) -> tuple[np.ndarray, np.ndarray]:
+    """Where the crossing begins before which a route waits, and the direction across the road."""
+    shape = network._survey.crossings[network.signals[route.signals[wait]].crossing].shape
+    if np.argmin(np.hypot(*(shape[[0, -1]] - route.waypoints[wait]).T)) == 1:
+        shape = shape[::-1]
+    way = shape[1] - shape[0]
+    return shape[0], way / np.hypot(*way)
+
+
 @pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Built]:
     """Build one of NETWORKS, once."""

@@ -19,6 +19,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.giveway.walkways.conftest import kerb_of
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -322,7 +324,10 @@ def test_one_comes_to_each_line_from_before_it(
     position = on(grid, edges[0], 20.0)
     steps = np.diff(np.vstack([position, route.waypoints]), axis=0)
     before = (steps * route.passages[:, :2]).sum(axis=1) > 0.0
-    assert (before | (route.signals >= 0)).all()  # for a light one waits along the kerb
+    lit = route.signals >= 0
+    assert (before | lit).all()
+    for wait in np.flatnonzero(lit & ~before):  # round a corner to the kerb
+        np.testing.assert_allclose(route.passages[wait, :2], kerb_of(grid, route, wait)[1])
 
 
 @settings(max_examples=50)

@@ -9,20 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pedestrian_model import Crowd, CrowdModel, Surroundings, Vehicles
+from tests.giveway.walkways.conftest import kerb_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from giveway.walkways import WalkNetwork, WalkRoute
-
-
-def kerb_of(network: WalkNetwork, route: WalkRoute, wait: int) -> tuple[np.ndarray, np.ndarray]:
-    """Where the crossing begins before which a route waits, and the direction across the road."""
-    shape = network._survey.crossings[network.signals[route.signals[wait]].crossing].shape
-    if np.argmin(np.hypot(*(shape[[0, -1]] - route.waypoints[wait]).T)) == 1:
-        shape = shape[::-1]
-    way = shape[1] - shape[0]
-    return shape[0], way / np.hypot(*way)
 
 
 def waits_of(network: WalkNetwork) -> Iterator[tuple[WalkRoute, int]]:
