@@ -4,20 +4,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pedestrian_model._jit import kernel
-from pedestrian_model._routes import Line, aim
+from pedestrian_model._routes import Line, aim, is_passed
 from pedestrian_model.crowd import Crowd
 
 
 def targets(crowd: Crowd, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(k, 2) [m] the current way-points of the pedestrians ``rows`` (k,), or where on their lines.
+    """(k, 2) [m] the next way-points of the pedestrians ``rows`` (k,), or where on their lines.
 
-    Signals and standing cars do not count.
+    A line that somebody has just stepped over, which the model will note in its next step, is not
+    behind them but done with; not so one with a signal, where they may have to stop.
     """
     out = np.empty((len(rows), 2))
     _fill_targets(
         crowd.position,
         crowd.waypoints,
         crowd.waypoint_passage,
+        crowd.waypoint_signal,
         crowd.waypoint_start,
         crowd.waypoint_index,
         rows,
@@ -67,15 +69,20 @@ def _fill_targets(
     position: NDArray[np.float64],
     waypoints: NDArray[np.float64],
     passage: NDArray[np.float64],
+    signal: NDArray[np.int64],
     start: NDArray[np.int64],
     waypoint_index: NDArray[np.int64],
     rows: NDArray[np.int64],
     out: NDArray[np.float64],
 ) -> None:
-    """The nearest points of the current way-points' lines."""
+    """The nearest points of the next way-points' lines."""
     w, q = waypoints, passage
     for k in range(len(rows)):
         i = rows[k]
-        at = start[i] + waypoint_index[i]
+        x, y = position[i, 0], position[i, 1]
+        at, last = start[i] + waypoint_index[i], start[i + 1] - 1
         p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
-        out[k, 0], out[k, 1] = aim(position[i, 0], position[i, 1], p, 0.0)
+        while at < last and signal[at] < 0 and is_passed(x, y, p, 0.0):
+            at += 1
+            p = Line(w[at, 0], w[at, 1], q[at, 0], q[at, 1], q[at, 2])
+        out[k, 0], out[k, 1] = aim(x, y, p, 0.0)
