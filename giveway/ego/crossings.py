@@ -41,7 +41,8 @@ from pedestrian_model import Crowd
 _SAMPLE, _COARSE = 0.1, 2.0  # [m] between the places of the body that are looked at
 _GRAIN = 0.5  # [m] between the points of its outline, at most
 _BESIDE = 0.8  # [m] from the ego's side to the middle of somebody who is not in its way
-_BEFORE, _AFTER = 1.0, 0.5  # [s] between the ego and whoever passes its way after or before it
+_BEFORE = 1.0  # [s] between the ego and whoever passes its way before or after it
+_AFTER = 0.5  # [s] instead, behind whoever it has waited for: else it would stop for them again
 _PATIENCE = 4.5  # [s] away from the ego's way, and a little more than an encounter's 4 s
 _CLEAR = 0.3  # [m] before the crossing it stops at the latest
 _LAST = 2.0  # [m] before the crossing; farther away a stop at it counts as in time, as by the law
@@ -280,8 +281,10 @@ class Crossings:
         to_go = np.where(direction > 0.0, place.low - u, u - place.high) + aside
         to_leave = np.where(direction > 0.0, place.high - u, u - place.low) + aside
         arrives, leaves = to_go / pace, to_leave / pace
-        enters, clears = self._own_times(place, front, speed)
-        first = leaves + (_BEFORE if speed > CRAWLING else _AFTER) < enters
+        starts = speed <= CRAWLING or number == self._waits_for
+        enters, clears = self._own_times(place, front, speed, starts)
+        has_waited = number == self._next and self._place < math.inf
+        first = leaves + (_AFTER if starts or has_waited else _BEFORE) < enters
         later = arrives > max(clears + _BEFORE, _PATIENCE) + sure
         return bool((coming & (to_leave > 0.0) & ~first & ~later).any())
 
@@ -292,10 +295,12 @@ class Crossings:
             return math.inf
         return change.time
 
-    def _own_times(self, place: PathCrossing, front: float, speed: float) -> tuple[float, float]:
-        """When [s] the ego would enter the crossing and have left it, if it went on."""
+    def _own_times(
+        self, place: PathCrossing, front: float, speed: float, starts: bool
+    ) -> tuple[float, float]:
+        """When [s] the ego would enter the crossing and have left it, if it went on, or started."""
         entry, left = place.entry - front, place.exit + self._length - front
-        if speed > CRAWLING:
+        if not starts:
             return entry / speed, left / speed
         a = _PULL_AWAY
         return (
