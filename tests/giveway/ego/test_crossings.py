@@ -190,6 +190,33 @@ def test_a_wide_reach_at_the_kerb_makes_it_wait_earlier():
     assert crossings(kerb_time=1.9).stop_at(NEAR, 4.0, walker(-6.0)) < math.inf
 
 
+@pytest.mark.parametrize("beyond", [0.01, 0.1])
+def test_who_has_just_stepped_over_the_line_behind_the_kerb_costs_no_stop(beyond):
+    """The model has not noted it yet; the nearest point of the line is behind them."""
+    line, on = (22.0, SOUTHERN_KERB - 0.4), (18.0, -5.0)
+    passages = [[(0.0, -1.0, 2.0), (0.0, 0.0, 0.0)]]
+    at = [[22.3, line[1] - beyond]]
+    gone = Crowd.create(at, [[0.0, -1.4]], 1.4, [[line, on]], passages=passages)
+    assert crossings(kerb_time=2.5).stop_at(NEAR, 4.0, gone) == math.inf
+
+
+@pytest.mark.parametrize(("front", "speed"), [(LINE, 0.0), (LINE - 1.0, 0.6), (LINE - 5.0, 3.5)])
+@pytest.mark.parametrize("most", [1.5, 2.4])
+def test_who_starts_behind_somebody_is_not_stopped_for_them_again(front, speed, most):
+    """With 2.5 m/s^3 up to so many m/s^2."""
+    watched, y, acceleration = crossings(), -2.0, 0.0
+    stopped = [watched.stop_at(front, speed, walker(y)) < math.inf]
+    while front < 20.0:
+        y += 1.4 * 0.05
+        stops = watched.stop_at(front, speed, walker(y)) < math.inf
+        acceleration = -speed / 2.0 if stops else min(max(acceleration, 0.0) + 2.5 * 0.05, most)
+        front += speed * 0.05
+        speed = max(0.0, speed + acceleration * 0.05)
+        stopped.append(stops)
+    assert stopped[0]
+    assert stopped == sorted(stopped, reverse=True)  # once it may go it may go on
+
+
 @pytest.mark.parametrize(
     ("station", "speed", "stops"),
     [(28.0, 0.0, True), (31.0, 0.0, False), (28.0, 5.0, False), (15.0, 0.0, False)],
