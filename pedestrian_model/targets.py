@@ -12,7 +12,8 @@ def targets(crowd: Crowd, rows: NDArray[np.int64]) -> NDArray[np.float64]:
     """(k, 2) [m] the next way-points of the pedestrians ``rows`` (k,), or where on their lines.
 
     A line that somebody has just stepped over, which the model will note in its next step, is not
-    behind them but done with; not so one with a signal, where they may have to stop.
+    behind them but done with; not so one with a signal, where they may have to stop. Standing cars
+    do not count.
     """
     out = np.empty((len(rows), 2))
     _fill_targets(
