@@ -16,7 +16,7 @@ def test_it_lets_a_crowd_pass_and_drives_on():
 
 
 def test_it_keeps_to_the_law_of_the_road():
-    result = drive("junction", 2)
+    result = drive("junction", 3)
     assert result.summary["ending"] == "completed"
     assert {"stop line", "free"} <= set(result.ego.reason)
     assert not result.ledger.violation.any()
