@@ -22,7 +22,7 @@ from giveway.metrics import (
     proximity,
     summarise,
 )
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 if TYPE_CHECKING:
     from collections.abc import Callable

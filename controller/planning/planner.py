@@ -11,10 +11,9 @@ import numpy as np
 from controller._jit import Array
 from controller.defaults import STANDSTILL
 from controller.errors import ParameterError
-from controller.exact_solver import ExactSolver
 from controller.foresight import Foresight, Manoeuvre
-from controller.least_squares import Outcome
 from controller.model import LongitudinalModel
+from controller.pid.tuned_pid import TunedPid
 from controller.planning.following import (
     NO_PLAN,
     UNSOLVED,
@@ -26,7 +25,8 @@ from controller.planning.parameters import PlannerParameters
 from controller.planning.search import Search
 from controller.planning.smoothing import SmoothingProblem
 from controller.protocol import Decision, Observation
-from controller.tuned_pid import TunedPid
+from controller.qp.exact_solver import ExactSolver
+from controller.qp.least_squares import Outcome
 
 _SOLVED = Outcome.SOLVED  # whose class is slow to tell it
 

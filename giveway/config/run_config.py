@@ -16,20 +16,9 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
-from giveway.config.controller_sections import (
-    MpcConfig,
-    PidConfig,
-    PlannerConfig,
-    SafetyConfig,
-    TunedPidConfig,
-)
-from giveway.config.crowd import CrowdConfig
-from giveway.config.measures import MeasureConfig, read_measures
 from giveway.config.option import LANE, Section, expectation, option
-from giveway.config.perception import PerceptionConfig
 from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
-from giveway.config.regulation import RegulationConfig
-from giveway.config.sections import (
+from giveway.config.tables.basics import (
     DEFAULT_SPEED,
     EgoConfig,
     RecordConfig,
@@ -37,6 +26,17 @@ from giveway.config.sections import (
     TrafficConfig,
     VehicleConfig,
 )
+from giveway.config.tables.controllers import (
+    MpcConfig,
+    PidConfig,
+    PlannerConfig,
+    SafetyConfig,
+    TunedPidConfig,
+)
+from giveway.config.tables.crowd import CrowdConfig
+from giveway.config.tables.measures import MeasureConfig, read_measures
+from giveway.config.tables.perception import PerceptionConfig
+from giveway.config.tables.regulation import RegulationConfig
 from giveway.plug_ins.finding import is_fmu, shown
 
 PAPER_STEP = 0.05

@@ -25,8 +25,8 @@ from controller import (
     TunedPidParameters,
 )
 from giveway.config import EgoRunConfig
-from giveway.config.controller_sections import PlannerConfig
 from giveway.config.option import LANE, Section
+from giveway.config.tables.controllers import PlannerConfig
 from giveway.ego.plug_in import plugged_in
 from giveway.ego.vehicle import model_margin
 from giveway.errors import ControlError

@@ -28,7 +28,7 @@ from giveway.figures.style import (
     quiet_grid,
     styled,
 )
-from giveway.records.tracks import EgoTrack
+from giveway.run_data.tracks import EgoTrack
 
 VEHICLE: dict[str, Any] = {"color": GREY, "linewidth": 1.4, "label": "to a vehicle"}
 STOP: dict[str, Any] = {"color": PURPLE, "linewidth": 1.8, "label": "to its next stop"}

@@ -16,7 +16,7 @@ from giveway.metrics.conflicts import centre_poses, check_records, proximity
 from giveway.metrics.groups import PedestrianGroups
 from giveway.metrics.slowing import slowing_begins
 from giveway.metrics.standing import stops
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 PASSING = 5.0
 """[m] from the front or the rear bumper: who crosses its line there walks round the car."""

@@ -16,9 +16,9 @@ from giveway.metrics.severity import CRITICAL_PET
 from giveway.metrics.slowing import slowed
 from giveway.metrics.standing import waiting_times
 from giveway.metrics.vehicles import VehicleContact
-from giveway.records.columns import Quantity, columns_of
-from giveway.records.rows import STOP_SPEED
-from giveway.records.tracks import EgoTrack
+from giveway.run_data.columns import Quantity, columns_of
+from giveway.run_data.rows import STOP_SPEED
+from giveway.run_data.tracks import EgoTrack
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -17,8 +17,8 @@ from zipfile import BadZipFile
 import numpy as np
 
 from giveway.errors import ResultsError
-from giveway.records.tracks import EgoTrack
 from giveway.reports.examples import Drive
+from giveway.run_data.tracks import EgoTrack
 from giveway.studies.folder import StudyFolder
 
 REPLAYS = "replays"

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from giveway.geometry.kernel import Array
+from giveway.journal.recorded import RecordedEgo
 from giveway.metrics.law import Event, count
-from giveway.recording.recorded import RecordedEgo
-from giveway.records.columns import LEDGER_COLUMNS, PEOPLE_COLUMNS, SIGNAL_COLUMNS
-from giveway.records.tracks import BackgroundTrack, PeopleTrack, SignalTrack
-from giveway.records.way import EgoWay
+from giveway.run_data.columns import LEDGER_COLUMNS, PEOPLE_COLUMNS, SIGNAL_COLUMNS
+from giveway.run_data.tracks import BackgroundTrack, PeopleTrack, SignalTrack
+from giveway.run_data.way import EgoWay
 
 if TYPE_CHECKING:
     import pandas as pd

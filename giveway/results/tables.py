@@ -1,4 +1,4 @@
-"""The run's tables as pandas frames, columns as in :mod:`giveway.records.columns`."""
+"""The run's tables as pandas frames, columns as in :mod:`giveway.run_data.columns`."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -7,14 +7,14 @@ import numpy as np
 
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import headings_to_angles
-from giveway.records.columns import (
+from giveway.run_data.columns import (
     EGO_COLUMNS,
     PREDICTION_COLUMNS,
     TIMING_COLUMNS,
     TRAJECTORY_COLUMNS,
 )
-from giveway.records.outputs import Output
-from giveway.records.tracks import (
+from giveway.run_data.outputs import Output
+from giveway.run_data.tracks import (
     BackgroundTrack,
     CrowdTrack,
     EgoTrack,

@@ -8,7 +8,7 @@ from typing import get_args
 import pytest
 
 from fmus import VehicleProfile, make_profile
-from giveway.config.layers import options
+from giveway.config.files.layers import options
 from giveway.metrics import (
     DELAY_FIELDS,
     DELAY_SUMMARY_FIELDS,
@@ -17,7 +17,7 @@ from giveway.metrics import (
     WALK_SUMMARY_FIELDS,
 )
 from giveway.metrics.law import LAW_FIELDS
-from giveway.records.columns import (
+from giveway.run_data.columns import (
     EGO_COLUMNS,
     LEDGER_COLUMNS,
     PEOPLE_COLUMNS,

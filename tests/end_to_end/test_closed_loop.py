@@ -16,7 +16,7 @@ from controller import (
     SpeedController,
 )
 from giveway.api import RunResult
-from giveway.records.progress import Ending, Progress
+from giveway.run_data.progress import Ending, Progress
 from pedestrian_model import SIM, Crowd, CrowdModel, Predictor, Vehicles
 
 Run = Callable[..., RunResult]

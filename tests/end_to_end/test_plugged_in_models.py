@@ -13,10 +13,10 @@ from support.plug_ins import printed
 
 import giveway
 from giveway.config import RunConfig
-from giveway.config.layers import dump_toml, read_toml
-from giveway.config.loading import load
+from giveway.config.files.layers import dump_toml, read_toml
+from giveway.config.files.loading import load
 from giveway.cosimulation import twin
-from giveway.cosimulation.followed import Beginning
+from giveway.cosimulation.counterfactual.follow_up import Beginning
 from giveway.errors import ConfigError, ControlError, CrowdError
 from giveway.studies.folder import StudyFolder
 from giveway.studies.rerun import checked_run

@@ -15,14 +15,14 @@ import pandas as pd
 import pytest
 
 from giveway.api import run_checked
-from giveway.config.loading import as_layer, load
+from giveway.config.files.loading import as_layer, load
 from giveway.cosimulation.preflight import preflight
 from giveway.errors import ResultsError
+from giveway.journal.journal import MAGIC, RECORD, Kind
+from giveway.journal.recorded import RecordedRows
 from giveway.processes.heartbeat import Heartbeat
 from giveway.processes.locks import locked
 from giveway.processes.supervisor import Verdict
-from giveway.recording.journal import MAGIC, RECORD, Kind
-from giveway.recording.recorded import RecordedRows
 from giveway.recovery import recover, recover_left
 
 MANY = 600

@@ -17,14 +17,14 @@ import numpy as np
 
 from giveway.geometry.bodies import VehicleShape
 from giveway.metrics.law import Drive
-from giveway.records.tracks import (
+from giveway.run_data.tracks import (
     BackgroundTrack,
     CrowdTrack,
     EgoTrack,
     PeopleTrack,
     SignalTrack,
 )
-from giveway.records.way import CrossingOnWay, EgoWay
+from giveway.run_data.way import CrossingOnWay, EgoWay
 
 DT = 0.05
 LANE = -1.75

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.records.tracks import CrowdTrack, EgoTrack
+from giveway.run_data.tracks import CrowdTrack, EgoTrack
 
 DT = 0.05  # [s]
 BODY_RADIUS = 0.27  # [m]

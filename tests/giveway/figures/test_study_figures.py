@@ -27,7 +27,7 @@ from giveway.figures.study_rows import (
 )
 from giveway.figures.study_tradeoff import TradeOffPoint, tradeoff_figure
 from giveway.figures.style import BLUE, GREY, ORANGE
-from giveway.records.writing import digits_for, number
+from giveway.run_data.writing import digits_for, number
 
 NAN = math.nan
 TIME = DifferenceColumn("general", "completion time", "s")

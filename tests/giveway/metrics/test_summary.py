@@ -22,7 +22,7 @@ from giveway.metrics import (
     summarise,
     waiting_times,
 )
-from giveway.records.tracks import CrowdTrack
+from giveway.run_data.tracks import CrowdTrack
 
 CAR = VehicleShape(length=5.0, width=2.0)
 R = 0.27

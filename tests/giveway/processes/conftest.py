@@ -11,7 +11,7 @@ CHILD = """
 import atexit, ctypes, os, signal, sys, time
 from giveway.processes.heartbeat import Phase
 from giveway.processes.interrupts import DeferredInterrupt
-from giveway.recording.journal import Journal
+from giveway.journal.journal import Journal
 from giveway.processes.child import Supervised, take_journal_folder
 
 def step_sumo():

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from giveway.journal.journal_reader import read_journal
 from giveway.processes.heartbeat import Phase
 from giveway.processes.supervisor import Verdict, supervise
-from giveway.recording.journal_reader import read_journal
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the deaths here are Unix's")
 
@@ -113,7 +113,7 @@ SUMO_RUN = """
 import os
 import libsumo
 from giveway.processes.heartbeat import Phase
-from giveway.recording.journal import Journal
+from giveway.journal.journal import Journal
 from giveway.processes.child import Supervised, take_journal_folder
 from sumo_scenarios import find
 
@@ -161,7 +161,7 @@ def test_sumo_killed_in_the_middle_of_a_simulation(tmp_path: Path, journal: Path
 SUMO_CRASH = """
 import libsumo
 from giveway.processes.heartbeat import Phase
-from giveway.recording.journal import Journal
+from giveway.journal.journal import Journal
 from giveway.processes.child import Supervised, take_journal_folder
 from sumo_scenarios import find
 
