@@ -28,7 +28,8 @@ from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, Pose
 from giveway.geometry.slope import Slope
 from giveway.run_data.outputs import ROAD_GRADE
-from giveway.run_data.rows import STOP_SPEED, EgoRow
+from giveway.run_data.rows import STOP_SPEED
+from giveway.run_data.tracks import EgoRow
 from pedestrian_model import Crowd, Surroundings
 
 _BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
@@ -327,21 +328,23 @@ class Ego:
         front = self.front
         origin = front + self._origin
         return EgoRow(
-            time,
-            self.vehicle.position,
-            self.pose,
-            self.vehicle.speed,
-            self.vehicle.acceleration,
-            decision.force,
-            seen.closest - origin,
-            decision.reference_speed,
-            seen.leader.station - origin,
-            seen.stop - front,
-            decision.acting,
-            decision.reason,
-            decision.status,
-            self._waits_for(seen, decision),
-            decision.iterations,
+            time=time,
+            position=self.vehicle.position,
+            front_x=self.pose.x,
+            front_y=self.pose.y,
+            heading=self.pose.heading,
+            speed=self.vehicle.speed,
+            acceleration=self.vehicle.acceleration,
+            force=decision.force,
+            controller=decision.acting,
+            reason=decision.reason,
+            solver_status=decision.status,
+            solver_iterations=decision.iterations,
+            gap=seen.closest - origin,
+            reference_speed=decision.reference_speed,
+            vehicle_gap=seen.leader.station - origin,
+            stop_gap=seen.stop - front,
+            waits_for=self._waits_for(seen, decision),
         )
 
     def _waits_for(self, seen: Seen, decision: Decision) -> str:

@@ -20,6 +20,7 @@ import contextlib
 import enum
 import json
 import struct
+from collections.abc import Sequence
 from io import FileIO
 from pathlib import Path
 from typing import Any
@@ -30,10 +31,12 @@ from numpy.typing import NDArray
 from giveway.processes.heartbeat import Heartbeat
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.void]
+"""(n,) rows of float64 whose columns have names: ``rows["speed"]`` is one of them."""
 
 ROWS_FILE = "rows"
 META_FILE = "meta.json"
-MAGIC = b"giveway2"  # another number for other tables: what is written is read by its own version
+MAGIC = b"giveway3"  # another number for another format; which columns a table has, it says itself
 RECORD = struct.Struct("=IIQ")  # kind, table, bytes of payload; 16 bytes
 _FIRST_ROWS = 1024  # a table's first size; it doubles from there
 
@@ -41,7 +44,7 @@ _FIRST_ROWS = 1024  # a table's first size; it doubles from there
 class Kind(enum.IntEnum):
     """What a record holds."""
 
-    ROWS_TABLE = 1  # payload: JSON, name and columns
+    ROWS_TABLE = 1  # payload: JSON, name and names of columns
     NAME_TABLE = 2  # payload: JSON, name
     ROWS = 3  # payload: float64
     NAMES = 4  # payload: JSON, the new names in order
@@ -51,21 +54,27 @@ class Kind(enum.IntEnum):
 _COMMIT = RECORD.pack(Kind.COMMIT, 0, 0)
 
 
+def row_type(columns: Sequence[str]) -> np.dtype[np.void]:
+    """Return the type of a row of float64 with these columns."""
+    return np.dtype([(name, np.float64) for name in columns])
+
+
 class JournalRows:
     """A table of float64 that grows by doubling.
 
     Args:
-        columns: of the table.
+        columns: Names of the columns, in order.
         number: of the table in its journal.
     """
 
-    def __init__(self, columns: int, number: int = 0) -> None:
+    def __init__(self, columns: Sequence[str], number: int = 0) -> None:
         self._number = number
         self._count = 0
         self._journalled = 0
-        self._row_bytes = 8 * columns
-        self._fill = struct.Struct(f"={columns}d").pack_into
-        self._hold(np.empty((_FIRST_ROWS, columns)))
+        self._type = row_type(columns)
+        self._row_bytes = self._type.itemsize
+        self._fill = struct.Struct(f"={len(columns)}d").pack_into
+        self._hold(np.empty((_FIRST_ROWS, len(columns))))
 
     def _hold(self, buffer: Array) -> None:
         self._buffer, self._room = buffer, len(buffer)
@@ -97,9 +106,9 @@ class JournalRows:
         self._count -= rows
 
     @property
-    def filled(self) -> Array:
-        """The rows filled so far (a view)."""
-        return self._buffer[: self._count]
+    def filled(self) -> Rows:
+        """The rows filled so far (a view), with columns by name."""
+        return self._buffer[: self._count].view(self._type)[:, 0]
 
     def append_new(self, records: list[bytes | memoryview]) -> None:
         """Append what the journal does not have yet."""
@@ -169,10 +178,10 @@ class Journal:
             self.heartbeat = Heartbeat(None)
             self._give_up(error)
 
-    def rows(self, name: str, columns: int) -> JournalRows:
-        """A new table of rows."""
+    def rows(self, name: str, columns: Sequence[str]) -> JournalRows:
+        """Add a table of rows with these columns."""
         rows = JournalRows(columns, len(self._rows))
-        declaration = {"name": name, "columns": columns}
+        declaration = {"name": name, "columns": list(columns)}
         self._records += _json_record(Kind.ROWS_TABLE, len(self._rows), declaration)
         self._rows.append(rows)
         return rows

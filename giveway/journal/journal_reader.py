@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from giveway.errors import ResultsError
-from giveway.journal.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Array, Kind
+from giveway.journal.journal import MAGIC, META_FILE, RECORD, ROWS_FILE, Kind, Rows, row_type
 from giveway.processes.heartbeat import Heartbeat, Pulse
 
 
@@ -19,14 +19,14 @@ class JournalContents:
 
     Attributes:
         meta: what the rows belong to; empty if the run ended before it was written.
-        tables: (n, columns) each, by name.
+        tables: (n,) rows each, by name; so are the columns of a row.
         names: by name, each by index.
         commits: whole steps found.
         pulse: where the run stood.
     """
 
     meta: dict[str, Any]
-    tables: dict[str, Array]
+    tables: dict[str, Rows]
     names: dict[str, tuple[str, ...]]
     commits: int
     pulse: Pulse
@@ -94,7 +94,7 @@ class _Reader:
     """Puts the tables together again."""
 
     def __init__(self) -> None:
-        self._columns: list[tuple[str, int]] = []
+        self._columns: list[tuple[str, list[str]]] = []
         self._blocks: list[list[memoryview]] = []
         self._names: list[tuple[str, list[str]]] = []
         self._commits = 0
@@ -114,9 +114,9 @@ class _Reader:
             else:
                 self._names[table][1].extend(value)
 
-    def contents(self) -> tuple[dict[str, Array], dict[str, tuple[str, ...]], int]:
+    def contents(self) -> tuple[dict[str, Rows], dict[str, tuple[str, ...]], int]:
         tables = {
-            name: np.frombuffer(bytearray().join(blocks), np.float64).reshape(-1, columns)
+            name: np.frombuffer(bytearray().join(blocks), row_type(columns))
             for (name, columns), blocks in zip(self._columns, self._blocks, strict=True)
         }
         return tables, {name: tuple(names) for name, names in self._names}, self._commits

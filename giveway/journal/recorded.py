@@ -1,14 +1,15 @@
 """The rows of a run, as a recorder or a journal hands them over, and as tracks."""
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from giveway.geometry.bodies import VehicleShape
-from giveway.journal.journal import Array
+from giveway.journal.journal import Array, Rows
+from giveway.journal.layout import EGO_COUNTS, EGO_NUMBERS, EGO_TEXTS, ROWS
 from giveway.run_data.outputs import Output
 from giveway.run_data.rows import LEDGER
 from giveway.run_data.tracks import (
@@ -43,28 +44,28 @@ class RecordedRows:
     """Recorded rows, from a recorder or from the journal of a run that died.
 
     Args:
-        rows: by table, as :class:`Recorder` lays them out.
+        rows: by table, with the columns of :data:`giveway.journal.layout.ROWS`.
         names: what their indices mean.
     """
 
-    def __init__(self, rows: dict[str, Array], names: dict[str, tuple[str, ...]]) -> None:
+    def __init__(self, rows: dict[str, Rows], names: dict[str, tuple[str, ...]]) -> None:
         self._rows = rows
         self._names = names
         instants = len(rows["clock"])  # rows of an instant without a row here are left out
-        self.time = np.ascontiguousarray(rows["clock"][:, 0])  # (T,) [s]
-        self._ego = rows["ego"][rows["ego"][:, 0] < instants]
+        self.time = np.ascontiguousarray(rows["clock"]["time"])  # (T,) [s]
+        self._ego = rows["ego"][rows["ego"]["step"] < instants]
         self._background: BackgroundTrack | None = None
 
     @property
     def ledger(self) -> dict[str, int]:
         """How many pedestrians were where at the latest of SUMO's instants."""
         rows = self._rows["ledger"]
-        return {name: int(rows[-1, i]) for i, name in enumerate(LEDGER)} if len(rows) else {}
+        return {name: int(rows[name][-1]) for name in LEDGER} if len(rows) else {}
 
     def egos(self) -> Iterator[RecordedEgo]:
         """Every ego that has rows, in the order of departure."""
         for number, length, width, goal in self._rows["drives"]:
-            rows = self._ego[self._ego[:, 1] == number]
+            rows = self._ego[self._ego["ego"] == number]
             if len(rows):
                 name = self._names["egos"][int(number)]
                 shape = VehicleShape(float(length), float(width))
@@ -72,50 +73,49 @@ class RecordedRows:
                     name,
                     shape,
                     float(goal),
-                    int(rows[0, 0]),
+                    int(rows["step"][0]),
                     self._track(rows),
                     self._predictions_of(number),
                     self._outputs_of(name, rows),
                     self._hasty_of(number),
                 )
 
-    def _track(self, rows: Array) -> EgoTrack:
-        columns = [np.ascontiguousarray(column) for column in rows.T]
-        word = self._words
-        *texts, iterations = columns[-5:]
-        words: Sequence[Any] = [word(text) for text in texts]
-        numbers: Sequence[Any] = columns[2:-5]  # in EgoTrack's order
-        return EgoTrack(*numbers, *words, _indices(iterations))  # type: ignore[call-arg]
+    def _track(self, rows: Rows) -> EgoTrack:
+        columns: dict[str, Any] = {
+            name: _indices(rows[name]) if name in EGO_COUNTS else np.ascontiguousarray(rows[name])
+            for name in EGO_NUMBERS
+        }
+        texts = {name: self._words(rows[name]) for name in EGO_TEXTS}
+        return EgoTrack(**columns | texts)
 
     def _predictions_of(self, number: float) -> PredictionTrack:
         rows = self._rows["predictions"]
-        rows = rows[(rows[:, 0] < len(self.time)) & (rows[:, 1] == number)]
-        step, _, pedestrian, look_ahead, x, y = rows.T
+        rows = rows[(rows["step"] < len(self.time)) & (rows["ego"] == number)]
         return PredictionTrack(
-            time=self.time[_indices(step)],
-            pedestrian=_indices(pedestrian),
-            look_ahead=look_ahead,
-            x=x,
-            y=y,
+            time=self.time[_indices(rows["step"])],
+            pedestrian=_indices(rows["pedestrian"]),
+            look_ahead=rows["look_ahead"],
+            x=rows["x"],
+            y=rows["y"],
         )
 
-    def _outputs_of(self, ego: str, rows: Array) -> tuple[Output, ...]:
+    def _outputs_of(self, ego: str, rows: Rows) -> tuple[Output, ...]:
         """What the profile of an ego's FMU wanted to have recorded, at each of its instants."""
         recorded, found = self._rows["outputs"], list[Output]()
         for key, text in enumerate(self._names["outputs"]):
             whose, name, unit, description = json.loads(text)
             if whose == ego:
-                own = recorded[recorded[:, 1] == key]
+                own = recorded[recorded["output"] == key]
                 values = np.full(len(self.time), np.nan)
-                known = own[own[:, 0] < len(values)]
-                values[_indices(known[:, 0])] = known[:, 2]
-                found.append(Output(name, unit, description, values[_indices(rows[:, 0])]))
+                known = own[own["step"] < len(values)]
+                values[_indices(known["step"])] = known["value"]
+                found.append(Output(name, unit, description, values[_indices(rows["step"])]))
         return tuple(found)
 
     def _hasty_of(self, number: float) -> NDArray[np.int64]:
         """Who set out for the road more suddenly than an ego's safety layer assumes."""
         rows = self._rows["hasty"]
-        return np.unique(_indices(rows[rows[:, 0] == number, 1]))
+        return np.unique(_indices(rows["pedestrian"][rows["ego"] == number]))
 
     def _words(self, indices: Array) -> NDArray[np.str_]:
         return np.array(self._names["words"], dtype=np.str_)[_indices(indices)]
@@ -123,17 +123,13 @@ class RecordedRows:
     def crowd_track(self) -> CrowdTrack:
         """The crowd's rows as arrays."""
         rows = self._rows["crowd"]
-        rows = rows[: np.searchsorted(rows[:, 0], len(self.time))]  # no copy: it may be most of RAM
-        step, pedestrian, x, y, vx, vy = rows.T
+        rows = rows[: np.searchsorted(rows["step"], len(self.time))]  # no copy: RAM
         told = {name: about for name, *about in map(json.loads, self._names.get("traits", ()))}
         traits = [told.get(name, ("", "")) for name in self._names["pedestrians"]]
         return CrowdTrack(
-            step=_indices(step),
-            pedestrian=_indices(pedestrian),
-            x=np.ascontiguousarray(x),
-            y=np.ascontiguousarray(y),
-            vx=np.ascontiguousarray(vx),
-            vy=np.ascontiguousarray(vy),
+            step=_indices(rows["step"]),
+            pedestrian=_indices(rows["pedestrian"]),
+            **{name: np.ascontiguousarray(rows[name]) for name in ("x", "y", "vx", "vy")},
             ids=self._names["pedestrians"],
             kinds=tuple(kind for kind, _ in traits),
             groups=tuple(group for _, group in traits),
@@ -142,11 +138,12 @@ class RecordedRows:
     def background_track(self) -> BackgroundTrack:
         """The background vehicles' rows as arrays, the same for the run and each ego."""
         if self._background is None:
-            columns = [np.ascontiguousarray(column) for column in self._rows["background"].T]
-            names = np.array(self._names["vehicles"], dtype=np.str_)
-            time, vehicle, kind, *numbers = columns
-            who, what = names[_indices(vehicle)], names[_indices(kind)]
-            self._background = BackgroundTrack(time, who, what, *numbers)
+            rows, names = self._rows["background"], np.array(self._names["vehicles"], dtype=np.str_)
+            columns: dict[str, Any] = {
+                name: np.ascontiguousarray(rows[name]) for name in ROWS["background"]
+            }
+            texts = {name: names[_indices(columns[name])] for name in ("id", "type")}
+            self._background = BackgroundTrack(**columns | texts)
         return self._background
 
     def ways(self) -> dict[str, EgoWay]:
@@ -156,24 +153,24 @@ class RecordedRows:
 
     def signal_track(self) -> SignalTrack:
         """The rows of traffic lights as arrays."""
-        time, system, state = self._rows["signals"].T
-        return SignalTrack(time.copy(), self._words(system), self._words(state))
+        rows = self._rows["signals"]
+        system, state = self._words(rows["system"]), self._words(rows["state"])
+        return SignalTrack(time=rows["time"].copy(), system=system, state=state)
 
     def people_track(self) -> PeopleTrack:
         """The rows of where people mean to walk as arrays."""
         rows = self._rows["people"]
-        step, pedestrian, desired_speed, x, y = rows[rows[:, 0] < len(self.time)].T
+        rows = rows[rows["step"] < len(self.time)]
         return PeopleTrack(
-            step.astype(np.int64),
-            pedestrian.astype(np.int64),
-            desired_speed.copy(),
-            x.copy(),
-            y.copy(),
+            step=rows["step"].astype(np.int64),
+            pedestrian=rows["pedestrian"].astype(np.int64),
+            **{name: rows[name].copy() for name in ("desired_speed", "x", "y")},
         )
 
     def timings(self) -> Timings:
         """The computing times as an array."""
-        return Timings(self._rows["timing"].copy())
+        rows = self._rows["timing"]
+        return Timings(np.column_stack([rows[name] for name in Timings.NAMES]))
 
 
 def _indices(numbers: Array) -> NDArray[np.int64]:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,13 +10,15 @@ from numpy.typing import NDArray
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array, kernel
 from giveway.journal.journal import Journal
+from giveway.journal.layout import EGO_NUMBERS, EGO_TEXTS, NAMES, ROWS
 from giveway.journal.recorded import RecordedRows
-from giveway.run_data.rows import EGO_NUMBERS, LEDGER, EgoRow
-from giveway.run_data.tracks import Timings
+from giveway.run_data.rows import LEDGER
+from giveway.run_data.tracks import EgoRow
 from giveway.run_data.way import EgoWay
 from giveway.sumo.background import BackgroundVehicles
 
 Indices = NDArray[np.int64]
+_numbers, _texts = attrgetter(*EGO_NUMBERS), attrgetter(*EGO_TEXTS)  # of a row, by name
 
 
 class Recorder:
@@ -27,33 +30,17 @@ class Recorder:
 
     def __init__(self, journal: Journal | None = None) -> None:
         self.journal = journal or Journal(None)
-        rows, names = self.journal.rows, self.journal.names
-        self._clock = rows("clock", 1)  # time
-        self._ego = rows("ego", 2 + EGO_NUMBERS + 5)  # instant, ego, numbers, words, iterations
-        self._crowd = rows("crowd", 6)  # instant, pedestrian, x, y, vx, vy
-        self._background = rows("background", 9)  # time, vehicle, type, x, y, heading, ...
-        self._timings = rows("timing", len(Timings.NAMES))
-        self._drives = rows("drives", 4)  # ego, length, width, goal
-        self._ledger = rows("ledger", len(LEDGER))
-        self._predictions = rows("predictions", 6)  # instant, ego, pedestrian, look-ahead, x, y
-        self._signals = rows("signals", 3)  # time, system, state
-        self._people = rows("people", 5)  # instant, pedestrian, desired speed, x, y
-        self._hasty = rows("hasty", 2)  # ego, pedestrian
-        self._outputs = rows("outputs", 3)  # instant, which of them, value
-        self._ways = names("ways")  # as JSON
-        self._recorded = names("outputs")  # ego, name, unit, description, as JSON
-        self._words = names("words")
-        self._egos = names("egos")
-        self._pedestrians = names("pedestrians")
-        self._traits = names("traits")  # pedestrian, kind, group, as JSON
-        self._vehicles = names("vehicles")
+        self._rows = {name: self.journal.rows(name, columns) for name, columns in ROWS.items()}
+        self._names = {name: self.journal.names(name) for name in NAMES}
+        self._word = self._names["words"].index
+        self._ego, self._crowd = self._rows["ego"], self._rows["crowd"]
         self._keys: dict[tuple[str, str], int] = {}
         self._counts: Mapping[str, int] = {}
         self._steps = 0
 
     def instant(self, time: float) -> None:
         """Begin the next control instant, at ``time`` [s]."""
-        self._clock.add(time)
+        self._rows["clock"].add(time)
         self._steps += 1
 
     def name_pedestrians(
@@ -66,13 +53,13 @@ class Recorder:
             traits: the kind and the group of those who have any.
         """
         for name in ids:
-            self._pedestrians.index(name)
+            self._names["pedestrians"].index(name)
             if traits and name in traits:
-                self._traits.index(json.dumps([name, *traits[name]]))
+                self._names["traits"].index(json.dumps([name, *traits[name]]))
 
     def drive(self, ego_id: str, shape: VehicleShape, goal: float) -> None:
         """Note an ego that departs: its body and the distance [m] it is to drive."""
-        self._drives.add(self._egos.index(ego_id), shape.length, shape.width, goal)
+        self._rows["drives"].add(self._names["egos"].index(ego_id), shape.length, shape.width, goal)
 
     def outputs(
         self, ego_id: str, record: Sequence[tuple[str, str, str]], values: Sequence[float]
@@ -84,21 +71,21 @@ class Recorder:
             record: name, unit and description of each variable.
             values: of them.
         """
-        block = self._outputs.block(len(record))
+        block = self._rows["outputs"].block(len(record))
         for row, (about, value) in enumerate(zip(record, values, strict=True)):
             key = self._keys.get((ego_id, about[0]))
             if key is None:
-                key = self._recorded.index(json.dumps([ego_id, *about]))
+                key = self._names["outputs"].index(json.dumps([ego_id, *about]))
                 self._keys[ego_id, about[0]] = key
             block[row] = self._steps - 1, key, value
 
     def way(self, way: EgoWay) -> None:
         """Note what the law of the road speaks of on the way of an ego that departs."""
-        self._ways.index(way.to_json())
+        self._names["ways"].index(way.to_json())
 
     def signal(self, time: float, system: str, state: str) -> None:
         """Record the state that a traffic light has from ``time`` [s] on."""
-        self._signals.add(time, self._words.index(system), self._words.index(state))
+        self._rows["signals"].add(time, self._word(system), self._word(state))
 
     def walk(self, pedestrian: int, desired_speed: float, places: Array) -> None:
         """Record where a pedestrian means to walk from the present instant on.
@@ -108,7 +95,7 @@ class Recorder:
             desired_speed: [m/s].
             places: (k, 2) [m] where it is and its way-points.
         """
-        block = self._people.block(len(places))
+        block = self._rows["people"].block(len(places))
         block[:, 0] = self._steps - 1
         block[:, 1] = pedestrian
         block[:, 2] = desired_speed
@@ -118,29 +105,21 @@ class Recorder:
         """Note how many pedestrians are where, if that has changed: the latest row counts."""
         if counts != self._counts:
             self._counts = counts
-            self._ledger.add(*(counts[name] for name in LEDGER))
+            self._rows["ledger"].add(*(counts[name] for name in LEDGER))
 
     def ego(self, ego_id: str, row: EgoRow) -> None:
         """Record an ego at the present control instant."""
-        word = self._words.index
         self._ego.add(
             self._steps - 1,
-            self._egos.index(ego_id),
-            row[0],
-            row[1],
-            *row[2],
-            *row[3:10],
-            word(row.acting),
-            word(row.reason),
-            word(row.status),
-            word(row.waits_for),
-            row.iterations,
+            self._names["egos"].index(ego_id),
+            *_numbers(row),
+            *map(self._word, _texts(row)),
         )
 
     def hasty(self, ego_id: str, pedestrians: Indices) -> None:
         """Note who set out for the road more suddenly than an ego's safety layer assumes."""
-        block = self._hasty.block(len(pedestrians))
-        block[:, 0], block[:, 1] = self._egos.index(ego_id), pedestrians
+        block = self._rows["hasty"].block(len(pedestrians))
+        block[:, 0], block[:, 1] = self._names["egos"].index(ego_id), pedestrians
 
     def crowd(
         self, present: Indices, position: Array, velocity: Array, egos: Array, within: float
@@ -169,9 +148,9 @@ class Recorder:
             look_ahead: (m,) [s].
             positions: (m, n, 2) [m] then.
         """
-        block = self._predictions.block(look_ahead.size * pedestrians.size)
+        block = self._rows["predictions"].block(look_ahead.size * pedestrians.size)
         block[:, 0] = self._steps - 1
-        block[:, 1] = self._egos.index(ego_id)
+        block[:, 1] = self._names["egos"].index(ego_id)
         block[:, 2] = np.tile(pedestrians, look_ahead.size)
         block[:, 3] = np.repeat(look_ahead, pedestrians.size)
         block[:, 4:] = positions.reshape(-1, 2)
@@ -186,8 +165,8 @@ class Recorder:
         wanted = np.flatnonzero(near)
         if not len(wanted):
             return
-        index = self._vehicles.index
-        block = self._background.block(len(wanted))
+        index = self._names["vehicles"].index
+        block = self._rows["background"].block(len(wanted))
         block[:, 0] = time
         block[:, 1] = [index(vehicles.ids[i]) for i in wanted]
         block[:, 2] = [index(vehicles.types[i]) for i in wanted]
@@ -196,34 +175,13 @@ class Recorder:
 
     def timing(self, *seconds: float) -> None:
         """Record the computing times of one control step, in the order of ``Timings.NAMES``."""
-        self._timings.add(*seconds)
+        self._rows["timing"].add(*seconds)
 
     def rows(self) -> RecordedRows:
         """Everything recorded so far."""
         return RecordedRows(
-            {
-                "clock": self._clock.filled,
-                "ego": self._ego.filled,
-                "crowd": self._crowd.filled,
-                "background": self._background.filled,
-                "timing": self._timings.filled,
-                "drives": self._drives.filled,
-                "ledger": self._ledger.filled,
-                "predictions": self._predictions.filled,
-                "signals": self._signals.filled,
-                "people": self._people.filled,
-                "hasty": self._hasty.filled,
-                "outputs": self._outputs.filled,
-            },
-            {
-                "outputs": self._recorded.names,
-                "ways": self._ways.names,
-                "words": self._words.names,
-                "egos": self._egos.names,
-                "pedestrians": self._pedestrians.names,
-                "traits": self._traits.names,
-                "vehicles": self._vehicles.names,
-            },
+            {name: rows.filled for name, rows in self._rows.items()},
+            {name: names.names for name, names in self._names.items()},
         )
 
 

@@ -19,7 +19,8 @@ REACH = 30.0
 """[m] from an ego's way: who comes no closer is not looked at."""
 _LOOKS = 0.5  # [s] between two looks at who comes close
 _SWAY = 0.1  # [m] who stands may sway by less, which is no way
-_COLUMNS = 8  # instant, pedestrian, x, y, vx, vy, remaining, walked
+_NUMBERS = ("x", "y", "vx", "vy", "remaining", "walked")
+_COLUMNS = ("step", "pedestrian", *_NUMBERS)  # as the kernel fills them
 
 
 class WalkLog:
@@ -116,18 +117,12 @@ class WalkLog:
     @property
     def track(self) -> WalkTrack:
         """Everything noted so far."""
-        columns = [np.ascontiguousarray(column) for column in self._rows.filled.T]
-        step, pedestrian, x, y, vx, vy, remaining, walked = columns
+        rows = self._rows.filled
         arrivals = np.array(self._arrivals, dtype=np.int64).reshape(-1, 2)
         return WalkTrack(
-            step=step.astype(np.int64),
-            pedestrian=pedestrian.astype(np.int64),
-            x=x,
-            y=y,
-            vx=vx,
-            vy=vy,
-            remaining=remaining,
-            walked=walked,
+            step=rows["step"].astype(np.int64),
+            pedestrian=rows["pedestrian"].astype(np.int64),
+            **{name: np.ascontiguousarray(rows[name]) for name in _NUMBERS},
             arrival_step=arrivals[:, 0],
             arrival_pedestrian=arrivals[:, 1],
             desired_speed=self._memory[:, 3].copy(),

@@ -204,9 +204,9 @@ def summarise(
         rms_jerk=float(np.sqrt(np.mean(jerk**2))) if jerk.size else np.nan,
         peak_jerk=float(np.abs(jerk).max()) if jerk.size else np.nan,
         mpc_feasibility_rate=(
-            float(np.mean(ego.acting == "mpc")) if controller in _OPTIMISERS else np.nan
+            float(np.mean(ego.controller == "mpc")) if controller in _OPTIMISERS else np.nan
         ),
-        safety_share=float(np.mean(ego.acting == SAFETY)),
+        safety_share=float(np.mean(ego.controller == SAFETY)),
         minimum_gap=_extreme(ego.gap, np.min),
         share_below_safe_distance=float(np.mean(ego.gap < safe_distance)),
         minimum_clearance=_extreme(clearances, np.min),

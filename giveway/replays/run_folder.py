@@ -16,13 +16,13 @@ from giveway.errors import ConfigError, ResultsError
 from giveway.geometry.kernel import Array
 from giveway.metrics.pedestrians import PEDESTRIAN_FIELDS
 from giveway.run_data.columns import (
-    EGO_COLUMNS,
     PREDICTION_COLUMNS,
     SIGNAL_COLUMNS,
     TRAJECTORY_COLUMNS,
     Column,
 )
 from giveway.run_data.scene import Scene
+from giveway.run_data.tracks import EGO_COLUMNS
 
 PREDICTIONS = "predictions.csv"
 _ALWAYS = frozenset({"time", "look_ahead", "x", "y", "angle", "speed", "position"})  # in every row

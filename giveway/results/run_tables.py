@@ -22,17 +22,7 @@ from giveway.metrics import (
     walks_without_ego,
 )
 from giveway.metrics.law import LAW_FIELDS
-from giveway.results.effect import Effect
-from giveway.results.ego_result import EgoResult
-from giveway.results.law import (
-    ledger_table,
-    people_table,
-    signal_table,
-)
-from giveway.results.provenance import CONFIGURATION, sha256
-from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
 from giveway.run_data.columns import (
-    EGO_COLUMNS,
     LEDGER_COLUMNS,
     PEOPLE_COLUMNS,
     PREDICTION_COLUMNS,
@@ -45,6 +35,7 @@ from giveway.run_data.columns import (
 from giveway.run_data.progress import Ending
 from giveway.run_data.road_marks import UNMARKED, RoadMarks
 from giveway.run_data.tracks import (
+    EGO_COLUMNS,
     BackgroundTrack,
     CrowdTrack,
     EgoTrack,

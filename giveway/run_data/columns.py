@@ -4,15 +4,25 @@ Recorder, CSV writer and data package all read from here. ``trajectories.csv`` k
 the reference point and the angle convention of SUMO's floating car data (FCD).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, get_args, get_type_hints
+from typing import Any, Literal, TypeVar, get_args, get_type_hints
 
 ColumnType = Literal["number", "integer", "string", "boolean"]
-_TYPES: dict[type, ColumnType] = {
+Number = TypeVar("Number")
+"""Type of a number in a class that is both one row and a whole table: float, or an array."""
+Text = TypeVar("Text")
+"""Type of a text there: str, or an array."""
+Count = TypeVar("Count")
+"""Type of a whole number there: int, or an array."""
+_TYPES: dict[Any, ColumnType] = {
     bool: "boolean",
     int: "integer",
     float: "number",
     str: "string",
+    Number: "number",
+    Text: "string",
+    Count: "integer",
 }
 
 
@@ -26,62 +36,43 @@ class Column:
     description: str
 
 
+def _unchanged(values: Any) -> Any:
+    return values
+
+
 @dataclass(frozen=True)
 class Quantity:
-    """Unit and meaning of a column, as the annotation of the attribute that holds its values."""
+    """Unit and meaning of a column, as the annotation of the attribute that holds its values.
+
+    Attributes:
+        unit: Unit in the CSV file, or None.
+        meaning: Meaning of the values.
+        column: Name in the CSV file. The attribute's own name if it is empty.
+        written: Conversion of the attribute's array into what the CSV file holds.
+    """
 
     unit: str | None
     meaning: str
+    column: str = ""
+    written: Callable[[Any], Any] = _unchanged
+
+
+def quantities_of(table: type) -> dict[str, tuple[ColumnType, Quantity]]:
+    """Return type and quantity of each attribute of a class that is annotated throughout."""
+    found = {}
+    for name, hint in get_type_hints(table, include_extras=True).items():
+        python_type, quantity = get_args(hint)
+        found[name] = _TYPES[python_type], quantity
+    return found
 
 
 def columns_of(table: type) -> tuple[Column, ...]:
-    """The columns of a class whose every attribute is ``Annotated[type, Quantity(...)]``."""
-    columns = []
-    for name, hint in get_type_hints(table, include_extras=True).items():
-        python_type, quantity = get_args(hint)
-        columns.append(Column(name, _TYPES[python_type], quantity.unit, quantity.meaning))
-    return tuple(columns)
+    """Return the columns of a class whose every attribute is ``Annotated[type, Quantity(...)]``."""
+    return tuple(
+        Column(quantity.column or name, kind, quantity.unit, quantity.meaning)
+        for name, (kind, quantity) in quantities_of(table).items()
+    )
 
-
-_FRONT = "of the front bumper's centre (SUMO's reference point)"
-
-EGO_COLUMNS = (
-    Column("time", "number", "s", "simulation time t_k of the control instant"),
-    Column("id", "string", None, "SUMO id of the ego"),
-    Column("position", "number", "m", "distance driven along the path since departure, by the FMU"),
-    Column("x", "number", "m", f"network x {_FRONT}"),
-    Column("y", "number", "m", f"network y {_FRONT}"),
-    Column("angle", "number", "deg", "navigational angle: 0 is north, clockwise"),
-    Column("speed", "number", "m/s", "speed, by the FMU"),
-    Column("acceleration", "number", "m/s^2", "acceleration over the step before t_k, by the FMU"),
-    Column("force", "number", "N", "force command applied from t_k on; negative brakes"),
-    Column(
-        "controller",
-        "string",
-        None,
-        "who acted: mpc, pid, plug-in (somebody else's), safety (the layer below)",
-    ),
-    Column("reason", "string", None, "why it acted; of the planning MPC: which manoeuvre"),
-    Column("solver_status", "string", None, "the QP solver's status; empty where none ran"),
-    Column("solver_iterations", "integer", None, "the QP solver's iterations"),
-    Column("gap", "number", "m", "distance to the closest pedestrian in front now; empty: nobody"),
-    Column("reference_speed", "number", "m/s", "the reference speed of the controller that acted"),
-    Column("vehicle_gap", "number", "m", "distance to the closest vehicle in front; empty: none"),
-    Column(
-        "stop_gap",
-        "number",
-        "m",
-        "front bumper's distance to where a light, a stop or a crossing halts it",
-    ),
-    Column(
-        "waits_for",
-        "string",
-        None,
-        "what it stands for: person, vehicle, light, stop, yield (at a crossing: to people, or "
-        "since it is blocked; where lanes merge: to vehicles), plan (people expected in front), "
-        "none; empty: it drives, or drives off",
-    ),
-)
 
 SUMMARY_HEAD = (
     Column("scenario", "string", None, "the scenario's name"),

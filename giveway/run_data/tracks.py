@@ -7,33 +7,119 @@ mathematical (radians, counter-clockwise from +x) and x, y are the network's coo
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar, Generic
 
 import numpy as np
 from numpy.typing import NDArray
 
+from giveway.geometry.path import headings_to_angles
+from giveway.run_data.columns import (
+    TIMING_COLUMNS,
+    Column,
+    Count,
+    Number,
+    Quantity,
+    Text,
+    columns_of,
+)
 
-@dataclass(frozen=True)
-class EgoTrack:
-    """The ego at the T control instants t_k; ``front_*`` is the centre of its front bumper."""
 
-    time: NDArray[np.float64]  # (T,) [s]
-    position: NDArray[np.float64]  # (T,) [m] travelled along its path since the start
-    front_x: NDArray[np.float64]  # (T,) [m]
-    front_y: NDArray[np.float64]  # (T,) [m]
-    heading: NDArray[np.float64]  # (T,) [rad]
-    speed: NDArray[np.float64]  # (T,) [m/s]
-    acceleration: NDArray[np.float64]  # (T,) [m/s^2]
-    force: NDArray[np.float64]  # (T,) [N] the command applied during [t_k, t_k+1]
-    gap: NDArray[np.float64]  # (T,) [m] to the closest pedestrian in front; inf: nobody
-    reference_speed: NDArray[np.float64]  # (T,) [m/s] of the controller that acted
-    vehicle_gap: NDArray[np.float64]  # (T,) [m] to the closest vehicle in front; inf: none
-    stop_gap: NDArray[np.float64]  # (T,) [m] to where a red light stops it; inf: none
-    acting: NDArray[np.str_]  # (T,) who acted: "mpc", "pid", "plug-in", "safety"
-    reason: NDArray[np.str_]  # (T,) why it acted, e.g. "optimal", "infeasible", "selected"
-    solver_status: NDArray[np.str_]  # (T,) of the QP; empty where none ran
-    waits_for: NDArray[np.str_]  # (T,) what it stands for, e.g. "person"; empty while it drives
-    solver_iterations: NDArray[np.int64]  # (T,)
+def _empty_if_infinite(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+_FRONT = "of the front bumper's centre (SUMO's reference point)"
+
+
+@dataclass(slots=True)
+class EgoColumns(Generic[Number, Text, Count]):
+    """The columns of ``ego.csv``, declared once: :class:`EgoRow` is one row, :class:`EgoTrack` all.
+
+    Recorder, journal, table, data package and docs/results.md follow from this class. Here angles
+    are mathematical [rad], and a distance to what is not there is infinite; ``written`` converts.
+    """
+
+    time: Annotated[Number, Quantity("s", "simulation time t_k of the control instant")]
+    position: Annotated[
+        Number, Quantity("m", "distance driven along the path since departure, by the FMU")
+    ]
+    front_x: Annotated[Number, Quantity("m", f"network x {_FRONT}", column="x")]
+    front_y: Annotated[Number, Quantity("m", f"network y {_FRONT}", column="y")]
+    heading: Annotated[
+        Number,
+        Quantity(
+            "deg",
+            "navigational angle: 0 is north, clockwise",
+            column="angle",
+            written=headings_to_angles,
+        ),
+    ]
+    speed: Annotated[Number, Quantity("m/s", "speed, by the FMU")]
+    acceleration: Annotated[
+        Number, Quantity("m/s^2", "acceleration over the step before t_k, by the FMU")
+    ]
+    force: Annotated[Number, Quantity("N", "force command applied from t_k on; negative brakes")]
+    controller: Annotated[
+        Text,
+        Quantity(None, "who acted: mpc, pid, plug-in (somebody else's), safety (the layer below)"),
+    ]
+    reason: Annotated[Text, Quantity(None, "why it acted; of the planning MPC: which manoeuvre")]
+    solver_status: Annotated[Text, Quantity(None, "the QP solver's status; empty where none ran")]
+    solver_iterations: Annotated[Count, Quantity(None, "the QP solver's iterations")]
+    gap: Annotated[
+        Number,
+        Quantity(
+            "m",
+            "distance to the closest pedestrian in front now; empty: nobody",
+            written=_empty_if_infinite,
+        ),
+    ]
+    reference_speed: Annotated[
+        Number, Quantity("m/s", "the reference speed of the controller that acted")
+    ]
+    vehicle_gap: Annotated[
+        Number,
+        Quantity(
+            "m",
+            "distance to the closest vehicle in front; empty: none",
+            written=_empty_if_infinite,
+        ),
+    ]
+    stop_gap: Annotated[
+        Number,
+        Quantity(
+            "m",
+            "front bumper's distance to where it has to stop: for a light, a stop, a crossing, "
+            "right of way or a merge; empty: nowhere",
+            written=_empty_if_infinite,
+        ),
+    ]
+    waits_for: Annotated[
+        Text,
+        Quantity(
+            None,
+            "what it stands for: person, vehicle, light, stop, yield (at a crossing: to people, or "
+            "since it is blocked; where lanes merge: to vehicles), plan (people expected in front),"
+            " none; empty: it drives, or drives off",
+        ),
+    ]
+
+
+class EgoRow(EgoColumns[float, str, int]):
+    """An ego at one control instant."""
+
+    __slots__ = ()
+
+
+class EgoTrack(EgoColumns[NDArray[np.float64], NDArray[np.str_], NDArray[np.int64]]):
+    """An ego at its T control instants t_k; each column has the shape (T,)."""
+
+    __slots__ = ()
+
+
+_TIME, *_OWN = columns_of(EgoTrack)
+EGO_COLUMNS = (_TIME, Column("id", "string", None, "SUMO id of the ego"), *_OWN)
+"""The columns of ``ego.csv``, in their order; the id is the same in all rows of a track."""
 
 
 @dataclass(frozen=True)
@@ -121,13 +207,8 @@ class PeopleTrack:
 class Timings:
     """Computing times of each control step, apart from all that is equal in equal runs."""
 
-    NAMES: ClassVar[tuple[str, ...]] = (
-        "prediction",
-        "control",
-        "vehicle",
-        "crowd",
-        "sumo",
-        "total",
+    NAMES: ClassVar[tuple[str, ...]] = tuple(
+        column.name for column in TIMING_COLUMNS if column.name != "time"
     )
 
     seconds: NDArray[np.float64]  # (T, 6) [s], columns in the order of NAMES

@@ -18,7 +18,6 @@ from giveway.metrics import (
 )
 from giveway.metrics.law import LAW_FIELDS
 from giveway.run_data.columns import (
-    EGO_COLUMNS,
     LEDGER_COLUMNS,
     PEOPLE_COLUMNS,
     PREDICTION_COLUMNS,
@@ -26,6 +25,7 @@ from giveway.run_data.columns import (
     TIMING_COLUMNS,
     TRAJECTORY_COLUMNS,
 )
+from giveway.run_data.tracks import EGO_COLUMNS
 
 DOCS = Path(__file__).parents[2] / "docs"
 

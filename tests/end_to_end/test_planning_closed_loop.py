@@ -48,7 +48,7 @@ def test_it_drives_its_way_and_touches_nobody(run_once: Run, seed: int) -> None:
 
 def test_it_keeps_the_actuators_limits_where_it_acts(run_once: Run) -> None:
     ego = run_once(controller="mpc", seed=GIVES_WAY).ego_track
-    planned = (ego.acting[1:] == "mpc") & (ego.speed[1:] > 1e-3) & (ego.speed[:-1] > 1e-3)
+    planned = (ego.controller[1:] == "mpc") & (ego.speed[1:] > 1e-3) & (ego.speed[:-1] > 1e-3)
     assert np.abs(ego.force).max() <= 8000.0
     assert np.abs(np.diff(ego.force))[planned].max() <= 1000.0 + 1e-6
     assert planned.sum() > 100
@@ -95,7 +95,7 @@ def test_calm_speeds_matter_in_some_crowds(
 def test_a_hard_corridor_without_a_search_leaves_it_to_the_pid(run_once: Run) -> None:
     planner = {"gap_choice": False, "soft": False}
     run = run_once(controller="mpc", seed=GIVES_WAY, time_limit=SHORT, planner=planner)
-    assert "pid" in run.ego_track.acting
+    assert "pid" in run.ego_track.controller
     assert run.summary["mpc_feasibility_rate"] < 1.0
     assert run.summary["frontal_contacts"] == 0
 

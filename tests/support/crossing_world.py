@@ -62,7 +62,7 @@ def ego(*parts, front=0.0, speed=4.0, turn=0.0):
         reference_speed=np.full(count, 4.0),
         vehicle_gap=far,
         stop_gap=far,
-        acting=none,
+        controller=none,
         reason=none,
         solver_status=none,
         waits_for=none,

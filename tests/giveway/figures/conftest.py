@@ -54,7 +54,7 @@ def drive_through_crowd(pedestrians: int, seed: int, controller: str, goal: floa
         *numbers,
         vehicle_gap=nothing,
         stop_gap=nothing,
-        acting=acting,
+        controller=acting,
         reason=np.where(acting == "mpc", "optimal", "infeasible"),
         solver_status=np.full(acting.size, ""),
         waits_for=np.full(acting.size, ""),

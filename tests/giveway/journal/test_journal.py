@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.lib.recfunctions import structured_to_unstructured
 
 from giveway.errors import ResultsError
 from giveway.journal.journal import ROWS_FILE, Journal, JournalRows, NameTable
@@ -20,7 +21,7 @@ NAMES = st.text(st.characters(), max_size=8)  # lone surrogates, quotes, newline
 def three_steps(folder: Path) -> Journal:
     """Ego rows 0, 1, 2 with one new vehicle each, a crowd of k persons in step k."""
     journal = Journal(folder)
-    ego, crowd = journal.rows("ego", 2), journal.rows("crowd", 3)
+    ego, crowd = journal.rows("ego", ("step", "id")), journal.rows("crowd", ("x", "y", "z"))
     vehicles = journal.names("vehicles")
     for k in range(3):
         ego.block(1)[0] = k, vehicles.index(f"veh{k}")
@@ -33,21 +34,21 @@ def test_committed_rows_are_read_while_the_writer_lives(tmp_path: Path) -> None:
     journal = three_steps(tmp_path)
     contents = read_journal(tmp_path)
     assert contents.commits == 3
-    assert contents.tables["ego"].tolist() == [[0, 0], [1, 1], [2, 2]]
-    assert contents.tables["crowd"].tolist() == [[1, 1, 1], [2, 2, 2], [2, 2, 2]]
+    assert contents.tables["ego"].tolist() == [(0, 0), (1, 1), (2, 2)]
+    assert contents.tables["crowd"].tolist() == [(1, 1, 1), (2, 2, 2), (2, 2, 2)]
     assert contents.names == {"vehicles": ("veh0", "veh1", "veh2")}
     journal.close()
 
 
 def test_rows_of_a_step_that_was_not_committed_are_not_there(tmp_path: Path) -> None:
     journal = Journal(tmp_path)
-    rows = journal.rows("ego", 1)
+    rows = journal.rows("ego", ("step",))
     rows.block(1)[0] = 1.0
     journal.commit()
     rows.block(1)[0] = 2.0
-    assert read_journal(tmp_path).tables["ego"].tolist() == [[1.0]]
+    assert read_journal(tmp_path).tables["ego"].tolist() == [(1.0,)]
     journal.close()
-    assert read_journal(tmp_path).tables["ego"].tolist() == [[1.0], [2.0]]
+    assert read_journal(tmp_path).tables["ego"].tolist() == [(1.0,), (2.0,)]
 
 
 @settings(max_examples=40)
@@ -64,7 +65,8 @@ def test_what_goes_in_comes_out(
 ) -> None:
     folder = tmp_path_factory.mktemp("journal")
     journal = Journal(folder)
-    rows, names = journal.rows("rows", columns), journal.names("names")
+    called = [f"column {k}" for k in range(columns)]
+    rows, names = journal.rows("rows", called), journal.names("names")
     random = np.random.default_rng(columns)
     expected = np.empty((0, columns))
     for count, new, commit in steps:
@@ -77,17 +79,17 @@ def test_what_goes_in_comes_out(
             journal.commit()
     journal.close()
     contents = read_journal(folder)
-    assert np.array_equal(contents.tables["rows"], expected)
-    assert np.array_equal(rows.filled, expected)
+    assert np.array_equal(structured_to_unstructured(contents.tables["rows"]), expected)
+    assert np.array_equal(structured_to_unstructured(rows.filled), expected)
     distinct = dict.fromkeys(name for _, new, _ in steps for name in new)
     assert contents.names["names"] == names.names == tuple(distinct)
 
 
 def test_nan_and_infinity_survive(tmp_path: Path) -> None:
     journal = Journal(tmp_path)
-    journal.rows("rows", 3).block(1)[0] = np.nan, np.inf, -0.0
+    journal.rows("rows", ("a", "b", "c")).block(1)[0] = np.nan, np.inf, -0.0
     journal.close()
-    assert repr(read_journal(tmp_path).tables["rows"].tolist()) == "[[nan, inf, -0.0]]"
+    assert repr(read_journal(tmp_path).tables["rows"].tolist()) == "[(nan, inf, -0.0)]"
 
 
 def used(file: Path) -> bytes:
@@ -107,7 +109,7 @@ def test_torn_anywhere_it_gives_whole_steps(tmp_path: Path, rest: bytes) -> None
         contents = read_journal(tmp_path)
         seen.add(contents.commits)
         if contents.commits:
-            assert contents.tables["ego"][:, 0].tolist() == list(range(contents.commits))
+            assert contents.tables["ego"]["step"].tolist() == list(range(contents.commits))
             assert len(contents.tables["crowd"]) == sum(range(contents.commits))
             assert len(contents.names["vehicles"]) == contents.commits
         else:
@@ -156,24 +158,24 @@ def test_meta_is_kept_and_replaced_whole(tmp_path: Path) -> None:
 
 def test_without_a_folder_rows_are_just_rows(tmp_path: Path) -> None:
     journal = Journal(None)
-    rows = journal.rows("rows", 2)
+    rows = journal.rows("rows", ("a", "b"))
     rows.block(2)[:] = 7.0
     journal.write_meta({})
     journal.commit()
     journal.heartbeat.beat(Phase.SUMO)
     journal.close()
-    assert rows.filled.tolist() == [[7.0, 7.0], [7.0, 7.0]]
+    assert rows.filled.tolist() == [(7.0, 7.0), (7.0, 7.0)]
     assert not journal.failure
 
 
 def test_filled_rows_stay_while_the_table_grows() -> None:
-    rows = JournalRows(2)
+    rows = JournalRows(("up", "down"))
     for k in range(5000):
         rows.block(1)[0] = k, -k
     rows.block(100_000)[:] = 0.5
-    assert rows.filled[:5000, 0].tolist() == list(range(5000))
-    assert (rows.filled[5000:] == 0.5).all()
-    assert rows.filled.shape == (105_000, 2)
+    assert rows.filled["up"][:5000].tolist() == list(range(5000))
+    assert (rows.filled["down"][5000:] == 0.5).all()
+    assert len(rows.filled) == 105_000
 
 
 def test_a_name_has_one_index() -> None:
@@ -184,7 +186,7 @@ def test_a_name_has_one_index() -> None:
 
 def test_a_folder_that_is_gone_costs_the_journal_and_not_the_run(tmp_path: Path) -> None:
     journal = Journal(tmp_path / "gone")
-    rows = journal.rows("rows", 1)
+    rows = journal.rows("rows", ("a",))
     rows.block(1)[0] = 1.0
     journal.commit()
     journal.heartbeat.step(1, 0.05)
@@ -199,11 +201,11 @@ from giveway.journal.journal import Journal
 
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # as if the disk were full
 journal = Journal(Path(sys.argv[1]))
-rows = journal.rows("rows", 10)
+rows = journal.rows("rows", "abcdefghij")
 for k in range(1000):
     rows.block(1)[0] = k
     journal.commit()
-assert rows.filled[:, 0].tolist() == list(range(1000))  # nothing is lost
+assert rows.filled["a"].tolist() == list(range(1000))  # nothing is lost
 print(journal.failure)
 """
 
@@ -219,7 +221,7 @@ def test_a_full_disk_is_told_and_the_run_goes_on(tmp_path: Path) -> None:
     )
     assert "the journal cannot be written (File too large); the run goes on" in done.stdout
     rows = read_journal(tmp_path).tables["rows"]  # 112 bytes a step; the last is torn
-    assert rows[:, 0].tolist() == list(range(len(rows)))
+    assert rows["a"].tolist() == list(range(len(rows)))
     assert 170 < len(rows) < 179
 
 

@@ -148,7 +148,7 @@ def test_the_summary_of_a_drive(ego):
         speed=np.array([4.0, 2.0, 0.0, 0.1, 2.0]),
         acceleration=np.array([0.0, -4.0, -4.0, 0.0, 4.0]),
         gap=np.array([np.inf, 9.0, 6.0, 8.0, np.inf]),
-        acting=np.array(["mpc", "mpc", "pid", "safety", "mpc"]),
+        controller=np.array(["mpc", "mpc", "pid", "safety", "mpc"]),
     )
     summary = summary_of(track)
     assert summary.completed
