@@ -22,6 +22,15 @@ from giveway.metrics import (
     walks_without_ego,
 )
 from giveway.metrics.law import LAW_FIELDS
+from giveway.results.effect import Effect
+from giveway.results.ego_result import EgoResult
+from giveway.results.law import (
+    ledger_table,
+    people_table,
+    signal_table,
+)
+from giveway.results.provenance import CONFIGURATION, sha256
+from giveway.results.tables import ego_table, prediction_table, timing_table, trajectory_table
 from giveway.run_data.columns import (
     LEDGER_COLUMNS,
     PEOPLE_COLUMNS,
