@@ -31,7 +31,7 @@ def _empty_if_infinite(values: NDArray[np.float64]) -> NDArray[np.float64]:
 _FRONT = "of the front bumper's centre (SUMO's reference point)"
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, kw_only=True)
 class EgoColumns(Generic[Number, Text, Count]):
     """The columns of ``ego.csv``, declared once: :class:`EgoRow` is one row, :class:`EgoTrack` all.
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 Run = tuple[EgoTrack, CrowdTrack]
+PLACE = ("time", "position", "front_x", "front_y", "heading")
+NUMBERS = (*PLACE, "speed", "acceleration", "force", "gap", "reference_speed")
 
 
 def drive_through_crowd(pedestrians: int, seed: int, controller: str, goal: float = 40.0) -> Run:
@@ -51,7 +53,7 @@ def drive_through_crowd(pedestrians: int, seed: int, controller: str, goal: floa
     acting = np.array([row[10] for row in egos])
     nothing = np.full(acting.size, np.inf)
     ego = EgoTrack(
-        *numbers,
+        **dict(zip(NUMBERS, numbers, strict=True)),
         vehicle_gap=nothing,
         stop_gap=nothing,
         controller=acting,
