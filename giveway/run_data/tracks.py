@@ -31,7 +31,7 @@ def _empty_if_infinite(values: NDArray[np.float64]) -> NDArray[np.float64]:
 _FRONT = "of the front bumper's centre (SUMO's reference point)"
 
 
-@dataclass(slots=True, kw_only=True)
+@dataclass(kw_only=True)
 class EgoColumns(Generic[Number, Text, Count]):
     """The columns of ``ego.csv``, declared once: :class:`EgoRow` is one row, :class:`EgoTrack` all.
 
@@ -108,13 +108,9 @@ class EgoColumns(Generic[Number, Text, Count]):
 class EgoRow(EgoColumns[float, str, int]):
     """An ego at one control instant."""
 
-    __slots__ = ()
-
 
 class EgoTrack(EgoColumns[NDArray[np.float64], NDArray[np.str_], NDArray[np.int64]]):
     """An ego at its T control instants t_k; each column has the shape (T,)."""
-
-    __slots__ = ()
 
 
 _TIME, *_OWN = columns_of(EgoTrack)
