@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from least_squares_cases import optimum
 
-from controller import LongitudinalModel, MpcParameters, Outcome, exact_solver
+from controller import LongitudinalModel, MpcParameters, Outcome
 from controller.paper_mpc.speed_problem import UNDECIDED, SpeedProblem
+from controller.qp import exact_solver
 
 LIMIT = MpcParameters().iteration_limit
 
