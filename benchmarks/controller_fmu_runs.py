@@ -19,7 +19,7 @@ from fmus import ControllerParameters, export_controller
 
 LIKE_THE_PAPER = {
     "safety.enabled": False,
-    "regulation.priority": "none",
+    "rules": {"crossings": False, "right_of_way": False, "merging": False},
     "perception.tracker": False,
 }
 MOTION = ("time", "position", "front_x", "front_y", "heading", "speed", "acceleration")

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from roads import WAYS, Way, build
 
 import giveway
+from giveway.config.tables.rules import OF_PRIORITY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -53,8 +54,7 @@ class Drive(NamedTuple):
 def drive(one: Drive, config_file: Path, priority: str | None) -> dict[str, Any]:
     """Make a drive; what it came to."""
     regulation: dict[str, Any] = {"reference_speed": SLOW if one.seed % 2 else "lane"}
-    if priority is not None:
-        regulation["priority"] = priority
+    rules = {} if priority is None else dict.fromkeys(sorted(OF_PRIORITY), priority == "road")
     settings = {
         "scenario": str(config_file),
         "controller": one.controller,
@@ -65,6 +65,7 @@ def drive(one: Drive, config_file: Path, priority: str | None) -> dict[str, Any]
             "depart_position": 10.0 + 15.0 * (one.seed % 3),
         },
         "regulation": regulation,
+        "rules": rules,
         "crowd": {"zone": "none"},
         "sumo": {"seed": one.seed},
         "time_limit": LIMIT,
@@ -121,7 +122,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder of networks and results")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--place", action="append", choices=PLACES, help="some of them; none: all")
-    parser.add_argument("--priority", help="[regulation] priority of the egos; none: the default")
+    parser.add_argument("--priority", help="road or none: [rules] of priority")
     options = parser.parse_args()
     options.out = options.out.absolute()
     options.out.mkdir(parents=True, exist_ok=True)

@@ -46,6 +46,10 @@ class ControlError(GivewayError):
     """The controller cannot be set up as asked, or produced an unusable command."""
 
 
+class RuleError(GivewayError):
+    """A rule of the road of another package cannot be made, or demanded something unusable."""
+
+
 class CrowdError(GivewayError):
     """The pedestrians cannot be placed or moved as asked."""
 

@@ -30,6 +30,7 @@ def build_check() -> Commands:
     check = Commands("Check code of other packages.")
     check.add("controller", _controller)
     check.add("model", _model)
+    check.add("rule", _rule)
     check.callback()(_check)
     return check
 
@@ -59,3 +60,11 @@ def _model(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
     from giveway.plug_ins.sockets import MODEL
 
     raise typer.Exit(check_command(name, set_ or (), MODEL, time_step=time_step))
+
+
+def _rule(name: _Name, set_: _Set = None, time_step: _Step = None) -> None:
+    """Does a rule of the road? An ego drives along a made-up road, without SUMO."""
+    from giveway.cli.check_command import check_command
+    from giveway.plug_ins.sockets import RULE
+
+    raise typer.Exit(check_command(name, set_ or (), RULE, time_step=time_step))

@@ -15,7 +15,7 @@ from giveway.config.files.foreign_code import foreign_code, require_code
 from giveway.config.files.layers import Layer, build_config
 from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
-from giveway.plug_ins.sockets import CONTROLLER, Socket
+from giveway.plug_ins.sockets import CONTROLLER, RULE, Socket
 from pedestrian_model import JUPEDSIM_MODELS
 
 LIMIT = 60.0  # [s] that a rule may take: most take a tenth of a second
@@ -66,14 +66,17 @@ def _configured(
     name: str, words: Sequence[str], socket: Socket, time_step: float | None, profile: str
 ) -> RunConfig:
     settings: dict[str, Any] = {socket.options: set_options(words)}
+    if socket is RULE:
+        settings = {RULE.options: {name: settings[RULE.options] or True}}
     if time_step is not None:
         settings["time_step"] = time_step
     if profile:
         settings["controller_profile"] = profile
-    node = settings
-    for table in socket.location[:-1]:
-        node = node.setdefault(table, {})
-    node[socket.location[-1]] = name
+    if socket is not RULE:  # whose name is a key
+        node = settings
+        for table in socket.location[:-1]:
+            node = node.setdefault(table, {})
+        node[socket.location[-1]] = name
     return build_config([Layer("command line", settings, from_flags=True)])
 
 
@@ -120,6 +123,14 @@ def _battery(connection: Connection, config: str, what: str) -> None:
                 plug_in.maker(own), setup_of(own, step), begins=connection.send
             )
         connection.send([(finding.rule, finding.problem) for finding in found])
+    elif what == RULE.what:
+        from giveway.ego.rules.conformance import check_rule, made_up_route
+        from giveway.ego.rules.plug_in import maker
+
+        (own,) = effective.each_ego()
+        ((name, settings),) = own.rules.plugged_in.items()
+        ruled = check_rule(maker(name, settings), made_up_route(own, step), connection.send)
+        connection.send([(finding.rule, finding.problem) for finding in ruled])
     else:
         from giveway.crowd import models
         from pedestrian_model import check_model

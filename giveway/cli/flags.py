@@ -14,7 +14,7 @@ from giveway.cli.help import show_all_options
 from giveway.config.files.layers import Location, Option, options
 from giveway.config.files.toml import toml_value
 from giveway.errors import ConfigError
-from giveway.plug_ins.sockets import CONTROLLER, SOCKETS, Socket
+from giveway.plug_ins.sockets import CONTROLLER, RULE, SOCKETS, Socket
 
 if typing.TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -24,6 +24,7 @@ _PANELS = {
     "vehicle": "Vehicle",
     "crowd": "Pedestrians",
     "regulation": "Regulation",
+    "rules": "Rules",
     "mpc": "MPC",
     "pid": "PID",
     "tuned_pid": "Tuned PID",
@@ -42,6 +43,17 @@ _HelpAll = Annotated[
         help="Show all options and exit.",
         is_eager=True,
         callback=show_all_options,
+    ),
+]
+
+
+_Rule = Annotated[
+    list[str] | None,
+    typer.Option(
+        RULE.flag,
+        metavar="NAME[.KEY=VALUE]",
+        help="A rule of the road that is not giveway's own, and its options; as often as needed.",
+        rich_help_panel="Rules",
     ),
 ]
 
@@ -72,7 +84,6 @@ _EVERYDAY = frozenset(
         ("crowd", "pedestrians"),
         ("crowd", "two_sided"),
         ("regulation", "reference_speed"),
-        ("regulation", "priority"),
     }
 )
 
@@ -92,6 +103,9 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
             own_options = set_options(arguments.pop(socket.options) or (), socket)
             if own_options:
                 settings[socket.options] = own_options
+        rules = set_rules(arguments.pop("rule") or ())
+        if rules:
+            settings[RULE.options] = rules
         for name, option in locations.items():
             value = arguments.pop(name)
             if value is not None:
@@ -108,6 +122,7 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
         inspect.Parameter(socket.options, keyword, default=None, annotation=_set_flag(socket))
         for socket in SOCKETS
     ]
+    flags.append(inspect.Parameter("rule", keyword, default=None, annotation=_Rule))
     flags.append(inspect.Parameter("help_all", keyword, default=False, annotation=_HelpAll))
     call.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [parameter.replace(kind=keyword) for parameter in own] + flags
@@ -115,6 +130,26 @@ def accept_config_flags(command: Callable[..., None]) -> Callable[..., None]:
     call.__doc__ = command.__doc__
     call.__annotations__ = {p.name: p.annotation for p in (*own, *flags)}
     return call
+
+
+def set_rules(words: Sequence[str]) -> dict[str, Any]:
+    """The rules of other packages, from words like ``school_zone`` or ``school_zone.limit=8``.
+
+    Raises:
+        ConfigError: a word names no rule, or an option stands twice.
+    """
+    rules: dict[str, Any] = {}
+    for word in words:
+        name, _, own = word.partition("=")
+        rule, _, key = name.rpartition(".") if "=" in word else (name, "", "")
+        if not rule:
+            raise ConfigError(f"{RULE.flag} {word}: expected a rule, or NAME.KEY=VALUE")
+        known = rules.setdefault(rule, {})
+        if key in known:
+            raise ConfigError(f"{RULE.flag} {word}: '{key}' stands twice; keep one")
+        if key:
+            known |= set_options([f"{key}={own}"], RULE)
+    return {name: own or True for name, own in rules.items()}
 
 
 def set_options(words: Sequence[str], socket: Socket = CONTROLLER) -> dict[str, Any]:

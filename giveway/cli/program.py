@@ -4,6 +4,7 @@ import io
 import os
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from giveway._environment import out_of_memory
 from giveway.cli.exit import fail
@@ -35,7 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             raise
     except Exception as error:
         if hasattr(error, "format_message"):
-            code = fail(f"{error.format_message()} See giveway --help.", 2)  # a usage error
+            code = fail(_usage(error), 2)
         elif str(error) == _NO_THREAD:
             code = fail(
                 "the system gives no more threads; end other processes, or raise the limit "
@@ -45,6 +46,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
         else:
             raise  # a fault of giveway: the traceback is wanted
     sys.exit(code)
+
+
+def _usage(error: Any) -> str:
+    """A usage error; of a flag that is gone: what to write instead."""
+    from giveway.config.old_keys import OLD_FLAGS
+
+    instead = OLD_FLAGS.get(getattr(error, "option_name", ""))
+    if instead is not None:
+        return f"{error.option_name}: this flag is gone; write {instead}"
+    return f"{error.format_message()} See giveway --help."
 
 
 def _named(error: OSError) -> str:

@@ -16,6 +16,7 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
+from giveway.config.old_keys import advice_on
 from giveway.config.option import LANE, Section, expectation, option
 from giveway.config.plug_in_names import BUNDLED, BUNDLED_MODELS, ControllerName
 from giveway.config.tables.basics import (
@@ -37,6 +38,7 @@ from giveway.config.tables.crowd import CrowdConfig
 from giveway.config.tables.measures import MeasureConfig, read_measures
 from giveway.config.tables.perception import PerceptionConfig
 from giveway.config.tables.regulation import RegulationConfig
+from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
 from giveway.plug_ins.finding import is_fmu, shown
 
 PAPER_STEP = 0.05
@@ -49,6 +51,7 @@ EGO_TABLES = (
     "ego",
     "vehicle",
     "regulation",
+    "rules",
     "mpc",
     "pid",
     "tuned_pid",
@@ -122,6 +125,7 @@ class RunConfig(Section):
     vehicle: VehicleConfig = VehicleConfig()
     crowd: CrowdConfig = CrowdConfig()
     regulation: RegulationConfig = RegulationConfig()
+    rules: RulesConfig = RulesConfig()
     mpc: MpcConfig = MpcConfig()
     pid: PidConfig = PidConfig()
     tuned_pid: TunedPidConfig = TunedPidConfig()
@@ -190,7 +194,9 @@ class RunConfig(Section):
                 said = first["msg"].removeprefix("Value error, ")
                 raise ValueError(f"egos[{number}]: {said}") from None
             key = ".".join(map(str, first["loc"][:2]))  # beyond: which part of the value
-            field = _field_at(first["loc"])
+            field, gone = _field_at(first["loc"]), advice_on(tuple(map(str, first["loc"][:2])))
+            if gone is not None:
+                raise ValueError(f"egos[{number}]: {key}: {gone}") from None
             expected = expectation(first, field) if field is not None else first["msg"]
             raise ValueError(f"egos[{number}]: {key} = {first['input']!r}: {expected}") from None
 
@@ -203,10 +209,22 @@ class RunConfig(Section):
         return DEFAULT_SPEED if self.controller.endswith("-paper") else LANE
 
     @property
-    def heeds_priority(self) -> bool:
-        """Whether the law of the road holds: an ego gives way by it, people rely on it."""
-        priority = self.regulation.priority
-        return not self.controller.endswith("-paper") if priority is None else priority == "road"
+    def keeps_priority(self) -> bool:
+        """Whether the controller keeps the rules of priority where the user says nothing."""
+        return not self.controller.endswith("-paper")
+
+    def heeds(self, rule: str) -> bool:
+        """Whether an ego heeds one of giveway's rules.
+
+        Args:
+            rule: Its key in ``[rules]``, like "crossings".
+        """
+        said: bool | None = getattr(self.rules, rule)
+        if said is not None:
+            return said
+        if rule == "speed_limits":
+            return self.reference_speed == LANE
+        return rule not in OF_PRIORITY or self.keeps_priority
 
     @property
     def tracks_people(self) -> bool:
@@ -254,6 +272,11 @@ class EgoRunConfig(RunConfig):
         self.require_speeds_in_reach()
         self.require_rolling()
         self.require_known_belief()
+        if self.reference_speed == LANE and not self.heeds("speed_limits"):
+            raise ValueError(
+                "[rules] speed_limits = false: [regulation] reference_speed is 'lane', which is "
+                "what they say; give a speed [m/s], like reference_speed = 13.9"
+            )
         if self.controller_options and not self.plugged_in:
             key = next(iter(self.controller_options))
             raise ValueError(

@@ -215,7 +215,7 @@ def _priority(
     config: RunConfig, egos: Sequence[EgoRunConfig], sumo: SumoSession
 ) -> PriorityOnFoot | None:
     """Tells people of their priority, where any ego gives way; None: there is none to tell."""
-    heeding = [driver for driver in egos or (config,) if driver.heeds_priority]
+    heeding = [driver for driver in egos or (config,) if driver.heeds("crossings")]
     if not heeding:
         return None
     kerb_distance = max(driver.regulation.kerb_distance for driver in heeding)

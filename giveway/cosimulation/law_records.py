@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from giveway.crowd.roster import Roster
-from giveway.ego.stops import Stop
+from giveway.ego.rules.route import Stop
 from giveway.geometry.path import EgoPath
 from giveway.journal.recorder import Recorder
 from giveway.run_data.way import CrossingOnWay, EgoWay, Halt, JunctionOnWay, StopLine

@@ -30,7 +30,7 @@ from giveway.cosimulation.traffic.interactions import Meetings
 from giveway.crowd.reachable import flow_remark, spawn_remark, way_of
 from giveway.crowd.roster import Walking
 from giveway.ego.ego import Ego
-from giveway.errors import ControlError, CrowdError, VehicleError
+from giveway.errors import ControlError, CrowdError, RuleError, VehicleError
 from giveway.geometry.kernel import Array
 from giveway.journal.recorder import Recorder
 from giveway.processes.garbage import full_collections_put_off
@@ -98,11 +98,13 @@ class Loop:
             raise VehicleError(f"step {self._k}: {error}") from error
         except ControllerError as error:
             raise ControlError(f"controller at step {self._k}: {error}") from error
+        except RuleError as error:
+            raise RuleError(f"rule at step {self._k}: {error}") from error
         except PedestrianModelError as error:
             raise CrowdError(self._blame(error)) from error
         for ego in self._egos:
             self.endings.setdefault(ego.id, ending)
-            self._remark_on_missed_stops(ego)
+            self._remark_on_rules(ego)
         if ending in {Ending.SCENARIO_END, Ending.TIME_LIMIT}:
             self._parts.departures.require_all()
         return ending
@@ -219,7 +221,7 @@ class Loop:
         if self._law.ruled:
             self._law.signals(clock)
         background, meetings = self._mirror.background, self._meetings
-        if background.ids or meetings.pending or any(ego.way.bounds for ego in self._egos):
+        if background.ids or meetings.pending or any(ego.watches for ego in self._egos):
             meetings.update(background, self._roster.crowd, self._egos)
             self._mirror.mark_beside(self._egos)
         if self.followed is not None:
@@ -236,12 +238,8 @@ class Loop:
             remarks.append(spawn_remark(crowd, self._ways, self._parts.net_file))
         self.remarks += [remark for remark in remarks if remark]
 
-    def _remark_on_missed_stops(self, ego: Ego) -> None:
-        if ego.way.stops is not None and ego.way.stops.missed:
-            self.remarks.append(
-                f"ego '{ego.id}': it drove past {ego.way.stops.missed} of its stops, which were "
-                "too near to halt at"
-            )
+    def _remark_on_rules(self, ego: Ego) -> None:
+        self.remarks += [f"ego '{ego.id}': {said}" for said in ego.rules.remarks]
 
     def _places(self) -> Array:
         """(e, 2) [m] the egos' front bumpers."""
@@ -301,7 +299,7 @@ class Loop:
         gone = [ego for ego in self._egos if ego.arrived]
         for ego in gone:
             self.endings[ego.id] = Ending.COMPLETED
-            self._remark_on_missed_stops(ego)
+            self._remark_on_rules(ego)
             self._mirror.drop(self._egos.index(ego))
             self._egos.remove(ego)
             if self._egos or self._parts.departures.waiting:

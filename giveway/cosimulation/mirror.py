@@ -121,7 +121,7 @@ class Mirror:
         """Tell egos which rows are of vehicles whose lanes lead them past their paths."""
         ids, near = self.background.ids, self._near
         for ego in egos:
-            names = ego.way.beside
+            names = ego.rules.beside
             rows = [ids[i] in names for i in near] if names else []
             ego.beside = np.array(rows, dtype=np.bool_)
 
@@ -192,7 +192,7 @@ def _close(
     """(rows,) whether each of the vehicles ``near`` may soon meet an ego that keeps to the law."""
     close = np.zeros(len(near), dtype=np.bool_)
     for ego in egos:
-        if not ego.config.heeds_priority:
+        if not ego.config.heeds("right_of_way"):
             continue
         apart = np.hypot(vehicles.x[near] - ego.pose.x, vehicles.y[near] - ego.pose.y)
         close |= apart <= _MEET * (vehicles.speed[near] + ego.vehicle.speed) + _BODIES

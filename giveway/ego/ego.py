@@ -12,16 +12,17 @@ from giveway.crowd.perception import Perception
 from giveway.ego.corridor import Corridor
 from giveway.ego.foresight.building import foresight_of
 from giveway.ego.foresight.relevance import Nearby, Relevance
-from giveway.ego.kerbs import NO_KERBS
+from giveway.ego.kerbs import NO_KERBS, Kerbs
 from giveway.ego.path_view import PathView
 from giveway.ego.percept import NOBODY, Seen
-from giveway.ego.perception.leader import NO_LEADER, NOBODY_BESIDE, Following
+from giveway.ego.perception.leader import NO_LEADER, NOBODY_BESIDE
+from giveway.ego.rules.following import Following
+from giveway.ego.rules.protocol import Told
+from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.safety_layer import Guard
 from giveway.ego.setting_out import SettingOut
-from giveway.ego.speed_profile import SpeedProfile
 from giveway.ego.stop_cause import waits_for
 from giveway.ego.waiting_ego import WaitingEgo
-from giveway.ego.way_ahead import WayAhead
 from giveway.errors import ControlError, VehicleError
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
@@ -32,7 +33,6 @@ from giveway.run_data.rows import STOP_SPEED
 from giveway.run_data.tracks import EgoRow
 from pedestrian_model import Crowd, Surroundings
 
-_BEYOND = 0.5  # [m] beyond the stopping place that a plan may lead to at most
 _STRAIGHT = 1.0  # [s] for which other vehicles are predicted straight on; then the road may bend
 _LIKELY = 0.75  # of what positions are off at most, as plans count with it: the layer with all
 
@@ -45,15 +45,16 @@ class Ego:
         path: of the ego.
         departure: station [m] of the front bumper where the FMU's position is 0.
         shape: of its body.
-        way: what bounds its way ahead.
+        rules: Rules of the road that hold for it.
         goal: the FMU's position [m] at which it is done.
         time_step: [s].
-        profile: its speed where nothing is in its way; None: the controller's own.
+        kerbs: Kerbs beside its path, or None if nobody asks for them.
         slope: of the path; None: it is level.
 
     Attributes:
         front: station of the front bumper [m].
         pose: where the front bumper's centre is, and the direction of the body.
+        systems: SUMO's ids of the signal systems whose states it is told.
         beside: of the background vehicles' rows, see
             :func:`~giveway.ego.perception.leader.vehicles_in_front`.
     """
@@ -67,17 +68,17 @@ class Ego:
         path: EgoPath,
         departure: float,
         shape: VehicleShape,
-        way: WayAhead,
+        rules: RuleSet,
         goal: float,
         time_step: float,
-        profile: SpeedProfile | None = None,
+        kerbs: Kerbs | None = None,
         slope: Slope | None = None,
     ) -> None:
         config = waiting.config
         self._controller, self._predictor = waiting.controller, waiting.predictor
         self.config, self.id, self.shape = config, waiting.id, shape
-        self.path, self.departure, self.way = path, departure, way
-        self._profile, self._slope, self._time_step = profile, slope, time_step
+        self.path, self.departure, self.rules = path, departure, rules
+        self._slope, self._time_step = slope, time_step
         self.has_outputs = bool(waiting.vehicle.record) or slope is not None
         self._times = time_step * np.arange(1.0, waiting.horizon + 1.0)
         self.goal, self.vehicle = goal, waiting.vehicle
@@ -101,11 +102,12 @@ class Ego:
         perception = Perception(config, waiting.worst.acceleration, time_step)
         self._perception = None if perception.exact else perception
         self._guard = None if safety is None else Guard(safety, config, path, shape, time_step)
-        self._kerbs = way.kerbs if self._guard is not None else None
+        self._kerbs = kerbs if self._guard is not None else None
+        self.systems = rules.systems | (frozenset() if kerbs is None else kerbs.systems)
         self._setting_out = SettingOut(waiting.worst.setting_out, time_step)
         self._foresight = foresight_of(waiting, path, shape, self.corridor.half_width, time_step)
         self._force, self._eases_off, self.beside = 0.0, False, NOBODY_BESIDE
-        self._heed_vehicles = config.regulation.vehicles
+        self._heed_vehicles = config.heeds("following")
         self._locate()
         self._following = Following(
             config.regulation.safe_distance,
@@ -124,6 +126,22 @@ class Ego:
     def arrived(self) -> bool:
         """Whether it has driven its distance."""
         return self.vehicle.position >= self.goal
+
+    @property
+    def watches(self) -> bool:
+        """Whether it wants to be told what happens in SUMO."""
+        return self.rules.watches or bool(self.systems)
+
+    def update(self, time: float, told: Told) -> None:
+        """Take note of signals and traffic, once after each of SUMO's steps.
+
+        Args:
+            time: SUMO's clock [s].
+            told: Signals and vehicles that matter to it.
+        """
+        if self._kerbs is not None:
+            self._kerbs.update(told.signals)
+        self.rules.update(time, self.front, self.vehicle.speed, told)
 
     def check_pose(self, step: int) -> Pose:
         """The pose, which SUMO must not be given if it is not finite (it hangs).
@@ -188,28 +206,26 @@ class Ego:
             else:
                 predicted = predictor.predict(pedestrians, poses[: predictor.horizon], surroundings)
                 ahead = corridor.closest_predicted(predicted, front, speed)
-        to_clear = self.way.to_clear(front) if self.way.bounds else 0.0
-        leader, waits = NO_LEADER, math.inf
+        rules, leader, vehicles = self.rules, NO_LEADER, None
+        to_clear = rules.to_clear(front)
         if self._heed_vehicles and poses.shape[1] > 1:
             leader, vehicles = corridor.closest_vehicle(poses, row, front, speed, self.beside)
-            if self.way.merges is not None:
-                before, waits = self.way.merges.look(front, speed)
-                leader = min(leader, before)
-                vehicles = np.minimum(vehicles, before.station + before.speed * self._times)
+        rules.look(front, speed, crowd, leader)
+        if rules.leader is not NO_LEADER:
+            leader = min(leader, rules.leader)
+            merging = rules.leader.station + rules.leader.speed * self._times
+            vehicles = merging if vehicles is None else np.minimum(vehicles, merging)
+        if vehicles is not None:
             spared = self._following.given_up(leader, vehicles, front, speed, to_clear)
             ahead = np.minimum(ahead, vehicles + spared)
-        stop, stops_for = math.inf, ""
-        if self.way.bounds:
-            stop, stops_for = self.way.stop_at(front, speed, crowd, leader)
-            stop, stops_for = min((stop, stops_for), (waits, "yield"))
-        if stop < math.inf:  # a plan may lead as far as the front bumper is allowed to
-            allowed = min(stop + _BEYOND, self.way.latest) + self._origin
+        if rules.latest < math.inf:  # a plan may lead as far as the front bumper is allowed to
+            allowed = rules.latest + self._origin
             ahead = np.minimum(ahead, allowed + self.config.regulation.safe_distance)
         return Seen(
             pedestrian,
             leader,
-            stop,
-            stops_for,
+            rules.stop,
+            rules.cause,
             ahead,
             predicted,
             relevant,
@@ -259,18 +275,14 @@ class Ego:
         front, vehicle, leader = self.front, self.vehicle, seen.leader
         safe_distance = self.config.regulation.safe_distance
         origin, stop = front + self._origin, seen.stop + self._origin + safe_distance
-        vehicle_ahead, limit, lanes = math.inf, math.inf, None
+        rules = self.rules
+        vehicle_ahead, limit = math.inf, rules.speed
         if not seen.stop == math.inf == leader.station:
             vehicle_ahead = self._following.station(leader, front, seen.to_clear)
-            limit = self._following.speed_limit(leader, seen.stop, front, seen.to_clear)
-        profile = self._profile
-        if profile is not None:
-            limit = min(limit, profile.limit(front, vehicle.speed))
-            lanes = profile.ahead(front, vehicle.speed, self._times)
-        if self._controller.foresees and self.way.bounds:
-            free = float(self.config.reference_speed) if profile is None else profile.at(front)
-            pace = self.way.unhurried(front, vehicle.speed, free, leader, safe_distance)
-            limit = min(limit, pace)
+            braking = self._following.speed_limit(leader, seen.stop, front, seen.to_clear)
+            limit = min(limit, braking)
+        if self._controller.foresees:
+            limit = min(limit, rules.advice)
         self._view.station = front
         return Observation(  # by position: a third of the time that keywords take
             origin,
@@ -288,7 +300,7 @@ class Ego:
             seen.crowd,
             seen.poses,
             seen.row,
-            lanes,
+            rules.lane_speeds,
             seen.pedestrian - origin,
             leader.station - origin,
             leader.speed,
@@ -307,8 +319,7 @@ class Ego:
         else:
             self.vehicle.step(self._force, self._slope.grade(self.front, self.shape.length))
         self._locate()
-        if self.way.bounds:
-            self.way.pass_time(self.front, self.vehicle.speed, self._time_step)
+        self.rules.advance(self.front, self.vehicle.speed, self._time_step)
 
     def _locate(self) -> None:
         """Note where it is now: asked for several times at each instant."""

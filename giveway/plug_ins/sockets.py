@@ -54,4 +54,16 @@ MODEL = Socket(
     "--set-model",
     "step",
 )
+RULE = Socket(
+    "rule",
+    "[rules] name",
+    ("rules",),
+    "rules",
+    "rules",
+    "giveway.rules",
+    "--rule",
+    "--rule",
+    "demand",
+)
 SOCKETS = (CONTROLLER, MODEL)
+"""The sockets that one key names; those of rules are the keys of a table."""

@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from giveway.config.files.layers import PLUGGED, Layer, merge, options, results_of
+from giveway.config.old_keys import advice_on
 from giveway.errors import ConfigError
 from giveway.metrics import DELAY_SUMMARY_FIELDS, SUMMARY_FIELDS
 from giveway.metrics.law import LAW_FIELDS
+from giveway.plug_ins.sockets import RULE
 from giveway.studies.columns import (
     COMPARISON_COLUMNS,
     FRONT_COLUMNS,
@@ -223,18 +225,29 @@ def _named_factor(
     return _factor(name, named, place)
 
 
+def _plugged_location(table: str, key: str) -> tuple[str, ...]:
+    """Where an option of another package's code stands: of a rule below the rule's name."""
+    rule, _, own = key.rpartition(".")
+    is_option = table == RULE.options and rule and ":" not in own
+    return (table, rule, own) if is_option else (table, key)
+
+
 def _option_factor(name: str, values: list[Any], place: str, definition: StudyDefinition) -> Factor:
     known = {".".join(option.location): option for option in options()}
     if name == "seed":
         raise ConfigError(f"{place}: seeds are not a factor; set replications and first_seed")
-    plugged_in = name.partition(".")[0] in PLUGGED and "." in name
+    table, dot, key = name.partition(".")
+    plugged_in = bool(dot) and (table in PLUGGED or (table == RULE.options and name not in known))
+    gone = advice_on(tuple(name.split(".")))
+    if gone is not None:
+        raise ConfigError(f"{place}: {gone}")
     if name not in known and not plugged_in:
         close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
         hint = f"did you mean '{close[0]}'?" if close else "giveway config lists the options"
         raise ConfigError(
             f"{place}: no such option; {hint} (a factor of your own has named levels)"
         )
-    location = tuple(name.split(".", 1)) if plugged_in else known[name].location
+    location = _plugged_location(table, key) if plugged_in else known[name].location
     unit = None if plugged_in else known[name].unit
     levels = []
     for value in values:

@@ -14,7 +14,7 @@ def drive(seed, **changes):
     It is told nothing of them, so that it does not slow down for the next green.
     """
     run = {"scenario": "crossings", "seed": seed, "time_limit": 18.0}
-    return giveway.run(run | {"perception.signal_plans": False} | changes)
+    return giveway.run(run | {"rules.signal_advice": False} | changes)
 
 
 def beside_the_sidewalk(result):

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 import psutil
 import pytest
+from support.priority import NO_PRIORITY
 
 import giveway
 from fmus import ControllerParameters, export_controller
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 MOTION = ["time", "position", "x", "y", "angle", "speed", "acceleration"]
 LIKE_THE_PAPER = {
     "safety.enabled": False,
-    "regulation.priority": "none",
+    "rules": NO_PRIORITY,
     "perception.tracker": False,
 }
 SHORT: dict[str, Any] = {"time_limit": 3.0, "crowd": {"pedestrians": 3}}

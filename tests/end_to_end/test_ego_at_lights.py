@@ -14,9 +14,10 @@ from hypothesis import strategies as st
 from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
-from giveway.ego.lights import Lights
-from giveway.ego.preparation import make_waiting_ego
-from giveway.ego.way_ahead import WayAhead
+from giveway.ego.rules.protocol import Told
+from giveway.ego.rules.rule_set import RuleSet
+from giveway.ego.rules.traffic_lights import TrafficLights
+from giveway.ego.waiting_ego import make_waiting_ego
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.sumo.lane_path import Light
@@ -54,20 +55,22 @@ def drive(
         def greens_of(*_: object) -> tuple[tuple[float, float], ...]:
             return tuple((max(a - time, 0.0), b - time) for a, b in greens if b > time)
 
-        lights = Lights(
+        lights = TrafficLights(
             [Light(line, "tls", 0)],
             comfortable=2.0,
             hardest=8.0,
             greens_of=greens_of if told else None,
+            desired_speed=lambda _: float(config.reference_speed),
+            gap=config.regulation.safe_distance,
         )
-        ego = Ego(waiting, path, DEPARTURE, shape, WayAhead(lights), 1900.0, STEP)
+        ego = Ego(waiting, path, DEPARTURE, shape, RuleSet([lights]), 1900.0, STEP)
         poses = np.zeros((waiting.horizon, 1, 7))
         poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
         for k in range(round((yellow_at + YELLOW + RED) / STEP)):
             time = k * STEP
             colour = "G" if time < yellow_at else "y" if time < yellow_at + YELLOW else "r"
             if k % every == 0:
-                lights.update({"tls": colour}, ego.front, ego.vehicle.speed)
+                ego.update(time, Told({"tls": colour}))
             rows.append((ego.front, ego.vehicle.speed, colour))
             ego.corridor.fill_poses(poses, 0, ego.front, ego.vehicle.speed)
             ego.decide(k, time, ego.look(0, poses, nobody, OPEN_GROUND, np.arange(0)))

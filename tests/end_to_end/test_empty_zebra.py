@@ -3,6 +3,7 @@
 import shutil
 
 import pytest
+from support.priority import rules_of
 
 import giveway
 from sumo_scenarios import find
@@ -35,7 +36,8 @@ def test_a_zebra_with_nobody_near_costs_no_time(tmp_path, scenario, route, posit
             {
                 "scenario": str(file),
                 "ego": ego,
-                "regulation": {"priority": priority, "reference_speed": speed},
+                "regulation": {"reference_speed": speed},
+                "rules": rules_of(priority),
                 "crowd": {"pedestrians": 0},
                 "time_limit": 60.0,
             }

@@ -4,6 +4,8 @@ On the zebra behind the signals, and on the southern arm, into which the ego tur
 people cross it on theirs.
 """
 
+from support.priority import rules_of
+
 import giveway
 
 SLOWLY = 4.0  # [m/s] so that both drives come when people are there
@@ -16,7 +18,8 @@ def in_the_way(priority):
     run = {
         "scenario": "junction",
         "seed": 8,
-        "regulation": {"priority": priority, "reference_speed": SLOWLY},
+        "regulation": {"reference_speed": SLOWLY},
+        "rules": rules_of(priority),
         "ego": {"depart_time": 114.0, "depart_position": 10.0, "travel_distance": 55.0},
     }
     run["ego"]["route"] = ["east_out", "far_east_out"]  # from behind the junction on
@@ -45,9 +48,9 @@ TURN = (-1.75 - 2.3, -1.75 + 2.3)  # [m] the body's way over it (x), and a body'
 def turning(priority):
     """When the ego's front comes onto the southern crossing, and who is in its way there then."""
     ego = {"route": ["west_in", "south_out"], "depart_time": 82.0, "depart_position": 70.0}
-    regulation = {"priority": priority, "reference_speed": SLOWLY}
-    run = {"scenario": "junction", "seed": 26, "regulation": regulation}
-    run["perception"] = {"signal_plans": False}  # it stands before the red light
+    regulation = {"reference_speed": SLOWLY}
+    rules = rules_of(priority) | {"signal_advice": False}  # it stands before the red light
+    run = {"scenario": "junction", "seed": 26, "regulation": regulation, "rules": rules}
     result = giveway.run(run | {"ego": ego | {"travel_distance": 70.0}})
     ego = result.ego
     onto = ego.time[ego.y <= ARM[1]].iloc[0]

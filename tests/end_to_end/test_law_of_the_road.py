@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from support.priority import rules_of
 
 from giveway.api import run_checked, simulate
 from giveway.config.files.loading import as_layer, load
@@ -23,7 +24,7 @@ def run(folder: Path, priority: str, *, twin: bool = False) -> RunResult:
         "scenario": "junction",
         "twin": twin,
         "seed": 14,
-        "regulation": {"priority": priority},
+        "rules": rules_of(priority),
         "ego": {
             "route": ["east_out", "far_east_out"],  # from behind the junction on
             "depart_time": 60.0,

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from support.priority import rules_of
 
 import giveway
 from sumo_scenarios import find
@@ -43,7 +44,8 @@ def cross(tmp_path_factory):
             {
                 "scenario": str(folder / "one.sumocfg"),
                 "controller": controller,
-                "regulation": {"priority": priority, "reference_speed": 4.0},
+                "regulation": {"reference_speed": 4.0},
+                "rules": rules_of(priority),
                 "crowd": {"zone": "everywhere"},
                 "record": {"near": 200.0, "far_period": 0.05},
                 "time_limit": 25.0,

@@ -12,8 +12,8 @@ from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
 from giveway.ego.foresight.relevance import MARGIN
-from giveway.ego.preparation import make_waiting_ego
-from giveway.ego.way_ahead import WayAhead
+from giveway.ego.rules.rule_set import RuleSet
+from giveway.ego.waiting_ego import make_waiting_ego
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, Crowd
@@ -47,7 +47,7 @@ def test_who_is_left_out_changes_nothing_that_a_plan_can_notice(
             with ExitStack() as stack:
                 waiting = make_waiting_ego(CONFIG, make_controller(CONFIG, 0.05), 0.05, stack)
                 waiting.start(speed)
-                ego = Ego(waiting, EgoPath.through(BEND), 50.0, shape, WayAhead(), 100.0, 0.05)
+                ego = Ego(waiting, EgoPath.through(BEND), 50.0, shape, RuleSet(), 100.0, 0.05)
                 poses = np.zeros((waiting.horizon, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width
                 ego.corridor.fill_poses(poses, 0, ego.front, speed)
@@ -78,7 +78,7 @@ def test_who_is_left_out_hardly_changes_what_a_manoeuvre_would_lead_to(
             with ExitStack() as stack:
                 waiting = make_waiting_ego(PLANNING, make_controller(PLANNING, 0.05), 0.05, stack)
                 waiting.start(speed)
-                ego = Ego(waiting, EgoPath.through(BEND), 50.0, shape, WayAhead(), 100.0, 0.05)
+                ego = Ego(waiting, EgoPath.through(BEND), 50.0, shape, RuleSet(), 100.0, 0.05)
                 N = waiting.horizon
                 poses = np.zeros((N, 1, 7))
                 poses[:, :, 4:] = shape.length / 2, shape.length / 2, shape.width

@@ -14,9 +14,9 @@ import pytest
 import giveway
 
 # They heed only people: who follows another vehicle has less to search.
-ALONE = {"vehicles": False}
-REAR = {"ego": {"id": "rear", "depart_position": 22.5}, "regulation": ALONE}
-FRONT = {"ego": {"id": "front", "depart_position": 34.0}, "regulation": ALONE}
+ALONE = {"following": False}
+REAR = {"ego": {"id": "rear", "depart_position": 22.5}, "rules": ALONE}
+FRONT = {"ego": {"id": "front", "depart_position": 34.0}, "rules": ALONE}
 
 
 def tracks(egos: tuple[dict[str, Any], ...], seed: int) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from giveway.config.run_config import PAPER_STEP
 from giveway.errors import ConfigError
 from giveway.plug_ins.finding import find, is_fmu, load_class, shown
 from giveway.plug_ins.options import plain
-from giveway.plug_ins.sockets import CONTROLLER, MODEL, Socket
+from giveway.plug_ins.sockets import CONTROLLER, MODEL, RULE, Socket
 
 if TYPE_CHECKING:
     from giveway.config.run_config import EgoRunConfig, RunConfig
@@ -61,13 +61,16 @@ def foreign_code(config: RunConfig) -> list[Named]:
         for ego in config.each_ego()
         if ego.plugged_in
     ]
+    for ego in config.each_ego():
+        rules = ego.rules.plugged_in.items()
+        named += [Named(RULE, ego.ego_id, name, own) for name, own in rules]
     if config.crowd.plugged_in:
         named.append(Named(MODEL, "the crowd", config.crowd.model, config.model_options))
     return named
 
 
 def code_hashes(
-    config: RunConfig, sockets: Collection[Socket] = (CONTROLLER, MODEL)
+    config: RunConfig, sockets: Collection[Socket] = (CONTROLLER, MODEL, RULE)
 ) -> dict[str, str]:
     """SHA-256 of the package of each plug-in, by :attr:`Named.key`.
 
@@ -125,7 +128,8 @@ def provenance(config: RunConfig) -> dict[str, dict[str, dict[str, Any]]]:
         else:
             _, options = _loaded(one)
             described = find(one.name, one.socket).described() | {"options": plain(options)}
-        told.setdefault(one.socket.manifest, {})[one.whose] = described
+        whose = f"{one.name} of {one.whose}" if one.socket is RULE else one.whose
+        told.setdefault(one.socket.manifest, {})[whose] = described
     return told
 
 

@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 
 from giveway.config.files.schema_names import RUN, with_schema
 from giveway.config.files.toml import read_toml_file
+from giveway.config.old_keys import advice_on
 from giveway.config.option import Section, declared, expectation
 from giveway.config.run_config import RunConfig
 from giveway.errors import ConfigError
@@ -203,7 +204,7 @@ def _explain(error: Any, layers: Sequence[Layer]) -> str:
     holders = [layer for layer in layers if location and layer.holds(location)]
     name = holders[-1].name(location) if holders else ".".join(location) or "configuration"
     if error["type"] == "extra_forbidden":
-        return f"{name}: unknown key; {_did_you_mean(location)}"
+        return f"{name}: {advice_on(location) or f'unknown key; {_did_you_mean(location)}'}"
     if error["type"] == "value_error":
         origin = f"{holders[-1].origin}: " if holders and not holders[-1].from_flags else ""
         table = f"[{'.'.join(location)}] " if location else ""
@@ -253,6 +254,11 @@ def dump_toml(config: RunConfig) -> str:
     for table in PLUGGED:
         if own := getattr(config, table):
             document.add(table, tomlkit.item(own))
+    rules: Any = document.get("rules")
+    for name, own in config.rules.plugged_in.items():
+        if rules is None:
+            rules = document.setdefault("rules", tomlkit.table())
+        rules.add(name, tomlkit.item(dict(own) or True))
     crowd: Any = document["crowd"]
     for where, key, entries in (
         (crowd, "flow", [flow.settings() for flow in config.crowd.flow]),

@@ -97,4 +97,6 @@ def _named_in(values: Mapping[str, Any], socket: Socket) -> set[str]:
             node = node.get(key) if isinstance(node, Mapping) else None
         if isinstance(node, str):
             named.add(same_name(node))
+        elif isinstance(node, Mapping):  # of names
+            named |= {name for name, own in node.items() if own}
     return named

@@ -71,11 +71,6 @@ class EgoConfig(Section):
         le=70,
         because="no car on a road is faster",
     )
-    keep_stops: bool | None = option(
-        None,
-        None,
-        "one that is taken over serves its stops; none: if it is a bus, a coach or a tram",
-    )
     travel_distance: float | None = option(
         None,
         "m",

@@ -45,14 +45,6 @@ class PerceptionConfig(Section):
         "", None, "parameters the pedestrians are predicted with, as [crowd] preset; none: the same"
     )
 
-    signal_plans: bool = option(
-        True,
-        None,
-        "lights tell the ego their plan (SPaT): it waits for nobody who will find theirs red, and "
-        "mpc arrives when its own is green",
-        flag="--signal-plans",
-    )
-
     @property
     def plugged_in(self) -> bool:
         """Whether the model of people that is believed in is somebody else's."""

@@ -43,17 +43,6 @@ class RegulationConfig(Section):
     gap_from: Literal["bumper", "centre"] = option(
         "bumper", None, "where the distance to who is in front starts"
     )
-    vehicles: bool = option(
-        True, None, "vehicles in front are obstacles too", flag="--respect-vehicles"
-    )
-    traffic_lights: bool = option(True, None, "the ego stops at red lights", flag="--obey-lights")
-    priority: Literal["road", "none"] | None = option(
-        None,
-        None,
-        "road: the ego gives way to people at crossings and to vehicles at junctions; none: the "
-        "paper's open space. Left out: road, but not for the paper's controllers",
-        flag="--priority",
-    )
     kerb_distance: float = option(
         1.5,
         "m",

@@ -159,7 +159,7 @@ class ReplayedLoop:
 def _recall(ego: Ego) -> None:
     """Note where the ego had to stop, which nobody asks about again."""
     if isinstance(ego.vehicle, RecordedVehicle):
-        ego.way.stop = ego.front + ego.vehicle.stop_gap
+        ego.rules.stop = ego.front + ego.vehicle.stop_gap
 
 
 def _on_the_road(driven: Driven, time: float) -> Array:

@@ -3,26 +3,17 @@
 import math
 from collections.abc import Sequence
 
-from giveway.config import EgoRunConfig
 from giveway.config.option import LANE
 from giveway.config.tables.basics import DEFAULT_SPEED
-from giveway.config.tables.regulation import RegulationConfig
 from giveway.cosimulation.entry.joining import join
 from giveway.cosimulation.entry.stop_places import SERVING, lanes_of, on_path, placed
 from giveway.cosimulation.law_records import way_of
 from giveway.ego.controllers import make_controller
-from giveway.ego.crossings import Crossings, crossings_on
 from giveway.ego.ego import Ego
-from giveway.ego.junctions import PathJunction, junctions_on
 from giveway.ego.kerbs import Kerbs
-from giveway.ego.lights import Lights
-from giveway.ego.merges import Merges, places_of
-from giveway.ego.perception.leader import CLOSEST
-from giveway.ego.right_of_way import RightOfWay
-from giveway.ego.speed_profile import SpeedProfile, profile_of
-from giveway.ego.stops import Stop, Stops
+from giveway.ego.rules.route import RouteContext, Stop
+from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.waiting_ego import WaitingEgo
-from giveway.ego.way_ahead import WayAhead
 from giveway.errors import ScenarioError
 from giveway.geometry.bodies import BODY, VehicleShape
 from giveway.geometry.path import EgoPath
@@ -30,12 +21,9 @@ from giveway.geometry.slope import Slope
 from giveway.run_data.way import EgoWay, JunctionOnWay
 from giveway.sumo.lane_path import LanePath
 from giveway.sumo.session import SumoSession
-from giveway.sumo.signal_plans import ChangeOf, untold
 from giveway.sumo.vehicles import VehicleState
 from giveway.walkways import WalkNetwork
 
-_BEHIND = 0.5  # [m] more than it keeps is left behind a vehicle that stands
-_LEAST_GAP = 1.0  # [m] behind it
 _STEEP = 0.01  # [rad] less is not worth a word
 
 
@@ -88,7 +76,7 @@ class Entrance:
         state = vehicles.state(ego.id)
         shape = shape_of(ego, state)
         stops = vehicles.stops(ego.id)
-        keep = ego.config.ego.keep_stops
+        keep = ego.config.rules.stops
         serves = state.kind in SERVING if keep is None else keep
         places = placed(stops, state) if serves else {}
         lane_path = self._session.lanes.along(
@@ -142,18 +130,13 @@ class Entrance:
         capable: float,
         stops: Sequence[Stop] = (),
     ) -> Ego:
-        config = ego.config
-        profile = profile_of(
-            ego, path, lane_path.limits, departure, shape.length, capable, self._time_step
+        route = RouteContext(
+            ego, self._session, path, lane_path, departure, shape, self._time_step, capable, stops
         )
-        if profile is not None and not ego.recorded:
-            ego.controller = make_controller(config, self._time_step, profile.fastest)
-        hardest = config.mpc.force_limit / config.vehicle.mass
+        if route.profile is not None and not ego.recorded:
+            ego.controller = make_controller(ego.config, self._time_step, route.fastest)
         ego.start(speed)
-        goal = config.ego.travel_distance
-        junctions = junctions_on(
-            path, lane_path.passages, shape.width, self._session.junctions, self._session.lanes
-        )
+        goal = ego.config.ego.travel_distance
         self.ways[ego.id] = way_of(
             ego.id,
             path,
@@ -163,18 +146,9 @@ class Entrance:
             lights=lane_path.lights,
             junctions=[
                 JunctionOnWay(one.entry, one.exit, one.waiting, one.movement.has_stop_sign)
-                for one in junctions
+                for one in route.junctions
             ],
             stops=stops,
-        )
-        halts = Stops(stops, clock=self._session.time, time_step=self._time_step, hardest=hardest)
-        way = WayAhead(
-            self._lights(config, lane_path, hardest),
-            halts if stops else None,
-            self._crossings(config, path, shape),
-            self._right_of_way(config, junctions, shape, profile),
-            self._merges(config, path, lane_path, shape, departure),
-            self._kerbs(ego, path, shape),
         )
         slope = Slope.through(lane_path.heights)
         if slope is not None and not ego.recorded:
@@ -184,10 +158,10 @@ class Entrance:
             path,
             departure,
             shape,
-            way,
+            RuleSet.on(route),
             path.length - departure if goal is None else goal,
             self._time_step,
-            profile,
+            self._kerbs(route),
             slope,
         )
 
@@ -200,85 +174,14 @@ class Entrance:
                 "on the level: no profile names an input of it for the grade (docs/vehicles.md)"
             )
 
-    def _kerbs(self, ego: WaitingEgo, path: EgoPath, shape: VehicleShape) -> Kerbs | None:
-        """The kerbs beside the path; None: there are none, or they are no matter."""
-        network = self._network
-        if network is None or ego.safety is None or ego.safety.setting_out == math.inf:
+    def _kerbs(self, route: RouteContext) -> Kerbs | None:
+        """The kerbs beside the path; None if there are none, or nobody asks for them."""
+        network, safety = self._network, route.ego.safety
+        if network is None or safety is None or safety.setting_out == math.inf:
             return None
-        crossings, change_of = self._session.lanes.crossings, self._change_of(ego.config)
-        kerbs = Kerbs(path, shape.width, network.sidewalks, crossings, change_of)
+        crossings = self._session.lanes.crossings
+        kerbs = Kerbs(route.path, route.shape.width, network.sidewalks, crossings, route.change_of)
         return kerbs if kerbs else None
-
-    def _change_of(self, config: EgoRunConfig) -> ChangeOf:
-        """What traffic lights tell the ego of their next change."""
-        return self._session.signal_plans.change if config.perception.signal_plans else untold
-
-    def _lights(self, config: EgoRunConfig, lane_path: LanePath, hardest: float) -> Lights | None:
-        """The traffic lights that the ego heeds; None: there are none."""
-        if not (config.regulation.traffic_lights and lane_path.lights):
-            return None
-        return Lights(
-            lane_path.lights,
-            comfortable=config.regulation.comfortable_deceleration,
-            hardest=hardest,
-            arrows=config.heeds_priority,
-            greens_of=self._session.signal_plans.greens if config.perception.signal_plans else None,
-        )
-
-    def _merges(
-        self,
-        config: EgoRunConfig,
-        path: EgoPath,
-        lane_path: LanePath,
-        shape: VehicleShape,
-        departure: float,
-    ) -> Merges | None:
-        """Where the ego comes onto a lane together with others; None: nowhere."""
-        if not (config.heeds_priority and config.regulation.vehicles):
-            return None
-        found = self._session.lanes.mergings(lane_path)
-        places = places_of(path, shape.width / 2, found, departure)
-        return Merges(places, shape.length) if places else None
-
-    def _crossings(
-        self, config: EgoRunConfig, path: EgoPath, shape: VehicleShape
-    ) -> Crossings | None:
-        """The crossings at which the ego gives way; None: none."""
-        if not config.heeds_priority:
-            return None
-        found = crossings_on(path, shape, self._session.lanes.crossings)
-        if not found:
-            return None
-        regulation = config.regulation
-        return Crossings(
-            found,
-            length=shape.length,
-            gap=_standing_gap(regulation),
-            kerb_distance=regulation.kerb_distance,
-            kerb_time=regulation.kerb_time,
-            change_of=self._change_of(config),
-        )
-
-    def _right_of_way(
-        self,
-        config: EgoRunConfig,
-        junctions: Sequence[PathJunction],
-        shape: VehicleShape,
-        profile: SpeedProfile | None,
-    ) -> RightOfWay | None:
-        """Who goes first at the junctions; None: there are none, or the ego keeps to no law."""
-        if not (config.heeds_priority and junctions):
-            return None
-        regulation = config.regulation
-        return RightOfWay(
-            junctions,
-            name=config.ego_id,
-            length=shape.length,
-            gap=_standing_gap(regulation),
-            fastest=float(config.reference_speed) if profile is None else profile.fastest,
-            critical_gap=regulation.critical_gap,
-            follow_up_gap=regulation.follow_up_gap,
-        )
 
 
 def require_way(ego: WaitingEgo, path: EgoPath, departure: float) -> None:
@@ -319,8 +222,3 @@ def initial_speed(ego: WaitingEgo, lane_path: LanePath) -> float:
         return speed
     by_lane = ego.config.reference_speed == LANE
     return min(DEFAULT_SPEED, lane_path.limits[0].speed) if by_lane else DEFAULT_SPEED
-
-
-def _standing_gap(regulation: RegulationConfig) -> float:
-    """The gap [m] that it needs behind a vehicle that stands, so as not to block a place."""
-    return max(_LEAST_GAP, min(regulation.safe_distance, CLOSEST) + _BEHIND)

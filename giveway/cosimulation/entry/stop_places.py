@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from giveway.ego.stops import Stop
+from giveway.ego.rules.route import Stop
 from giveway.geometry.path import EgoPath
 from giveway.sumo.lane_path import LanePath
 from giveway.sumo.lanes import Lanes

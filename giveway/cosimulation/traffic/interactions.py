@@ -4,15 +4,15 @@ Egos take note of lights and traffic; background vehicles let those egos go firs
 behind those that merge, and brake for pedestrians.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from giveway.cosimulation.traffic.junction_approaches import TrafficWatch
 from giveway.cosimulation.traffic.merging import Merging
 from giveway.cosimulation.traffic.priority import rooms_before
 from giveway.cosimulation.traffic.yielding import Yielding
 from giveway.ego.ego import Ego
-from giveway.ego.merges import Behind
-from giveway.ego.right_of_way import Traffic
+from giveway.ego.rules.junctions import Traffic
+from giveway.ego.rules.protocol import Told
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.session import SumoSession
 from pedestrian_model import Crowd
@@ -41,7 +41,7 @@ class Meetings:
     def update(self, background: BackgroundVehicles, crowd: Crowd, egos: Sequence[Ego]) -> None:
         """Look at everybody who is on the road now.
 
-        Without background vehicles, egos whose way is bounded and :attr:`pending` it does nothing.
+        Without background vehicles, egos that watch and :attr:`pending` it does nothing.
 
         Args:
             background: the background vehicles.
@@ -49,9 +49,7 @@ class Meetings:
             egos: on the road.
         """
         rooms = self._look_ahead(background, egos)
-        merging: Sequence[Mapping[str, Behind]] = ()
-        if any(ego.way.merges is not None for ego in egos):
-            merging = self._merging.update(background, egos)
+        merging = [ego.rules.keeps_behind for ego in egos if ego.rules.situation.merging]
         yielding = self._yielding
         if yielding is not None and (background.ids or yielding.limited):
             yielding.update(background, crowd, egos, rooms, merging)
@@ -61,12 +59,13 @@ class Meetings:
         """Let egos take note of lights and traffic; who has to wait for one, and the room [m]."""
         session, rooms = self._session, dict[str, float]()
         traffic: Traffic = {}
-        if any(ego.way.visited for ego in egos):
+        if any(ego.rules.junctions for ego in egos):
             traffic = self._traffic.of(background, egos)
         for ego in egos:
-            if ego.way.systems or traffic:
-                states = session.light_states(ego.way.systems)
-                ego.way.look(session.time, ego.front, ego.vehicle.speed, states, traffic)
+            if ego.watches:
+                states = session.light_states(ego.systems)
+                merging = self._merging.of(background, ego, egos)
+                ego.update(session.time, Told(states, traffic, merging))
                 for name, room in rooms_before(ego, states, traffic).items():
                     rooms[name] = min(room, rooms.get(name, room))
         return rooms

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from giveway.ego.ego import Ego
-from giveway.ego.right_of_way import Approach, Traffic
+from giveway.ego.rules.junctions import Approach, Traffic
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.session import SumoSession
 
@@ -46,7 +46,7 @@ class TrafficWatch:
         """
         found: dict[str, list[Approach]] = {}
         for ego in egos:
-            found |= {junction: [] for junction in ego.way.junctions(ego.front)}
+            found |= {junction: [] for junction in ego.rules.near_junctions(ego.front)}
         if found:
             self._learn(found.keys())
             self._add_background(background, egos, found)
@@ -111,7 +111,7 @@ class TrafficWatch:
         for ego in egos:
             speed = ego.vehicle.speed
             standing = self._standing(ego.id, speed)
-            for place in ego.way.visited:
+            for place in ego.rules.junctions:
                 distance = place.entry - ego.front
                 if place.movement.junction in found and distance < _RANGE:
                     own = place.movement

@@ -6,7 +6,7 @@ import numpy as np
 
 from giveway.cosimulation.traffic.lane_paths import LanePaths
 from giveway.ego.ego import Ego
-from giveway.ego.merges import Behind, Place, Rival
+from giveway.ego.rules.merge_places import Place, Rival
 from giveway.sumo.background import BackgroundVehicles
 from giveway.sumo.lanes import Lanes
 from giveway.sumo.vehicles import SumoVehicles
@@ -27,24 +27,21 @@ class Merging:
         self._lanes = lanes
         self._lane_paths = LanePaths(vehicles)
 
-    def update(
-        self, background: BackgroundVehicles, egos: Sequence[Ego]
-    ) -> list[dict[str, Behind]]:
-        """Let each ego take note of those it merges with; who keeps behind each.
+    def of(
+        self, background: BackgroundVehicles, ego: Ego, egos: Sequence[Ego]
+    ) -> dict[Place, dict[str, Rival]]:
+        """The vehicles that an ego merges with, at each place in sight.
 
         Args:
-            background: the background vehicles now.
-            egos: on the road now.
+            background: Background vehicles now.
+            ego: Ego that asks.
+            egos: Egos on the road now.
         """
-        found = []
-        for ego in egos:
-            places = () if ego.way.merges is None else ego.way.merges.in_sight(ego.front)
-            if ego.way.merges is None or not places:
-                continue
-            near = self._near(background, ego, [other for other in egos if other is not ego])
-            rivals = self._rivals(places, near)
-            found.append(ego.way.merges.see(rivals, ego.front, ego.vehicle.speed))
-        return found
+        places = ego.rules.near_merges(ego.front)
+        if not places:
+            return {}
+        near = self._near(background, ego, [other for other in egos if other is not ego])
+        return self._rivals(places, near)
 
     @staticmethod
     def _near(

@@ -10,11 +10,9 @@ already, before their ways cross.
 from collections.abc import Mapping
 
 from giveway.ego.ego import Ego
-from giveway.ego.gaps import travel_time
-from giveway.ego.giving_way import AFTER, BEFORE, HARDEST, USUAL_SPEED, needed_braking
-from giveway.ego.junctions import PathJunction
-from giveway.ego.lights import RED
-from giveway.ego.right_of_way import SIGHT, Approach, Traffic, letter_of
+from giveway.ego.rules.gap_acceptance import travel_time
+from giveway.ego.rules.junctions import RED, SIGHT, Approach, PathJunction, Traffic, letter_of
+from giveway.ego.rules.yielding import AFTER, BEFORE, HARDEST, USUAL_SPEED, needed_braking
 from giveway.geometry.conflict import Conflict
 
 _BEFORE_CONFLICT = 1.0  # [m] before the ego's way who is in the junction is to stand
@@ -31,17 +29,17 @@ def rooms_before(ego: Ego, states: Mapping[str, str], traffic: Traffic) -> dict[
         traffic: who approaches each junction.
     """
     found: dict[str, float] = {}
-    for place in ego.way.visited:
+    for place in ego.rules.junctions:
         ahead = place.entry - ego.front
         if ahead > SIGHT or ego.front > place.exit:
             continue
         letter = letter_of(place.movement, states)
         inside = ahead <= 0.0
-        if not inside and (ego.way.stop <= place.entry or letter in RED):
+        if not inside and (ego.rules.stop <= place.entry or letter in RED):
             continue  # it waits itself
         for other in traffic.get(place.movement.junction, ()):
             where = place.conflicts.get(other.number)
-            if other.name == ego.id or where is None or (inside and ego.way.stop <= where.enter):
+            if other.name == ego.id or where is None or (inside and ego.rules.stop <= where.enter):
                 continue
             room = other.distance
             if room <= 0.0:  # it is in the junction

@@ -21,7 +21,7 @@ import numpy as np
 from giveway.config.tables.regulation import CORRIDOR_MARGIN
 from giveway.cosimulation.traffic.lane_paths import LanePaths, gaps_ahead, sort_pedestrians
 from giveway.ego.ego import Ego
-from giveway.ego.merges import Behind
+from giveway.ego.rules.merge_places import Behind
 from giveway.geometry.kernel import Array
 from giveway.geometry.overlap import rectangles_overlap
 from giveway.sumo.background import BackgroundVehicles

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 Drive = Callable[..., tuple[Any, Any]]  # the result of a run, and what was seen on the way
 NOBODY = {"crowd": {"zone": "none"}}
+ALONE = {"traffic_lights": False, "following": False}  # [rules]
 ROUND_THE_BLOCK = ("B1C1", "C1C2", "C2B2", "B2B1", "B1C1", "C1D1")  # east, north, west, south
 
 
@@ -69,8 +70,8 @@ def test_sumo_has_the_ego_where_we_have_it(crowded: tuple[RunResult, Any]) -> No
 
 def test_metres_driven_are_metres_of_lane(drive: Drive, city: Callable[[float], Path]) -> None:
     ego = {"route": ("A1B1", "B1C1", "C1D1"), "initial_speed": 10.0}
-    regulation = {"reference_speed": 12.0, "traffic_lights": False, "vehicles": False}
-    result, look = drive(city(0.1), ego=ego, regulation=regulation, time_limit=12.0, **NOBODY)
+    own = {"regulation": {"reference_speed": 12.0}, "rules": ALONE, **NOBODY}
+    result, look = drive(city(0.1), ego=ego, **own, time_limit=12.0)
     track = result.ego_track
     lanes = [shapely.LineString(shape) for shape in look.lanes.values()]
     tree = shapely.STRtree(lanes)
@@ -94,7 +95,8 @@ def test_the_ego_looks_where_it_drives_on_roads_of_every_direction(
     result, _ = drive(
         city(0.1),
         ego={"route": ROUND_THE_BLOCK, "initial_speed": 8.0, "travel_distance": 430.0},
-        regulation={"reference_speed": 12.0, "traffic_lights": False, "vehicles": False},
+        regulation={"reference_speed": 12.0},
+        rules=ALONE,
         **NOBODY,
     )
     track = result.ego_track
@@ -143,8 +145,8 @@ def test_diagonals_bends_and_another_network_without_anything_for_pedestrians(
 
 def test_a_left_turn_begins_on_the_left_lane(drive: Drive, city: Callable[[float], Path]) -> None:
     ego = {"route": ("A1B1", "B1B2"), "lane": 1, "travel_distance": 120.0}
-    regulation = {"traffic_lights": False, "vehicles": False, "reference_speed": 4.0}
-    result, look = drive(city(0.1), ego=ego, regulation=regulation, **NOBODY)
+    regulation = {"reference_speed": 4.0}
+    result, look = drive(city(0.1), ego=ego, regulation=regulation, rules=ALONE, **NOBODY)
     track = result.ego_track
     on_edge = track.front_x < look.lanes["A1B1_1"][-1, 0]
     y = track.front_y[on_edge]
@@ -211,11 +213,12 @@ def test_the_ego_keeps_behind_the_vehicle_in_front(
         </vehicle>"""
     )
     ego = {"route": ("A0B0", "B0C0"), "lane": 1, "depart_time": 1.0, "travel_distance": 120.0}
-    regulation = {"reference_speed": speed, "traffic_lights": False}
+    regulation = {"reference_speed": speed}
     result, look = drive(
         config,
         ego=ego,
         regulation=regulation,
+        rules={"traffic_lights": False},
         controller=controller,
         time_limit=60.0,
         **NOBODY,

@@ -57,7 +57,8 @@ def test_the_ego_stops_before_a_red_line_and_goes_at_green(
     result, look = drive(
         city(step),
         ego={"route": route, "lane": 1, "depart_time": 95.0, "travel_distance": 205.0},
-        regulation={"reference_speed": speed, "vehicles": False},
+        regulation={"reference_speed": speed},
+        rules={"following": False},
         crowd={"zone": "none"},
         time_limit=150.0,
     )
@@ -86,8 +87,8 @@ def test_at_yellow_the_ego_stops_if_it_can(drive: Drive, departure: float, passe
     result, look = drive(
         find("junction").config_file,
         ego={"depart_time": departure, "depart_position": 60.0, "initial_speed": 8.0},
-        regulation={"reference_speed": 8.0, "vehicles": False},
-        perception={"signal_plans": False},
+        regulation={"reference_speed": 8.0},
+        rules={"following": False, "signal_advice": False},
         crowd={"zone": "none"},
         time_limit=12.0,
     )

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from support.priority import NO_PRIORITY
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -152,6 +153,6 @@ def test_a_car_on_the_ramp_beside_the_road_is_not_expected_on_it(
 def test_without_the_law_of_the_road_an_ego_forces_its_way(
     merge: Callable[..., tuple[Any, Any]],
 ) -> None:
-    regulation = {"reference_speed": 13.9, "priority": "none"}
-    result, _ = merge("drop", 0, "mpc", 5, regulation=regulation, time_limit=12.0)
+    own = {"regulation": {"reference_speed": 13.9}, "rules": NO_PRIORITY}
+    result, _ = merge("drop", 0, "mpc", 5, **own, time_limit=12.0)
     assert result.summary["vehicle_contacts"] == 1

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from support.priority import NO_PRIORITY
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -70,7 +71,7 @@ def test_from_a_side_road_it_waits_for_the_stream_to_end(
 
 
 def _without_law() -> dict[str, Any]:
-    return {**SPEED, "regulation": {**SPEED["regulation"], "priority": "none"}}
+    return {**SPEED, "rules": NO_PRIORITY}
 
 
 def test_a_left_turn_at_green_waits_for_who_comes_towards_it(

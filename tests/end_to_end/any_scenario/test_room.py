@@ -130,8 +130,8 @@ def test_contact_with_a_background_vehicle_is_counted_and_said(
         net=lane,
     )
     ego = {"route": ("ab",), "depart_time": 1.0, "depart_position": 10.0, "travel_distance": 80.0}
-    blind = {"vehicles": False}
-    result, look = drive(config, ego=ego, regulation=blind, time_limit=60.0, **NOBODY)
+    blind = {"following": False}
+    result, look = drive(config, ego=ego, rules=blind, time_limit=60.0, **NOBODY)
     assert look.collided("ego") == {"block"}
     summary, track = result.summary, result.ego_track
     inside = (track.front_x > 35.0) & (track.front_x - 5.0 < 40.0)

@@ -14,9 +14,11 @@ if TYPE_CHECKING:
 Drive = Callable[..., tuple[Any, Any]]  # the result of a run, and what was seen on the way
 QUICKLY = {
     "crowd": {"zone": "none"},
-    "regulation": {"traffic_lights": False, "reference_speed": 8.0},
+    "regulation": {"reference_speed": 8.0},
     "time_limit": 60.0,
 }
+FREELY = {**QUICKLY, "rules": {"traffic_lights": False}}
+
 LINE = """
     <vType id="twelve" vClass="{kind}" length="12" sigma="0" speedDev="0"/>
     <vehicle id="line" type="twelve" depart="0" departPos="15" departLane="1">
@@ -42,7 +44,7 @@ def test_a_bus_serves_its_stops(
     drive: Drive, scenario: Callable[..., Path], controller: str
 ) -> None:
     config = scenario(LINE.format(kind="bus"))
-    result, look = drive(config, ego={"take_over": ("line",)}, controller=controller, **QUICKLY)
+    result, look = drive(config, ego={"take_over": ("line",)}, controller=controller, **FREELY)
     track = result.ego_track
     first, second = look.lanes["A0B0_1"], look.lanes["B0C0_2"]
     assert result.completed
@@ -65,8 +67,8 @@ def test_whose_stops_are_kept(
     drive: Drive, scenario: Callable[..., Path], kind: str, keep: bool | None, served: int
 ) -> None:
     config = scenario(LINE.format(kind=kind))
-    ego = {"take_over": ("line",), "keep_stops": keep}
-    result, _ = drive(config, ego=ego, controller="pid-tuned", **QUICKLY)
+    ego, rules = {"take_over": ("line",)}, {"traffic_lights": False, "stops": keep}
+    result, _ = drive(config, ego=ego, rules=rules, controller="pid-tuned", **QUICKLY)
     assert result.completed
     assert len([halt for halt in halts(result.ego_track) if halt[1] > 1.0]) == served
     assert any("its 2 stop(s) are left out" in remark for remark in result.remarks) == (not served)
@@ -85,7 +87,7 @@ def test_a_stop_in_a_parking_area_is_left_out_and_one_behind_is_over(
     )
     config.with_name("area.add.xml").write_text(area)
     ego = {"take_over": ("line",)}
-    result, _ = drive(config, ego=ego, controller="pid-tuned", **QUICKLY)
+    result, _ = drive(config, ego=ego, controller="pid-tuned", **FREELY)
     assert len([halt for halt in halts(result.ego_track) if halt[1] > 1.0]) == 1
     assert any("halts at 1 stop(s)" in remark for remark in result.remarks)
     assert any("its 1 stop(s) are left out" in remark for remark in result.remarks)

@@ -99,7 +99,8 @@ def test_cars_follow_the_ego(drive: Drive) -> None:
     _, look = drive(
         find("junction").config_file,
         ego={"depart_time": 0.0, "depart_position": 20.0, "initial_speed": 1.0},
-        regulation={"reference_speed": 1.0, "traffic_lights": False},
+        regulation={"reference_speed": 1.0},
+        rules={"traffic_lights": False},
         crowd={"zone": "none"},
         time_limit=50.0,
     )

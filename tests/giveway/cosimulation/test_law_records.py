@@ -5,7 +5,7 @@ import pytest
 
 from giveway.cosimulation.law_records import LawRecords, way_of
 from giveway.crowd.roster import Roster
-from giveway.ego.stops import Stop
+from giveway.ego.rules.route import Stop
 from giveway.geometry.path import EgoPath
 from giveway.journal.recorder import Recorder
 from giveway.run_data.way import EgoWay, Halt, JunctionOnWay, StopLine

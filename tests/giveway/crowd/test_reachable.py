@@ -72,7 +72,7 @@ def test_a_run_says_so_and_what_it_advises_brings_people_to_the_ego(small_city: 
         "scenario": str(small_city),
         "ego": {"route": ("B1C1", "C1D1"), "depart_time": 15.0},
         "crowd": {"pedestrians": 5, "zone": "none", "spawn_area": (0.0, 340.0, 9.0, 350.0)},
-        "regulation": {"traffic_lights": False},
+        "rules": {"traffic_lights": False},
         "controller": "pid-tuned",
         "time_limit": 14.0,
     }

@@ -6,9 +6,8 @@ from typing import Any
 import pytest
 
 from giveway.cosimulation.traffic.priority import rooms_before
-from giveway.ego.gaps import MINOR_STRAIGHT, PERMITTED
-from giveway.ego.junctions import PathJunction
-from giveway.ego.right_of_way import Approach
+from giveway.ego.rules.gap_acceptance import MINOR_STRAIGHT, PERMITTED
+from giveway.ego.rules.junctions import Approach, PathJunction
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.junctions import Movement
@@ -43,7 +42,7 @@ def ego(
         front=front,
         shape=VehicleShape(5.0, 2.0),
         vehicle=SimpleNamespace(speed=speed),
-        way=SimpleNamespace(visited=(place,), stop=stop),
+        rules=SimpleNamespace(junctions=(place,), stop=stop),
     )
 
 

@@ -1,22 +1,35 @@
 """Right of way among vehicles: where the ego waits at a junction for those who go first.
 
 Who goes first says the network (its links' states and ``request`` rows) and, where there is one,
-the running traffic light: red and yellow are :mod:`giveway.ego.lights`' business; with ``G`` the
-ego goes first; with ``g``, ``s`` (after a stop), ``o`` and no light at all it lets those go first
+the running traffic light: red and yellow are the business of `TrafficLights`; with ``G`` the ego
+goes first; with ``g``, ``s`` (after a stop), ``o`` and no light at all it lets those go first
 whom ``request`` names, unless their light is red. At an all-way stop who stood first goes first.
 
 Those with priority come first if the ego, going on, would find them in its way: it needs its
-critical gap (:mod:`giveway.ego.gaps`) from its line on, and a second after it has cleared their
-way. It waits at the line, or where SUMO's vehicles wait inside the junction if it may go as far. It
-does not enter a junction that a slow vehicle ahead keeps it from leaving.
+critical gap (`gap_acceptance`) from its line on, and a second after it has cleared their way. It
+waits at the line, or where SUMO's vehicles wait inside the junction if it may go as far. It does
+not enter a junction that a slow vehicle ahead keeps it from leaving.
 """
+
+from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence, Set
-from typing import NamedTuple
 
-from giveway.ego.gaps import travel_time
-from giveway.ego.giving_way import (
+from giveway.ego.perception.leader import Leader
+from giveway.ego.rules.gap_acceptance import travel_time
+from giveway.ego.rules.junctions import (
+    RED,
+    SIGHT,
+    YELLOW,
+    Approach,
+    PathJunction,
+    Traffic,
+    letter_of,
+)
+from giveway.ego.rules.protocol import YIELD, Demand, Needs, Situation
+from giveway.ego.rules.route import RouteContext
+from giveway.ego.rules.yielding import (
     AFTER,
     BEFORE,
     CRAWLING,
@@ -26,13 +39,9 @@ from giveway.ego.giving_way import (
     leaves_no_room,
     needed_braking,
 )
-from giveway.ego.junctions import PathJunction
-from giveway.ego.lights import RED, YELLOW
-from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.junctions import Movement
 
-SIGHT = 60.0  # [m] before a junction from which on others are looked at
 _PULL_AWAY, _BRISK = 1.5, 3.0  # [m/s^2] of the ego: no less, no more
 _COMING = 1.0  # [m/s^2] of others, who may speed up
 _GOING = 0.3  # [s] to whoever passes after it, for an ego that has decided to go
@@ -44,40 +53,26 @@ _STANDING = 0.2  # [m/s]
 _AT_LINE = 4.0  # [m] before the line a vehicle stands at it
 _DECIDED = 10.0  # [m] before the line the ego keeps to its decision to go
 _STOPS_AT_YELLOW = 2.5  # [m/s^2] of braking with which others stop at yellow
-_NOBODY = frozenset("GZ")  # with priority, or a zip, whose order :mod:`giveway.ego.merges` knows
-
-
-class Approach(NamedTuple):
-    """A vehicle on its way through a junction."""
-
-    name: str
-    number: int  # of its movement
-    distance: float  # [m] of its front from its line; negative: inside the junction
-    speed: float  # [m/s]
-    length: float  # [m]
-    standing: float  # [s] for which it has stood
-
-
-Traffic = Mapping[str, Sequence[Approach]]
-"""Who approaches each junction, by its id; the nearest first, the egos among them."""
+_NOBODY = frozenset(
+    "GZ"
+)  # with priority, or a zip, whose order :mod:`giveway.ego.rules.merging` knows
 
 
 class RightOfWay:
     """Watches the junctions on one ego's path.
 
     Args:
-        junctions: in the order of the path.
-        name: of the ego, who is among the traffic.
-        length: of the ego's body [m].
-        gap: that it keeps behind a vehicle that stands [m].
-        fastest: speed [m/s] that the ego drives at most.
-        critical_gap: [s]; None: the Highway Capacity Manual's.
-        follow_up_gap: [s]; None: likewise.
+        junctions: Junctions in the order of the path.
+        name: SUMO's id of the ego, which is among the traffic.
+        length: Length of the ego's body [m].
+        gap: Distance [m] that it keeps behind a standing vehicle.
+        fastest: Speed [m/s] that the ego drives at most.
+        critical_gap: Critical headway [s], or None for the Highway Capacity Manual's.
+        follow_up_gap: Follow-up headway [s], or None for the Highway Capacity Manual's.
 
     Attributes:
-        junctions: as above.
-        systems: SUMO's ids of the traffic lights that govern them.
-        beside: the names of those whose lanes lead them past the ego's path at the next junctions.
+        needs: The junctions, their signal systems, and where the ego must not stand.
+        beside: Names of vehicles whose lanes lead them past the ego's path at the next junctions.
     """
 
     def __init__(
@@ -91,7 +86,7 @@ class RightOfWay:
         critical_gap: float | None = None,
         follow_up_gap: float | None = None,
     ) -> None:
-        self.junctions = tuple(junctions)
+        self._junctions = tuple(junctions)
         self._name = name
         self._length, self._room = length, length + gap
         self._fastest = fastest
@@ -105,43 +100,56 @@ class RightOfWay:
         self._time = -math.inf
         self._staying: set[str] = set()  # others who will go on standing
         self._green: dict[tuple[str, int], float] = {}  # since when others' lights have been green
-        self.systems = frozenset(place.movement.system for place in junctions) - {""}
+        self.needs = Needs(
+            frozenset(place.movement.system for place in junctions) - {""},
+            self._junctions,
+            keep_clear=tuple((place.entry, place.exit + length) for place in junctions),
+        )
         self.beside: Set[str] = frozenset()
 
-    @property
-    def kept_free(self) -> list[tuple[float, float]]:
-        """Stations [m] of the front bumper between which the body is in one of them."""
-        return [(place.entry, place.exit + self._length) for place in self.junctions]
+    @classmethod
+    def on(cls, route: RouteContext) -> RightOfWay | None:
+        """The rule on one ego's route; None if vehicles meet nowhere, or it heeds no priority."""
+        if not (route.heeds("right_of_way") and route.junctions):
+            return None
+        regulation = route.config.regulation
+        return cls(
+            route.junctions,
+            name=route.config.ego_id,
+            length=route.shape.length,
+            gap=route.standing_gap,
+            fastest=route.fastest,
+            critical_gap=regulation.critical_gap,
+            follow_up_gap=regulation.follow_up_gap,
+        )
 
-    def look(self, front: float) -> frozenset[str]:
-        """The junctions whose traffic matters to an ego at ``front`` [m]."""
-        while self._next < len(self.junctions) and self.junctions[self._next].exit < front:
+    def _pass(self, front: float) -> None:
+        """Forget the junctions that the ego has left."""
+        while self._next < len(self._junctions) and self._junctions[self._next].exit < front:
             self._next += 1
             self._stop = math.inf  # it was for the junction passed
             self._going = self._halted = False
             self._stood, self._followed = 0.0, -math.inf
-        near = [place for place in self.junctions[self._next :] if place.entry - front <= SIGHT]
-        if not near:
-            self.beside = frozenset()  # nobody asks for an update there
-        return frozenset(place.movement.junction for place in near)
 
-    def update(
-        self, time: float, front: float, speed: float, states: Mapping[str, str], traffic: Traffic
-    ) -> None:
-        """Decide where to wait, once after each of SUMO's steps.
+    def update(self, situation: Situation) -> None:
+        """Decide where to wait.
 
         Args:
-            time: SUMO's clock [s].
-            front: station of the front bumper [m].
-            speed: [m/s].
-            states: of each light system, one letter per movement (SUMO's).
-            traffic: who approaches the junctions that :meth:`look` named.
+            situation: What the rules know now.
         """
+        time, front, speed = situation.time, situation.station, situation.speed
+        states, traffic = situation.signals, situation.traffic
+        self._pass(front)
+        ahead = self._junctions[self._next :]
+        if not ahead or ahead[0].entry - front > SIGHT:
+            self.beside = frozenset()
+        if not (states or traffic):
+            return  # nothing is known that the decision depends on
         passed, self._time = time - self._time, time
         before, self._stop = self._stop, math.inf
         beside, others = set[str](), set[str]()
-        for number in range(self._next, len(self.junctions)):
-            place = self.junctions[number]
+        for number in range(self._next, len(self._junctions)):
+            place = self._junctions[number]
             if place.entry - front > SIGHT:
                 break
             first = number == self._next
@@ -159,16 +167,19 @@ class RightOfWay:
                 self._stop = min(self._stop, max(stop, min(front, stop + STOP_BEFORE)))
         self.beside = beside - others
 
-    def stop_at(self, front: float, speed: float, leader: Leader = NO_LEADER) -> float:
-        """Station [m] at which the front bumper has to stop; inf: nowhere.
+    def demand(self, situation: Situation) -> Demand | None:
+        """A stop before a junction, or inside it, where the ego waits for others.
 
         Args:
-            front: station of the front bumper [m].
-            speed: [m/s].
-            leader: the vehicle ahead.
+            situation: What the rules know now.
         """
+        stop = self._stop_at(situation.station, situation.speed, situation.leader_at_rest())
+        return None if stop == math.inf else Demand(stop, YIELD)
+
+    def _stop_at(self, front: float, speed: float, leader: Leader) -> float:
+        """Station [m] at which the front bumper has to stop; inf: nowhere."""
         stop = self._stop
-        for place in self.junctions[self._next :]:
+        for place in self._junctions[self._next :]:
             if place.entry < front:
                 continue
             blocked = leaves_no_room(leader, place.entry, place.exit, self._room)
@@ -330,9 +341,3 @@ def _is_boxed_in(place: PathJunction, other: Approach, traffic: Traffic) -> bool
         and place.movements[ahead.number].source == source
         for ahead in traffic.get(place.movement.junction, ())
     )
-
-
-def letter_of(movement: Movement, states: Mapping[str, str]) -> str:
-    """The running light's letter for a movement, or the network's where no light governs it."""
-    state = states.get(movement.system, "")
-    return state[movement.link] if 0 <= movement.link < len(state) else movement.state

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from giveway.ego.gaps import (
+from giveway.ego.rules.gap_acceptance import (
     MAJOR_LEFT,
     MINOR_LEFT,
     MINOR_RIGHT,

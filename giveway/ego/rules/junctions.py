@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from giveway.ego.gaps import Gap, gap_of
+from giveway.ego.rules.gap_acceptance import Gap, gap_of
 from giveway.geometry.bodies import BODY
 from giveway.geometry.conflict import Conflict, conflict
 from giveway.geometry.kernel import Array
@@ -14,6 +14,9 @@ from giveway.sumo.junctions import Junctions, Movement
 from giveway.sumo.lane_path import Passage
 from giveway.sumo.lanes import Lanes
 
+RED = frozenset("rRu")  # letters of a signal state: red, red with yellow
+YELLOW = frozenset("yY")
+SIGHT = 60.0  # distance [m] before a junction from which on others are looked at
 _ASIDE = 0.3  # [m] between bodies that just do not touch
 _ONWARDS = 10.0  # [m] behind a junction, where ways that join are one
 _JOINED = 2.0  # [m] after which a vehicle that joins a way is its next one's leader
@@ -31,6 +34,21 @@ class PathJunction(NamedTuple):
     beside: frozenset[int]  # movements of other lanes that come nowhere near the path
     gap: Gap  # that its driver wants where no light shows green
     gap_at_lights: Gap
+
+
+class Approach(NamedTuple):
+    """A vehicle on its way through a junction."""
+
+    name: str
+    number: int  # of its movement
+    distance: float  # [m] of its front from its line; negative: inside the junction
+    speed: float  # [m/s]
+    length: float  # [m]
+    standing: float  # [s] for which it has stood
+
+
+Traffic = Mapping[str, Sequence[Approach]]
+"""Who approaches each junction, by its id; the nearest first, the egos among them."""
 
 
 def junctions_on(
@@ -112,3 +130,9 @@ def _way(movement: Movement, lanes: Lanes) -> Array:
     along = stations_of(onwards)
     at = np.concatenate([along[along < _ONWARDS], [min(_ONWARDS, along[-1])]])
     return np.concatenate([*map(lanes.shape, movement.inside), points_at(onwards, along, at)])
+
+
+def letter_of(movement: Movement, states: Mapping[str, str]) -> str:
+    """The running light's letter for a movement, or the network's where no light governs it."""
+    state = states.get(movement.system, "")
+    return state[movement.link] if 0 <= movement.link < len(state) else movement.state

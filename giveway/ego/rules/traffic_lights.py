@@ -4,17 +4,19 @@ Who knows when a light turns green need not hurry to stand before it: *green lig
 advisory* (GLOSA; the plans come by the messages of SAE J2735 and ETSI TS 103 301).
 """
 
-import math
-from collections.abc import Mapping, Sequence
+from __future__ import annotations
 
-from giveway.ego.giving_way import STOP_BEFORE, at_rest, needed_braking
-from giveway.ego.perception.leader import Leader
+import math
+from collections.abc import Callable, Sequence
+
+from giveway.ego.rules.junctions import RED, YELLOW
+from giveway.ego.rules.protocol import LIGHT, Demand, Needs, Situation
+from giveway.ego.rules.route import RouteContext
+from giveway.ego.rules.yielding import STOP_BEFORE, at_rest, needed_braking
 from giveway.sumo.lane_path import Light
 from giveway.sumo.signal_plans import Greens, GreensOf
 
-RED = frozenset("rRu")  # red, red with yellow
 _ARROW = frozenset("s")  # red with a green arrow: after a stop one may go
-YELLOW = frozenset("yY")
 _SLOWED = 0.8  # of the speed at which it goes on at yellow; slower, it stops if it can at all
 _SLOWEST = 2.0  # [m/s] that nobody is slowed below for a light that is red for long yet
 _FAR = 150.0  # [m] from where on it listens to a light
@@ -23,21 +25,23 @@ _COASTING = 0.4  # [m/s] that the speed is lowered at once: 1 m/s^2 of slowing
 _WAVE = 4.2  # [m/s] at which starting runs back along a queue, 15 km/h (Treiber & Kesting 2013)
 
 
-class Lights:
-    """Watches the lights on one ego's path.
+class TrafficLights:
+    """Watches the traffic lights on one ego's path.
 
     At yellow the ego stops if it can with the comfortable deceleration, and goes on if not, as
     long as nobody makes it brake; at red it stops if it can at all.
 
     Args:
-        lights: in the order of the path.
-        comfortable: deceleration [m/s^2] that is demanded at yellow.
-        hardest: deceleration [m/s^2] that the vehicle is capable of.
-        arrows: at a green arrow beside red somebody else stops and gives way; else it is red.
-        greens_of: when a movement is green; None: that is not asked for.
+        lights: Traffic lights in the order of the path.
+        comfortable: Deceleration [m/s^2] that is demanded at yellow.
+        hardest: Deceleration [m/s^2] that the vehicle is capable of.
+        arrows: Whether right of way rules at a green arrow beside red; else that is red.
+        greens_of: Green windows of a movement, or None if the ego is not told any.
+        desired_speed: Speed [m/s] of a free ego by its station [m].
+        gap: Distance [m] kept to a vehicle ahead.
 
     Attributes:
-        systems: SUMO's ids of the traffic lights on the path.
+        needs: The signal systems on the path.
     """
 
     def __init__(
@@ -48,6 +52,8 @@ class Lights:
         hardest: float,
         arrows: bool = False,
         greens_of: GreensOf | None = None,
+        desired_speed: Callable[[float], float] = lambda _: math.inf,
+        gap: float = 0.0,
     ) -> None:
         self._lights = tuple(lights)
         self._comfortable = comfortable
@@ -58,16 +64,33 @@ class Lights:
         self._next = 0
         self._greens_of = greens_of
         self._greens: Greens = ()  # of the next one
-        self.systems = frozenset(light.system for light in self._lights)
+        self._desired_speed = desired_speed
+        self._gap = gap
+        self.needs = Needs(frozenset(light.system for light in self._lights))
 
-    def update(self, states: Mapping[str, str], front: float, speed: float) -> None:
+    @classmethod
+    def on(cls, route: RouteContext) -> TrafficLights | None:
+        """The rule on one ego's route; None if there are no traffic lights, or it heeds none."""
+        lights = route.lane_path.lights
+        if not (lights and route.heeds("traffic_lights")):
+            return None
+        return cls(
+            lights,
+            comfortable=route.config.regulation.comfortable_deceleration,
+            hardest=route.hardest_braking,
+            arrows=route.heeds("right_of_way"),
+            greens_of=route.session.signal_plans.greens if route.heeds("signal_advice") else None,
+            desired_speed=route.desired_speed,
+            gap=route.config.regulation.safe_distance,
+        )
+
+    def update(self, situation: Situation) -> None:
         """Take note of the lights' states.
 
         Args:
-            states: of each system, one letter per movement (SUMO's).
-            front: station of the front bumper [m].
-            speed: [m/s].
+            situation: What the rules know now.
         """
+        states, front, speed = situation.signals, situation.station, situation.speed
         for i in range(self._next, len(self._lights)):
             light = self._lights[i]
             state = states.get(light.system, "")
@@ -86,7 +109,19 @@ class Lights:
             if front < light.station < front + _FAR:
                 self._greens = self._greens_of(light.system, light.link)
 
-    def stop_at(self, front: float, speed: float) -> float:
+    def demand(self, situation: Situation) -> Demand | None:
+        """A stop before a red light, and the speed at which the ego arrives at green.
+
+        Args:
+            situation: What the rules know now.
+        """
+        stop = self._stop_at(situation.station, situation.speed)
+        advice = self._advised(situation) if self._greens else math.inf
+        if stop == math.inf == advice:
+            return None
+        return Demand(stop, LIGHT, advice=advice)
+
+    def _stop_at(self, front: float, speed: float) -> float:
         """Station [m] at which the front bumper has to stop; inf: nowhere."""
         while self._next < len(self._lights) and self._lights[self._next].station <= front:
             self._next += 1
@@ -98,27 +133,19 @@ class Lights:
                 return self._lights[i].station - STOP_BEFORE
         return math.inf
 
-    def unhurried(
-        self, front: float, speed: float, wanted: float, leader: Leader, gap: float
-    ) -> float:
-        """The speed [m/s] at which it arrives when it may go on; inf: nothing speaks for less.
-
-        Args:
-            front: station of the front bumper [m].
-            speed: now [m/s].
-            wanted: speed [m/s] of a free ego.
-            leader: the vehicle ahead.
-            gap: [m] that is kept to it.
-        """
-        if not self._greens or self._next >= len(self._lights):
+    def _advised(self, situation: Situation) -> float:
+        """The speed [m/s] at which the ego arrives when it may go on (GLOSA); inf: any speed."""
+        if self._next >= len(self._lights):
             return math.inf
+        front, speed = situation.station, situation.speed
+        wanted = self._desired_speed(front)
         line = self._lights[self._next].station
         place, queue = line - STOP_BEFORE, 0.0  # [m], [s]
         if self._colours[self._next] in self._red:
-            ahead = at_rest(leader, place)
+            ahead = at_rest(situation.leader, place)
             if ahead.station < place:
                 queue = _STARTS + (line - ahead.station) / _WAVE
-                place = min(place, ahead.station - gap)
+                place = min(place, ahead.station - self._gap)
         there = (place - front) / wanted
         for begin, end in self._greens:
             if there < begin + queue:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import sumo as sumo_wheel
 
-from giveway.ego.junctions import PathJunction, junctions_on
+from giveway.ego.rules.junctions import PathJunction, junctions_on
 from giveway.geometry.path import EgoPath
 from giveway.scenario_files import StartOptions, read_scenario
 from giveway.sumo.session import SumoSession

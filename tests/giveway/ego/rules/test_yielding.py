@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from giveway.ego.giving_way import at_rest, leaves_no_room
 from giveway.ego.perception.leader import NO_LEADER, Leader
+from giveway.ego.rules.yielding import at_rest, leaves_no_room
 
 ROOM = 5.0 + 8.5  # [m] the ego's length, and the gap that it keeps
 

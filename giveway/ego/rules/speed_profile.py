@@ -116,8 +116,8 @@ def profile_of(
     length: float,
     capable: float,
     time_step: float,
-) -> SpeedProfile | None:
-    """The profile of an ego whose lanes say how fast it drives; None: a number does.
+) -> SpeedProfile:
+    """The profile of an ego whose lanes say how fast it drives.
 
     Args:
         ego: before its departure.
@@ -132,8 +132,6 @@ def profile_of(
         ScenarioError: there are no lanes along the path.
     """
     config = ego.config
-    if config.reference_speed != LANE:
-        return None
     if not limits:
         raise ScenarioError(
             f"[regulation] reference_speed = {LANE}: the path of ego '{ego.id}' follows no lanes; "

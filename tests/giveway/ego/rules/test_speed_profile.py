@@ -10,8 +10,8 @@ import pytest
 
 from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
-from giveway.ego.preparation import make_waiting_ego
-from giveway.ego.speed_profile import LATERAL_ACCELERATION, SpeedProfile, profile_of
+from giveway.ego.rules.speed_profile import LATERAL_ACCELERATION, SpeedProfile, profile_of
+from giveway.ego.waiting_ego import make_waiting_ego
 from giveway.errors import ScenarioError
 from giveway.geometry.path import EgoPath
 from giveway.sumo.lane_path import SpeedLimit
@@ -115,10 +115,3 @@ def test_the_cap_is_the_model_s_and_the_safety_layer_s(own, fastest):
         assert slow.fastest == 5.56
         with pytest.raises(ScenarioError, match=r"follows no lanes; expected a speed \[m/s\]"):
             profile_of(ego, STRAIGHT, (), 0.0, 5.0, math.inf, 0.05)
-
-
-def test_a_number_asks_for_no_profile():
-    config = EgoRunConfig.model_validate({"regulation": {"reference_speed": 4.0}})
-    with ExitStack() as stack:
-        ego = make_waiting_ego(config, make_controller(config, 0.05), 0.05, stack)
-        assert profile_of(ego, STRAIGHT, DROP, 0.0, 5.0, math.inf, 0.05) is None

@@ -1,36 +1,30 @@
 """The stops that an ego serves: it halts at each for as long as the scenario has its doors open."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
-from giveway.ego.giving_way import needed_braking
+from giveway.ego.rules.protocol import STOP, Demand, Situation
+from giveway.ego.rules.route import RouteContext, Stop
+from giveway.ego.rules.yielding import needed_braking
 
 _STANDING = 0.2  # [m/s] below it the ego has halted
 _PASSED = 1.0  # [m] beyond the stop's end, from which on the ego has driven past it
 
 
-class Stop(NamedTuple):
-    """Where the front bumper is to halt, and for how long."""
-
-    start: float  # [m] station from which on a halt counts
-    end: float  # [m] station that the ego drives up to
-    duration: float  # [s] after the arrival, at least
-    until: float  # [s] on SUMO's clock, at least; -inf: not given
-
-
-class Stops:
+class ScheduledStops:
     """Follows one ego from stop to stop.
 
     Args:
-        stops: in the order of the path.
-        clock: SUMO's at the ego's departure [s].
-        time_step: of the control [s].
-        hardest: deceleration [m/s^2] that the vehicle is capable of.
+        stops: Stops in the order of the path.
+        clock: SUMO's clock at the ego's departure [s].
+        time_step: Control step [s].
+        hardest: Deceleration [m/s^2] that the vehicle is capable of.
 
     Attributes:
-        served: how many it has halted at for long enough.
-        missed: how many it has driven past.
+        served: Number of stops at which the ego has halted for long enough.
+        missed: Number of stops that the ego has driven past.
     """
 
     def __init__(
@@ -46,13 +40,36 @@ class Stops:
         self.served = 0
         self.missed = 0
 
-    def stop_at(self, front: float, speed: float) -> float:
-        """Station [m] at which the front bumper has to halt; inf: nowhere.
+    @classmethod
+    def on(cls, route: RouteContext) -> ScheduledStops | None:
+        """The rule on one ego's route; None if the ego serves no stops."""
+        if not route.stops:
+            return None
+        return cls(
+            route.stops,
+            clock=route.time,
+            time_step=route.time_step,
+            hardest=route.hardest_braking,
+        )
+
+    @property
+    def remarks(self) -> list[str]:
+        """What the user should know of how the drive went."""
+        if not self.missed:
+            return []
+        return [f"it drove past {self.missed} of its stops, which were too near to halt at"]
+
+    def demand(self, situation: Situation) -> Demand | None:
+        """A stop at the next scheduled stop, unless the ego came too close to halt there.
 
         Args:
-            front: station of the front bumper [m].
-            speed: [m/s].
+            situation: What the rules know now.
         """
+        stop = self._stop_at(situation.station, situation.speed)
+        return None if stop == math.inf else Demand(stop, STOP)
+
+    def _stop_at(self, front: float, speed: float) -> float:
+        """Station [m] at which the front bumper has to halt; inf: nowhere."""
         following = self._next
         if following is None or front > following.end + _PASSED:
             return math.inf
@@ -60,13 +77,13 @@ class Stops:
         self._approaching = self._approaching or needed <= self._hardest
         return max(following.end, front) if self._approaching else math.inf
 
-    def pass_time(self, front: float, speed: float) -> None:
-        """Once after each control step: has it halted, may it drive on, has it driven past?
+    def advance(self, situation: Situation, _: float) -> None:
+        """Find out whether the ego has halted, may drive on, or has driven past.
 
         Args:
-            front: station of the front bumper [m].
-            speed: [m/s].
+            situation: What the rules know after the control step.
         """
+        front, speed = situation.station, situation.speed
         self._steps += 1
         following = self._next
         if following is None:

@@ -4,12 +4,14 @@ import math
 from typing import Any
 
 import pytest
+from support.situations import stop_of, tell
 
-from giveway.ego.crossings import STOP_BEFORE
-from giveway.ego.gaps import MINOR_STRAIGHT, PERMITTED
-from giveway.ego.junctions import PathJunction
 from giveway.ego.perception.leader import Leader
-from giveway.ego.right_of_way import Approach, RightOfWay
+from giveway.ego.rules.gap_acceptance import MINOR_STRAIGHT, PERMITTED
+from giveway.ego.rules.junctions import Approach, PathJunction
+from giveway.ego.rules.right_of_way import RightOfWay
+from giveway.ego.rules.rule_set import RuleSet
+from giveway.ego.rules.yielding import STOP_BEFORE
 from giveway.geometry.conflict import Conflict
 from giveway.sumo.junctions import Movement
 
@@ -70,10 +72,10 @@ class Drive:
         self, front: float, speed: float, *others: Approach, lights: str = "", after: float = 0.1
     ) -> float:
         self.time += after
-        assert self.keeps.look(front) == {"j"}
-        states = {"tls": lights} if lights else {}
-        self.keeps.update(self.time, front, speed, states, {"j": others})
-        return self.keeps.stop_at(front, speed)
+        assert RuleSet([self.keeps]).near_junctions(front) == {"j"}
+        signals = {"tls": lights} if lights else {}
+        tell(self.keeps, front, speed, self.time, signals=signals, traffic={"j": others})
+        return stop_of(self.keeps, front, speed)
 
 
 def stop(place: PathJunction, front: float, speed: float, *others: Approach, **more: Any) -> float:
@@ -93,14 +95,15 @@ def test_it_knows_who_is_led_past_it() -> None:
     drive.stop(31.0, 5.0, one)
     assert drive.keeps.beside == set()
     drive.stop(31.5, 5.0, two)
-    assert drive.keeps.look(66.0) == set()
+    assert RuleSet([drive.keeps]).near_junctions(66.0) == set()
+    tell(drive.keeps, 66.0, 5.0)
     assert drive.keeps.beside == set()  # behind the last junction, where nobody is looked at
     further = across._replace(
         entry=80.0, exit=95.0, movement=across.movement._replace(junction="k")
     )
     keeps = RightOfWay([place, further], name="ego", length=5.0, gap=1.0, fastest=8.0)
-    keeps.look(30.0)
-    keeps.update(0.1, 30.0, 5.0, {}, {"j": [two], "k": [two._replace(number=OTHER)]})
+    traffic = {"j": [two], "k": [two._replace(number=OTHER)]}
+    tell(keeps, 30.0, 5.0, 0.1, traffic=traffic)
     assert keeps.beside == set()  # at the next junction its way crosses the ego's
 
 
@@ -269,9 +272,9 @@ def test_at_yellow_it_waits_for_no_gap_behind_another(letter: str, stops: bool) 
 def test_it_enters_no_junction_that_it_cannot_leave(station: float, stops: bool) -> None:
     drive = Drive(junction(named=False))
     drive.stop(40.0, 5.0)
-    place = drive.keeps.stop_at(40.0, 5.0, Leader(station, 0.5))
+    place = stop_of(drive.keeps, 40.0, 5.0, leader=Leader(station, 0.5))
     assert (place == LINE) == stops
-    assert drive.keeps.stop_at(40.0, 5.0, Leader(station, 5.0)) == math.inf
+    assert stop_of(drive.keeps, 40.0, 5.0, leader=Leader(station, 5.0)) == math.inf
 
 
 def test_itself_is_not_in_its_way() -> None:

@@ -10,11 +10,15 @@ import math
 
 import numpy as np
 import pytest
+from support.situations import demand_of, tell
 
-from giveway.ego.merges import Merges, Place, Rival, places_of
 from giveway.ego.perception.leader import NO_LEADER, Leader
+from giveway.ego.rules.merge_places import Place, Rival, places_of
+from giveway.ego.rules.merging import Merging
+from giveway.ego.rules.protocol import Situation
+from giveway.ego.rules.rule_set import RuleSet
 from giveway.geometry.path import EgoPath
-from giveway.sumo.merging import Merging
+from giveway.sumo.merging import Merging as Lane
 
 LENGTH = 5.0  # [m] of the ego
 PLACE = Place("main_1", frozenset(), 0.0, 100.0, 130.0)
@@ -22,9 +26,21 @@ PLACE = Place("main_1", frozenset(), 0.0, 100.0, 130.0)
 
 def merging(**others):
     """An ego 20 m before the place at 10 m/s, which has seen others: (position, speed)."""
-    merges = Merges([PLACE], LENGTH)
+    merges = Merging((PLACE,), LENGTH)
     rivals = {name: Rival(*rival, 5.0) for name, rival in others.items()}
-    return merges, merges.see({PLACE: rivals}, 80.0, 10.0)
+    return merges, see(merges, {PLACE: rivals}, 80.0, 10.0)
+
+
+def see(merges, rivals, front, speed):
+    """Tell it of the others; what those that keep behind it have to heed."""
+    tell(merges, front, speed, merging=rivals)
+    return merges.keeps_behind
+
+
+def look(merges, front, speed):
+    """Whom the ego follows, and where it waits."""
+    demand = demand_of(merges, front, speed)
+    return demand.leader, demand.stop
 
 
 def test_a_lane_change_begins_where_bodies_would_touch_and_ends_on_the_other_lane():
@@ -32,7 +48,7 @@ def test_a_lane_change_begins_where_bodies_would_touch_and_ends_on_the_other_lan
     share = np.clip((x - 100.0) / 30.0, 0.0, 1.0)
     path = EgoPath.through(np.column_stack([x, 3.2 * share * share * (3.0 - 2.0 * share)]))
     line = np.array([[0.0, 3.2], [200.0, 3.2]])
-    lane = Merging("main_1", 0.0, 0.0, 200.0, (line,), frozenset())
+    lane = Lane("main_1", 0.0, 0.0, 200.0, (line,), frozenset())
     (place,) = places_of(path, 0.9, [lane], 20.0)
     beside = 3.2 - np.interp([place.entry - 1.0, place.entry], path.stations, path.vertices[:, 1])
     assert beside[0] > 0.9 + 1.25 + 0.2 > beside[1]
@@ -45,7 +61,7 @@ def test_a_lane_change_begins_where_bodies_would_touch_and_ends_on_the_other_lan
 def test_at_a_zipper_the_place_is_where_the_ways_come_together_for_good():
     path = EgoPath.through([(0.0, 0.0), (200.0, 0.0)])
     rival = np.array([[0.0, 1.0], [20.0, 3.2], [90.0, 3.2], [100.0, 0.0]])
-    zipper = Merging("out_0", 100.0, 0.0, 100.0, (rival,), frozenset({":b_0_0"}))
+    zipper = Lane("out_0", 100.0, 0.0, 100.0, (rival,), frozenset({":b_0_0"}))
     (place,) = places_of(path, 0.9, [zipper], 0.0)
     assert place.entry == pytest.approx(90.0 + (3.2 - 2.35) / 0.32, abs=0.6)
     assert (place.end, place.origin) == (100.0, 100.0)
@@ -71,29 +87,29 @@ def test_who_is_ahead_goes_first_and_who_could_not_brake_in_comfort(position, sp
 def test_the_ego_follows_whoever_goes_first_before_it_is_in_front():
     merges, behind = merging(other=(92.0, 9.0))
     assert behind == {}
-    leader, stop = merges.look(80.0, 10.0)
+    leader, stop = look(merges, 80.0, 10.0)
     # 87 m is its rear; 20 m before the place a quarter of them may be missing still
     assert leader == Leader(87.0 + 0.25 * 20.0, 9.0 - 0.25 * 10.0)
     assert stop == math.inf
-    assert merges.look(99.9, 10.0)[0] == NO_LEADER  # it is too near, and can stop no more
+    assert look(merges, 99.9, 10.0)[0] == NO_LEADER  # it is too near, and can stop no more
 
 
 def test_the_ego_waits_before_the_place_for_whoever_is_beside_it():
     merges, _ = merging(car=(80.5, 10.0))
-    assert merges.look(80.0, 10.0) == (NO_LEADER, 100.0 - 1.0 - 0.5)
-    assert merges.look(99.5, 1.0)[1] == 99.5  # it stands a little too far
-    assert merges.look(80.0, 20.0)[1] == math.inf  # nobody makes it brake harder than 3 m/s^2
+    assert look(merges, 80.0, 10.0) == (NO_LEADER, 100.0 - 1.0 - 0.5)
+    assert look(merges, 99.5, 1.0)[1] == 99.5  # it stands a little too far
+    assert look(merges, 80.0, 20.0)[1] == math.inf  # nobody makes it brake harder than 3 m/s^2
     truck = Rival(82.0, 10.0, 12.0)
-    merges.see({PLACE: {"truck": truck}}, 80.0, 10.0)
-    assert merges.look(80.0, 10.0)[1] == 100.0 - 1.0 - 4.0
-    merges.see({PLACE: {}}, 80.0, 10.0)
-    assert merges.look(80.0, 10.0) == (NO_LEADER, math.inf)
+    see(merges, {PLACE: {"truck": truck}}, 80.0, 10.0)
+    assert look(merges, 80.0, 10.0)[1] == 100.0 - 1.0 - 4.0
+    see(merges, {PLACE: {}}, 80.0, 10.0)
+    assert look(merges, 80.0, 10.0) == (NO_LEADER, math.inf)
 
 
 def test_between_sumo_s_steps_the_others_drive_on():
     merges, _ = merging(other=(92.0, 9.0))
-    merges.pass_time(0.5, 10.0)
-    assert merges.look(80.0, 10.0)[0].station == pytest.approx(87.0 + 4.5 + 5.0)
+    merges.advance(Situation(speed=10.0), 0.5)
+    assert look(merges, 80.0, 10.0)[0].station == pytest.approx(87.0 + 4.5 + 5.0)
 
 
 def test_what_somebody_behind_has_to_heed():
@@ -103,29 +119,28 @@ def test_what_somebody_behind_has_to_heed():
     assert heeds.speed == pytest.approx(0.75 * 10.0)
     assert heeds.to_wait == pytest.approx(100.0 - 60.0 - 1.0 - 0.5)
     assert heeds.braking == 2.0
-    merges = Merges([PLACE], LENGTH)
-    (heeds,) = merges.see({PLACE: {"other": Rival(80.0, 10.0, 5.0)}}, 104.0, 10.0).values()
+    merges = Merging((PLACE,), LENGTH)
+    (heeds,) = see(merges, {PLACE: {"other": Rival(80.0, 10.0, 5.0)}}, 104.0, 10.0).values()
     assert heeds.room == pytest.approx(104.0 - 5.0 - 80.0 - 1.0)
     assert (heeds.speed, heeds.braking) == (10.0, math.inf)  # the ego is in its way
 
 
 def test_an_ego_that_has_waited_asks_for_more():
-    merges = Merges([PLACE], LENGTH)
+    merges = Merging((PLACE,), LENGTH)
     rivals = {PLACE: {"passes": Rival(99.5, 13.0, 5.0), "next": Rival(62.0, 13.0, 5.0)}}
-    assert merges.see(rivals, 98.0, 0.0) == {}
+    assert see(merges, rivals, 98.0, 0.0) == {}
     for _ in range(60):
-        merges.pass_time(0.1, 0.0)
-    (heeds,) = merges.see(rivals, 98.0, 0.0).values()
+        merges.advance(Situation(speed=0.0), 0.1)
+    (heeds,) = see(merges, rivals, 98.0, 0.0).values()
     assert heeds.braking == 3.0
-    merges.pass_time(0.1, 2.0)  # it drives
-    merges = Merges([PLACE], LENGTH)
-    assert merges.see(rivals, 98.0, 0.0) == {}
+    merges.advance(Situation(speed=2.0), 0.1)  # it drives
+    merges = Merging((PLACE,), LENGTH)
+    assert see(merges, rivals, 98.0, 0.0) == {}
 
 
-def test_a_place_is_in_sight_from_80_m_before_it_until_it_is_behind():
-    merges = Merges([PLACE], LENGTH)
-    assert merges.in_sight(19.0) == ()
-    assert merges.in_sight(21.0) == (PLACE,)
-    assert merges.in_sight(129.0) == (PLACE,)
-    assert merges.in_sight(130.0) == ()
-    assert merges.in_sight(21.0) == ()  # it is forgotten
+def test_a_place_is_in_sight_from_80_m_before_it_to_its_end():
+    rules = RuleSet([Merging((PLACE,), LENGTH)])
+    assert rules.near_merges(19.0) == ()
+    assert rules.near_merges(21.0) == (PLACE,)
+    assert rules.near_merges(129.0) == (PLACE,)
+    assert rules.near_merges(130.0) == ()

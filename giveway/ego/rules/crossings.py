@@ -7,6 +7,8 @@ about to use it". The ego stops before the crossing, not on it, and does not dri
 vehicle ahead keeps it from leaving (art. 18.2).
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -23,14 +25,16 @@ from giveway.crowd.crossings import (
     turning_in,
     use_of,
 )
-from giveway.ego.giving_way import (
+from giveway.ego.perception.leader import Leader
+from giveway.ego.rules.protocol import YIELD, Demand, Needs, Situation
+from giveway.ego.rules.route import RouteContext
+from giveway.ego.rules.yielding import (
     CRAWLING,
     HARDEST,
     STOP_BEFORE,
     leaves_no_room,
     needed_braking,
 )
-from giveway.ego.perception.leader import NO_LEADER, Leader
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.kernel import Array
 from giveway.geometry.path import EgoPath, fine_near
@@ -151,18 +155,17 @@ class Crossings:
     """Watches the crossings on one ego's path.
 
     Args:
-        crossings: in the order of the path.
-        length: of the ego's body [m].
-        gap: that it keeps behind a vehicle that stands [m].
-        kerb_distance: [m] from the kerb, from which on somebody who heads for a crossing is about
-            to enter it.
-        kerb_time: [s] before they are there, from which on they are as well, unless their light
-            turns red before.
-        change_of: the next change of a traffic light by its id; None: nobody can tell.
+        crossings: Crossings in the order of the path.
+        length: Length of the ego's body [m].
+        gap: Distance [m] that it keeps behind a standing vehicle.
+        kerb_distance: Distance [m] from the kerb, from which on somebody who heads for a crossing
+            is about to enter it.
+        kerb_time: Time [s] before they are there, from which on they are as well, unless their
+            light turns red before.
+        change_of: Next change of a traffic light by its id.
 
     Attributes:
-        systems: SUMO's ids of the traffic lights that govern them.
-        latest: station [m] beyond which no plan leads while it stops for one; inf: it does not.
+        needs: The signal systems that govern the crossings, and where the ego must not stand.
     """
 
     def __init__(
@@ -180,33 +183,53 @@ class Crossings:
         self._length, self._room = length, length + gap
         self._kerb_distance, self._kerb_time = kerb_distance, kerb_time
         self._next = 0
-        self.latest = math.inf
+        self._latest = math.inf
         self._waits_for: int | None = None  # a crossing, before the next one
         self._place = math.inf  # [m] where it does, or did before; inf: it has not
         self._states: Mapping[str, str] = {}
-        self.systems = frozenset(place.system for place in self._crossings if place.system)
+        self.needs = Needs(
+            frozenset(place.system for place in self._crossings if place.system),
+            keep_clear=tuple((place.entry, place.exit + length) for place in self._crossings),
+        )
 
-    @property
-    def kept_free(self) -> list[tuple[float, float]]:
-        """Stations [m] of the front bumper between which the body is on one of them."""
-        return [(place.entry, place.exit + self._length) for place in self._crossings]
+    @classmethod
+    def on(cls, route: RouteContext) -> Crossings | None:
+        """The rule on one ego's route; None if there are no crossings, or it heeds none."""
+        if not route.heeds("crossings"):
+            return None
+        found = crossings_on(route.path, route.shape, route.session.lanes.crossings)
+        if not found:
+            return None
+        return cls(
+            found,
+            length=route.shape.length,
+            gap=route.standing_gap,
+            kerb_distance=route.config.regulation.kerb_distance,
+            kerb_time=route.config.regulation.kerb_time,
+            change_of=route.change_of,
+        )
 
-    def update(self, states: Mapping[str, str]) -> None:
-        """Take note of the lights' states: of each system, one letter per movement (SUMO's)."""
-        self._states = states
-
-    def stop_at(
-        self, front: float, speed: float, crowd: Crowd, leader: Leader = NO_LEADER
-    ) -> float:
-        """Station [m] at which the front bumper has to stop; inf: nowhere.
+    def update(self, situation: Situation) -> None:
+        """Take note of the lights' states.
 
         Args:
-            front: station of the front bumper [m].
-            speed: [m/s].
-            crowd: the pedestrians as the ego sees them.
-            leader: the vehicle ahead.
+            situation: What the rules know now.
         """
-        self.latest = math.inf
+        self._states = situation.signals
+
+    def demand(self, situation: Situation) -> Demand | None:
+        """A stop before a crossing at which the ego gives way, or which it could not leave.
+
+        Args:
+            situation: What the rules know now.
+        """
+        leader = situation.leader_at_rest()
+        stop = self._stop_at(situation.station, situation.speed, situation.crowd, leader)
+        return None if stop == math.inf else Demand(stop, YIELD, self._latest)
+
+    def _stop_at(self, front: float, speed: float, crowd: Crowd, leader: Leader) -> float:
+        """Station [m] at which the front bumper has to stop; inf: nowhere."""
+        self._latest = math.inf
         while self._next < len(self._crossings) and self._crossings[self._next].entry < front:
             self._next += 1
             self._waits_for, self._place = None, math.inf
@@ -235,7 +258,7 @@ class Crossings:
                 continue
             nearest = front + speed * speed / (2.0 * HARDEST)
             stop = max(entry - STOP_BEFORE, min(nearest, latest))
-            self.latest = latest
+            self._latest = latest
             self._waits_for = number if first else None
             if first:
                 self._place = min(self._place, stop)

@@ -1,26 +1,31 @@
 """Where a traffic light stops the ego."""
 
 import math
+from typing import Any
 
 import pytest
+from support.situations import demand_of, stop_of, tell
 
-from giveway.ego.lights import STOP_BEFORE, Lights
 from giveway.ego.perception.leader import NO_LEADER, Leader
+from giveway.ego.rules.traffic_lights import TrafficLights
+from giveway.ego.rules.yielding import STOP_BEFORE
 from giveway.sumo.lane_path import Light
 
 LINE = 100.0  # [m]
 STOP = LINE - STOP_BEFORE
+BRAKING = {"comfortable": 2.0, "hardest": 8.0}  # [m/s^2]
+ADVISED: dict[str, Any] = {**BRAKING, "desired_speed": lambda _: 8.0, "gap": 3.0}
 
 
-def lights(*more: float) -> Lights:
+def lights(*more: float) -> TrafficLights:
     ahead = [Light(station, "tls", link) for link, station in enumerate((LINE, *more))]
-    return Lights(ahead, comfortable=2.0, hardest=8.0)
+    return TrafficLights(ahead, comfortable=2.0, hardest=8.0)
 
 
-def stop(state: str, front: float, speed: float, watch: Lights | None = None) -> float:
+def stop(state: str, front: float, speed: float, watch: TrafficLights | None = None) -> float:
     watch = watch or lights()
-    watch.update({"tls": state}, front, speed)
-    return watch.stop_at(front, speed)
+    tell(watch, front, speed, signals={"tls": state})
+    return stop_of(watch, front, speed)
 
 
 @pytest.mark.parametrize("letter", ["r", "u", "s"])
@@ -71,8 +76,8 @@ def test_a_light_that_has_been_passed_is_forgotten_and_the_next_one_counts() -> 
 
 def test_a_system_that_does_not_answer_stops_nobody() -> None:
     watch = lights()
-    watch.update({}, 60.0, 5.0)
-    assert watch.stop_at(60.0, 5.0) == math.inf
+    tell(watch, 60.0, 5.0, signals={})
+    assert stop_of(watch, 60.0, 5.0) == math.inf
 
 
 @pytest.mark.parametrize(
@@ -96,36 +101,61 @@ def test_a_system_that_does_not_answer_stops_nobody() -> None:
 )
 def test_it_arrives_when_the_light_is_green(state, greens, leader, expected) -> None:
     ahead = [Light(LINE, "tls", 0)]
-    watch = Lights(ahead, comfortable=2.0, hardest=8.0, greens_of=lambda *_: greens)
-    watch.update({"tls": state}, 40.0, 8.0)
-    assert watch.unhurried(40.0, 1.0, 8.0, leader, 3.0) == pytest.approx(max(expected, 2.0))
+    watch = TrafficLights(
+        ahead,
+        comfortable=2.0,
+        hardest=8.0,
+        desired_speed=lambda _: 8.0,
+        gap=3.0,
+        greens_of=lambda *_: greens,
+    )
+    tell(watch, 40.0, 8.0, signals={"tls": state})
+    assert demand_of(watch, 40.0, 1.0, leader=leader).advice == pytest.approx(max(expected, 2.0))
 
 
 def test_a_light_far_off_or_passed_is_not_listened_to() -> None:
     asked = []
     ahead = [Light(400.0, "tls", 0)]
-    watch = Lights(
-        ahead, comfortable=2.0, hardest=8.0, greens_of=lambda *light: (asked.append(light), ())[1]
+    watch = TrafficLights(
+        ahead,
+        comfortable=2.0,
+        hardest=8.0,
+        desired_speed=lambda _: 8.0,
+        gap=3.0,
+        greens_of=lambda *light: (asked.append(light), ())[1],
     )
-    for front in (100.0, 401.0):
-        watch.update({"tls": "r"}, front, 8.0)
-        assert watch.unhurried(front, 8.0, 8.0, NO_LEADER, 3.0) == math.inf
-    assert not asked
-    watch.update({"tls": "r"}, 300.0, 8.0)
-    assert asked == [("tls", 0)]
+    for front, told in ((100.0, []), (300.0, [("tls", 0)]), (401.0, [])):
+        asked.clear()
+        tell(watch, front, 8.0, signals={"tls": "r"})
+        assert asked == told
+        assert demand_of(watch, front, 8.0).advice == math.inf
 
 
 def test_it_slows_gently() -> None:
     ahead = [Light(LINE, "tls", 0)]
-    watch = Lights(ahead, comfortable=2.0, hardest=8.0, greens_of=lambda *_: ((20.0, 40.0),))
-    watch.update({"tls": "r"}, 40.0, 8.0)
-    assert watch.unhurried(40.0, 8.0, 8.0, NO_LEADER, 3.0) == pytest.approx(7.6)
+    watch = TrafficLights(
+        ahead,
+        comfortable=2.0,
+        hardest=8.0,
+        desired_speed=lambda _: 8.0,
+        gap=3.0,
+        greens_of=lambda *_: ((20.0, 40.0),),
+    )
+    tell(watch, 40.0, 8.0, signals={"tls": "r"})
+    assert demand_of(watch, 40.0, 8.0, leader=NO_LEADER).advice == pytest.approx(7.6)
 
 
 def test_the_plan_of_a_light_that_is_passed_says_nothing_of_the_next() -> None:
     ahead = [Light(LINE, "first", 0), Light(LINE + 60.0, "second", 0)]
     greens = {"first": ((0.0, 5.0), (40.0, 60.0)), "second": ((0.0, 60.0),)}
-    watch = Lights(ahead, comfortable=2.0, hardest=8.0, greens_of=lambda system, _: greens[system])
-    watch.update({"first": "G", "second": "G"}, LINE - 0.1, 8.0)
-    watch.stop_at(LINE + 0.1, 8.0)  # before SUMO's next step
-    assert watch.unhurried(LINE + 0.1, 8.0, 8.0, NO_LEADER, 3.0) == math.inf
+    watch = TrafficLights(
+        ahead,
+        comfortable=2.0,
+        hardest=8.0,
+        desired_speed=lambda _: 8.0,
+        gap=3.0,
+        greens_of=lambda system, _: greens[system],
+    )
+    tell(watch, LINE - 0.1, 8.0, signals={"first": "G", "second": "G"})
+    stop_of(watch, LINE + 0.1, 8.0)  # before SUMO's next step
+    assert demand_of(watch, LINE + 0.1, 8.0, leader=NO_LEADER).advice == math.inf

@@ -12,11 +12,12 @@ import math
 
 import numpy as np
 import pytest
+from support.situations import demand_of, stop_of, tell
 
-from giveway.ego.crossings import Crossings, crossings_on
-from giveway.ego.giving_way import STOP_BEFORE
 from giveway.ego.perception.leader import Leader
-from giveway.ego.way_ahead import WayAhead
+from giveway.ego.rules.crossings import Crossings, crossings_on
+from giveway.ego.rules.rule_set import RuleSet
+from giveway.ego.rules.yielding import STOP_BEFORE
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.sumo.crossings import Crossing
@@ -40,7 +41,7 @@ def crossings(zebra=True, light="", kerb_distance=1.5, kerb_time=0.0, change=Non
     own = {**near, "change_of": {"tls": change}.get}
     watched = Crossings(found, length=SHAPE.length, gap=1.0, **own)
     if light:
-        watched.update({"tls": light})
+        tell(watched, 0.0, 4.0, signals={"tls": light})
     return watched
 
 
@@ -76,20 +77,20 @@ def test_the_stretch_of_the_path_that_lies_on_it():
     ],
 )
 def test_at_a_zebra_it_stops_for_whoever_uses_it_or_is_about_to(crowd, stops):
-    assert crossings().stop_at(NEAR, 4.0, crowd) == (
+    assert stop_of(crossings(), NEAR, 4.0, crowd) == (
         pytest.approx(LINE, abs=0.11) if stops else math.inf
     )
 
 
 def test_somebody_who_walks_past_along_the_kerb_is_not_about_to_cross():
     along = Crowd.create([[21.0, -4.2]], [[1.4, 0.0]], 1.4, [[(40.0, -4.4)]])
-    assert crossings().stop_at(NEAR, 4.0, along) == math.inf
+    assert stop_of(crossings(), NEAR, 4.0, along) == math.inf
 
 
 def test_who_will_have_passed_when_the_ego_comes_costs_no_stop():
     somebody = walker(-2.0)
-    assert crossings().stop_at(2.0, 4.0, somebody) == math.inf
-    assert crossings().stop_at(12.0, 4.0, somebody) < math.inf
+    assert stop_of(crossings(), 2.0, 4.0, somebody) == math.inf
+    assert stop_of(crossings(), 12.0, 4.0, somebody) < math.inf
 
 
 @pytest.mark.parametrize(
@@ -103,15 +104,15 @@ def test_who_will_have_passed_when_the_ego_comes_costs_no_stop():
     ],
 )
 def test_a_light_decides_who_may_enter_and_whoever_is_on_it_may_finish(letter, at_the_kerb, on_it):
-    assert (crossings(light=letter).stop_at(NEAR, 4.0, walker(-4.0)) < math.inf) == at_the_kerb
-    assert (crossings(light=letter).stop_at(NEAR, 4.0, walker(-2.0)) < math.inf) == on_it
+    assert (stop_of(crossings(light=letter), NEAR, 4.0, walker(-4.0)) < math.inf) == at_the_kerb
+    assert (stop_of(crossings(light=letter), NEAR, 4.0, walker(-2.0)) < math.inf) == on_it
 
 
 def test_who_waits_for_green_a_step_from_the_kerb_costs_no_stop():
     waiting = Crowd.create(
         [[22.0, -3.3]], [[0, 0]], 1.4, [[(22, -3.9), (22, 3.9)]], signals=[[0, -1]]
     )
-    assert crossings(light="r").stop_at(NEAR, 4.0, waiting) == math.inf
+    assert stop_of(crossings(light="r"), NEAR, 4.0, waiting) == math.inf
 
 
 def test_who_waits_at_another_crossings_light_costs_no_stop():
@@ -119,18 +120,18 @@ def test_who_waits_at_another_crossings_light_costs_no_stop():
     corner = Crowd.create(
         [[22.0, -4.6]], [[0, 0]], 1.4, [[(22.1, -4.0), (30.0, -4.0)]], signals=[[1, -1]]
     )
-    assert crossings(light="G", kerb_time=2.5).stop_at(NEAR, 4.0, corner) == math.inf
+    assert stop_of(crossings(light="G", kerb_time=2.5), NEAR, 4.0, corner) == math.inf
     own = Crowd.create(
         [[22.0, -4.6]], [[0, 0]], 1.4, [[(22.1, -4.0), (22.0, 4.0)]], signals=[[0, -1]]
     )
-    assert crossings(light="G", kerb_time=2.5).stop_at(NEAR, 4.0, own) < math.inf
+    assert stop_of(crossings(light="G", kerb_time=2.5), NEAR, 4.0, own) < math.inf
 
 
 def test_in_the_last_metre_it_brakes_no_harder_than_3():
     somebody = walker(-2.0)
-    stop = crossings().stop_at(19.4, 0.8, somebody)
+    stop = stop_of(crossings(), 19.4, 0.8, somebody)
     assert 19.4 + 0.8**2 / (2 * 3.0) <= stop <= 20.0
-    assert crossings().stop_at(19.4, 1.6, somebody) == math.inf  # too late: over it and away
+    assert stop_of(crossings(), 19.4, 1.6, somebody) == math.inf  # too late: over it and away
 
 
 @pytest.mark.parametrize("front", [8.0, 14.0, 17.5])
@@ -138,17 +139,18 @@ def test_who_could_be_let_pass_by_the_law_is_let_pass(front):
     """The ledger's encounters are those for whom a stop at the crossing itself takes 3 m/s^2."""
     entry = 20.0
     speed = math.sqrt(2 * 2.95 * (entry - front))
-    assert LINE - 0.11 <= crossings().stop_at(front, speed, walker(-2.0)) <= 19.81
+    assert LINE - 0.11 <= stop_of(crossings(), front, speed, walker(-2.0)) <= 19.81
 
 
 @pytest.mark.parametrize("front", [16.6, 17.2, 18.4])
 def test_a_plan_that_may_lead_beyond_the_stop_does_not_lead_onto_the_crossing(front):
     speed = math.sqrt(2 * 2.99 * (19.7 - front))  # it is just not too late yet
     watched = crossings()
-    assert watched.latest == math.inf
-    assert LINE - 0.11 <= watched.stop_at(front, speed, walker(-2.0)) <= watched.latest
-    assert watched.latest == pytest.approx(19.7, abs=0.11)
-    assert watched.stop_at(front, speed, NOBODY) == watched.latest == math.inf
+    assert demand_of(watched, front, speed, NOBODY).latest == math.inf
+    demand = demand_of(watched, front, speed, walker(-2.0))
+    assert LINE - 0.11 <= demand.stop <= demand.latest
+    assert demand.latest == pytest.approx(19.7, abs=0.11)
+    assert demand_of(watched, front, speed, NOBODY)[:3] == (math.inf, "", math.inf)
 
 
 def test_who_heads_for_the_side_of_a_crossing_wants_to_cross():
@@ -156,38 +158,38 @@ def test_who_heads_for_the_side_of_a_crossing_wants_to_cross():
     aside = Crowd.create(
         [[23.8, -3.9]], [[0, 1.4]], 1.4, [[(22.0, -3.2)]], passages=[[(0.0, 1.0, 2.0)]]
     )
-    assert crossings().stop_at(NEAR, 4.0, aside) < math.inf
+    assert stop_of(crossings(), NEAR, 4.0, aside) < math.inf
 
 
 def test_without_priority_people_wait_for_a_gap():
-    assert crossings(zebra=False).stop_at(NEAR, 4.0, walker(-4.0)) == math.inf
-    assert crossings(zebra=False).stop_at(NEAR, 4.0, walker(-2.0)) < math.inf
+    assert stop_of(crossings(zebra=False), NEAR, 4.0, walker(-4.0)) == math.inf
+    assert stop_of(crossings(zebra=False), NEAR, 4.0, walker(-2.0)) < math.inf
 
 
 def test_nobody_may_ask_for_more_than_hard_comfort_but_who_has_begun_to_stop_goes_on():
     too_late = crossings()
-    assert too_late.stop_at(18.0, 4.0, walker(-2.0)) == math.inf  # 4 m/s^2 to the crossing
+    assert stop_of(too_late, 18.0, 4.0, walker(-2.0)) == math.inf  # 4 m/s^2 to the crossing
     begun = crossings()
-    assert begun.stop_at(16.0, 4.0, walker(-4.0)) < math.inf
-    assert begun.stop_at(18.0, 4.0, walker(-3.0)) == pytest.approx(LINE, abs=0.11)
-    assert begun.stop_at(19.5, 0.3, walker(-2.0)) == pytest.approx(LINE, abs=0.11)  # no creeping
+    assert stop_of(begun, 16.0, 4.0, walker(-4.0)) < math.inf
+    assert stop_of(begun, 18.0, 4.0, walker(-3.0)) == pytest.approx(LINE, abs=0.11)
+    assert stop_of(begun, 19.5, 0.3, walker(-2.0)) == pytest.approx(LINE, abs=0.11)  # no creeping
 
 
 def test_it_waits_until_the_last_one_has_passed_and_until_nobody_comes_too_soon():
     waiting = crossings()
     both = walker(-2.0).concatenate(walker(3.4, target=-20.0))
-    assert waiting.stop_at(LINE, 0.0, both) < math.inf
-    assert waiting.stop_at(LINE, 0.0, walker(3.4, target=-20.0)) < math.inf  # 2.5 s away
-    assert waiting.stop_at(LINE, 0.0, walker(0.2)) == math.inf
-    assert waiting.stop_at(21.0, 2.0, walker(-2.0)) == math.inf  # it is on the crossing
+    assert stop_of(waiting, LINE, 0.0, both) < math.inf
+    assert stop_of(waiting, LINE, 0.0, walker(3.4, target=-20.0)) < math.inf  # 2.5 s away
+    assert stop_of(waiting, LINE, 0.0, walker(0.2)) == math.inf
+    assert stop_of(waiting, 21.0, 2.0, walker(-2.0)) == math.inf  # it is on the crossing
 
 
 def test_a_wide_reach_at_the_kerb_makes_it_wait_earlier():
-    assert crossings(kerb_distance=0.2).stop_at(NEAR, 4.0, walker(-4.0)) == math.inf
-    assert crossings(kerb_distance=3.0).stop_at(NEAR, 4.0, walker(-6.0)) < math.inf
+    assert stop_of(crossings(kerb_distance=0.2), NEAR, 4.0, walker(-4.0)) == math.inf
+    assert stop_of(crossings(kerb_distance=3.0), NEAR, 4.0, walker(-6.0)) < math.inf
     # they have 1.4 m/s and 2.5 m to go
-    assert crossings(kerb_time=1.7).stop_at(NEAR, 4.0, walker(-6.0)) == math.inf
-    assert crossings(kerb_time=1.9).stop_at(NEAR, 4.0, walker(-6.0)) < math.inf
+    assert stop_of(crossings(kerb_time=1.7), NEAR, 4.0, walker(-6.0)) == math.inf
+    assert stop_of(crossings(kerb_time=1.9), NEAR, 4.0, walker(-6.0)) < math.inf
 
 
 @pytest.mark.parametrize("beyond", [0.01, 0.1])
@@ -197,7 +199,7 @@ def test_who_has_just_stepped_over_the_line_behind_the_kerb_costs_no_stop(beyond
     passages = [[(0.0, -1.0, 2.0), (0.0, 0.0, 0.0)]]
     at = [[22.3, line[1] - beyond]]
     gone = Crowd.create(at, [[0.0, -1.4]], 1.4, [[line, on]], passages=passages)
-    assert crossings(kerb_time=2.5).stop_at(NEAR, 4.0, gone) == math.inf
+    assert stop_of(crossings(kerb_time=2.5), NEAR, 4.0, gone) == math.inf
 
 
 @pytest.mark.parametrize(("front", "speed"), [(LINE, 0.0), (LINE - 1.0, 0.6), (LINE - 5.0, 3.5)])
@@ -205,10 +207,10 @@ def test_who_has_just_stepped_over_the_line_behind_the_kerb_costs_no_stop(beyond
 def test_who_starts_behind_somebody_is_not_stopped_for_them_again(front, speed, most):
     """With 2.5 m/s^3 up to so many m/s^2."""
     watched, y, acceleration = crossings(), -2.0, 0.0
-    stopped = [watched.stop_at(front, speed, walker(y)) < math.inf]
+    stopped = [stop_of(watched, front, speed, walker(y)) < math.inf]
     while front < 20.0:
         y += 1.4 * 0.05
-        stops = watched.stop_at(front, speed, walker(y)) < math.inf
+        stops = stop_of(watched, front, speed, walker(y)) < math.inf
         acceleration = -speed / 2.0 if stops else min(max(acceleration, 0.0) + 2.5 * 0.05, most)
         front += speed * 0.05
         speed = max(0.0, speed + acceleration * 0.05)
@@ -223,7 +225,7 @@ def test_who_starts_behind_somebody_is_not_stopped_for_them_again(front, speed, 
 )
 def test_it_does_not_drive_onto_a_crossing_that_it_cannot_leave(station, speed, stops):
     """A vehicle behind the crossing leaves room for 5 m and a gap, or not."""
-    found = crossings().stop_at(NEAR, 4.0, NOBODY, Leader(station, speed))
+    found = stop_of(crossings(), NEAR, 4.0, NOBODY, Leader(station, speed))
     assert found == (pytest.approx(LINE, abs=0.11) if stops else math.inf)
 
 
@@ -238,7 +240,7 @@ def test_it_does_not_drive_onto_a_crossing_that_it_cannot_leave(station, speed, 
 def test_who_walks_along_the_road_and_is_going_to_turn_in(x, then, stops):
     corner = (22.0, -4.0)
     walks = Crowd.create([[x, -4.5]], [[1.4, 0.0]], 1.4, [[corner, then]])
-    assert (crossings(kerb_time=3.5).stop_at(NEAR, 4.0, walks) < math.inf) == stops
+    assert (stop_of(crossings(kerb_time=3.5), NEAR, 4.0, walks) < math.inf) == stops
 
 
 @pytest.mark.parametrize(
@@ -254,7 +256,7 @@ def test_who_walks_along_the_road_and_is_going_to_turn_in(x, then, stops):
 )
 def test_who_will_find_their_light_red_is_not_waited_for(y, change, stops):
     watched = crossings(zebra=False, light="G", kerb_time=2.5, change=change)
-    assert (watched.stop_at(NEAR, 4.0, walker(y)) < math.inf) == stops
+    assert (stop_of(watched, NEAR, 4.0, walker(y)) < math.inf) == stops
 
 
 def test_who_waits_before_two_crossings_for_the_second_one_stays_as_sure():
@@ -268,15 +270,15 @@ def test_who_waits_before_two_crossings_for_the_second_one_stays_as_sure():
         for _ in range(2)
     )
     later = walker(SOUTHERN_KERB - 3.0 * 1.4, x=28.0)
-    assert fresh.stop_at(LINE, 0.0, later) == math.inf
-    assert waiting.stop_at(LINE, 0.0, walker(-3.4, speed=1.0, x=28.0)) < math.inf
-    assert waiting.stop_at(LINE, 0.0, later) < math.inf
-    assert waiting.stop_at(LINE, 0.0, NOBODY) == math.inf
-    assert waiting.stop_at(LINE, 0.0, later) == math.inf
+    assert stop_of(fresh, LINE, 0.0, later) == math.inf
+    assert stop_of(waiting, LINE, 0.0, walker(-3.4, speed=1.0, x=28.0)) < math.inf
+    assert stop_of(waiting, LINE, 0.0, later) < math.inf
+    assert stop_of(waiting, LINE, 0.0, NOBODY) == math.inf
+    assert stop_of(waiting, LINE, 0.0, later) == math.inf
 
 
 def test_what_it_keeps_free_and_how_far_it_has_to_drive_on():
-    way = WayAhead(crossings=crossings())
+    way = RuleSet([crossings()])
     places = (LINE, 20.5, 24.0, 28.0, 29.2)  # [m] of the front bumper; the body is 5 m long
     assert [way.to_clear(at) for at in places] == pytest.approx([0, 8.5, 5.0, 1.0, 0], abs=0.11)
-    assert WayAhead().to_clear(20.5) == 0.0
+    assert RuleSet().to_clear(20.5) == 0.0

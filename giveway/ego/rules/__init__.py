@@ -1,0 +1,1 @@
+"""The rules of the road: each demands where the ego stops and how fast it drives."""

@@ -1,0 +1,85 @@
+"""Rules of other packages, from the configuration: found, imported, made for one route."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from giveway.ego.rules.plugged_in import PluggedInRule
+from giveway.ego.rules.protocol import Rule
+from giveway.ego.rules.route import RouteContext
+from giveway.errors import RuleError
+from giveway.plug_ins.faults import described, shown
+from giveway.plug_ins.finding import load_class
+from giveway.plug_ins.sockets import RULE
+
+Maker = Callable[[Any], object]
+"""What makes a rule for a route, its options filled in."""
+
+
+def plugged_in_rules(route: RouteContext) -> list[Rule]:
+    """The rules of other packages that hold on one ego's route.
+
+    Args:
+        route: Route of the ego.
+
+    Raises:
+        ConfigError: the options of a rule cannot be used.
+        ControlError: a rule is not installed, or cannot be imported.
+        RuleError: a rule cannot be made.
+    """
+    found: list[Rule] = []
+    for name, settings in route.config.rules.plugged_in.items():
+        whose = f"'{name}' of '{route.config.ego_id}'"
+        rule = made(whose, maker(name, settings), route)
+        found += [] if rule is None else [rule]
+    return found
+
+
+def maker(name: str, settings: Mapping[str, Any]) -> Maker:
+    """What makes the rule of a name for a route.
+
+    Args:
+        name: Name of the rule, as in ``[rules]``.
+        settings: Its options, as the user has set them.
+
+    Raises:
+        ConfigError: its options cannot be used.
+        ControlError: it is not installed, or cannot be imported.
+    """
+    kind, options = load_class(name, RULE, settings)
+    return maker_of(kind, options)
+
+
+def maker_of(kind: Any, options: Any) -> Maker:
+    """What makes a rule of a class: its factory ``on`` if it has one, or else the class.
+
+    Args:
+        kind: Class of the rule.
+        options: Instance of its ``Options``, or None if it has none.
+    """
+    factory = getattr(kind, "on", kind)
+    return lambda route: factory(route) if options is None else factory(route, options)
+
+
+def made(name: str, make: Maker, route: Any) -> PluggedInRule | None:
+    """One rule for one route, whose answers are checked; None if it has nothing to say there.
+
+    Args:
+        name: Name of the rule and its ego, for messages.
+        make: What makes the rule.
+        route: Route of the ego.
+
+    Raises:
+        RuleError: it cannot be made, or is no rule.
+    """
+    try:
+        rule = make(route)
+    except (Exception, SystemExit) as error:
+        raise RuleError(f"{name} raised {described(error)} when it was made") from error
+    if rule is None:
+        return None
+    if not isinstance(rule, Rule):
+        msg = f"{name} made {shown(rule)}: expected an object with a method demand, or None"
+        raise RuleError(msg)
+    return PluggedInRule(name, rule)

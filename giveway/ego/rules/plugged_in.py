@@ -1,0 +1,109 @@
+"""A rule of another package among giveway's own: its answers are checked, its faults named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Set
+from math import inf, isnan
+from typing import Any
+
+import numpy as np
+
+from giveway.ego.perception.leader import Leader
+from giveway.ego.rules.protocol import NO_NEEDS, Demand, Needs, Rule, Situation
+from giveway.errors import RuleError
+from giveway.plug_ins.faults import described, shown
+
+_NUMBERS = ("stop", "latest", "speed", "advice")
+
+
+class PluggedInRule:
+    """A rule of another package as `RuleSet` asks any other.
+
+    Args:
+        name: Name of the rule and its ego, for messages.
+        rule: Rule of the other package.
+
+    Attributes:
+        needs: What the rule wants to be told of.
+        update: Called after each of SUMO's steps, if the rule has such a method.
+        advance: Called after each control step, if the rule has such a method.
+
+    Raises:
+        RuleError: what it needs is no `Needs`.
+    """
+
+    update: Callable[..., None]
+    advance: Callable[..., None]
+
+    def __init__(self, name: str, rule: Rule) -> None:
+        self._name, self._rule, self._ask = name, rule, rule.demand
+        self.needs = getattr(rule, "needs", NO_NEEDS)
+        if not isinstance(self.needs, Needs):
+            raise RuleError(f"{name} has needs = {shown(self.needs)}: expected Needs(...)")
+        for method in ("update", "advance"):
+            if hasattr(rule, method):
+                setattr(self, method, self._guarded(method))
+
+    def demand(self, situation: Situation) -> Demand | None:
+        """What the rule demands, checked.
+
+        Args:
+            situation: What the rules know now.
+
+        Raises:
+            RuleError: it raises, or answers with no sound `Demand`.
+        """
+        try:
+            answer = self._ask(situation)
+        except (Exception, SystemExit) as error:
+            raise RuleError(f"{self._name} raised {described(error)}") from error
+        if answer is not None and (problem := problem_of(answer)):
+            raise RuleError(f"{self._name} returned {shown(answer)}: {problem}")
+        return answer
+
+    @property
+    def beside(self) -> Set[str]:
+        """The names of vehicles that the rule takes to pass beside the ego's path."""
+        return frozenset(getattr(self._rule, "beside", ()))
+
+    @property
+    def remarks(self) -> list[str]:
+        """What the user should know of how the drive went."""
+        return [" ".join(str(said).split()) for said in getattr(self._rule, "remarks", ())]
+
+    def _guarded(self, method: str) -> Callable[..., None]:
+        call = getattr(self._rule, method)
+
+        def guarded(*arguments: Any) -> None:
+            try:
+                call(*arguments)
+            except (Exception, SystemExit) as error:
+                msg = f"{self._name} raised {described(error)} in {method}"
+                raise RuleError(msg) from error
+
+        return guarded
+
+
+def problem_of(answer: object) -> str:
+    """What is wrong with an answer of a rule; empty if it is a sound `Demand`.
+
+    Args:
+        answer: Answer of a rule, other than None.
+    """
+    if not isinstance(answer, Demand):
+        return "expected a Demand, or None"
+    told: dict[str, Any] = answer._asdict()
+    for key in _NUMBERS:
+        value = told[key]
+        if isinstance(value, bool) or not isinstance(value, int | float) or isnan(value):
+            return f"expected a number as {key}; inf demands nothing"
+    if min(told["speed"], told["advice"]) < 0.0:
+        return "expected a speed of at least 0 m/s"
+    if not isinstance(told["leader"], Leader):
+        return "expected a Leader(station, speed) as leader"
+    cause = told["cause"]
+    if told["stop"] < inf and not (isinstance(cause, str) and cause and cause.isprintable()):
+        return "expected a word as the cause of the stop, for the column waits_for"
+    if not isinstance(told["lane_speeds"], np.ndarray | None):
+        return "expected an array as lane_speeds, or None"
+    return ""

@@ -1,0 +1,151 @@
+"""What the rules of one ego are made from: its route, its vehicle and the running simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+
+from giveway.config import EgoRunConfig
+from giveway.config.option import LANE
+from giveway.ego.rules.following import CLOSEST
+from giveway.ego.rules.junctions import PathJunction, junctions_on
+from giveway.ego.rules.speed_profile import SpeedProfile, profile_of
+from giveway.ego.waiting_ego import WaitingEgo
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath
+from giveway.sumo.lane_path import LanePath
+from giveway.sumo.session import SumoSession
+from giveway.sumo.signal_plans import ChangeOf, untold
+
+_BEHIND = 0.5  # distance [m] left behind a standing vehicle in addition to the one kept
+_LEAST_GAP = 1.0  # distance [m] left behind a standing vehicle at least
+
+
+class Stop(NamedTuple):
+    """Where the front bumper is to halt at a scheduled stop, and for how long."""
+
+    start: float  # station [m] from which on a halt counts
+    end: float  # station [m] that the ego drives up to
+    duration: float  # time [s] after the arrival, at least
+    until: float  # time [s] on SUMO's clock, at least; -inf: not given
+
+
+@dataclass(frozen=True)
+class RouteContext:
+    """What the rules of one ego are made from.
+
+    Attributes:
+        ego: Ego before its departure.
+        session: Running simulation, for the network and the signal plans.
+        path: Path of the ego.
+        lane_path: Lanes that the path was made of: limits, signals, edges, passages.
+        departure: Station [m] of the front bumper at which the ego enters.
+        shape: Length and width of its body [m].
+        time_step: Control step of the co-simulation [s].
+        capable: Speed [m/s] that the vehicle reaches; inf: unknown.
+        stops: Scheduled stops that the ego serves, in the path's order.
+    """
+
+    ego: WaitingEgo
+    session: SumoSession
+    path: EgoPath
+    lane_path: LanePath
+    departure: float
+    shape: VehicleShape
+    time_step: float
+    capable: float = inf
+    stops: Sequence[Stop] = ()
+
+    @property
+    def config(self) -> EgoRunConfig:
+        """The configuration of the ego."""
+        return self.ego.config
+
+    @property
+    def time(self) -> float:
+        """SUMO's clock [s]."""
+        return self.session.time
+
+    def heeds(self, rule: str) -> bool:
+        """Whether the ego heeds the rule of this name: by its key in ``[rules]`` or by default."""
+        return self.config.heeds(rule)
+
+    @property
+    def hardest_braking(self) -> float:
+        """The deceleration [m/s^2] that the vehicle is capable of."""
+        return self.config.mpc.force_limit / self.config.vehicle.mass
+
+    @property
+    def standing_gap(self) -> float:
+        """The gap [m] that the ego needs behind a standing vehicle so as not to block a place."""
+        kept = min(self.config.regulation.safe_distance, CLOSEST)
+        return max(_LEAST_GAP, kept + _BEHIND)
+
+    @property
+    def change_of(self) -> ChangeOf:
+        """The next change of a traffic light by its id, as far as the ego is told."""
+        return self.session.signal_plans.change if self.heeds("signal_advice") else untold
+
+    @cached_property
+    def profile(self) -> SpeedProfile | None:
+        """The speed of a free ego along its path; None if one number says it.
+
+        Raises:
+            ScenarioError: there are no lanes along the path.
+        """
+        if not self.heeds("speed_limits"):
+            return None
+        wanted = self.config.reference_speed
+        capable = self.capable if wanted == LANE else min(self.capable, wanted)
+        return profile_of(
+            self.ego,
+            self.path,
+            self.lane_path.limits,
+            self.departure,
+            self.shape.length,
+            capable,
+            self.time_step,
+        )
+
+    @property
+    def fastest(self) -> float:
+        """The highest speed [m/s] at which the ego wants to drive."""
+        return float(self.config.reference_speed) if self.profile is None else self.profile.fastest
+
+    @property
+    def desired_speed(self) -> Callable[[float], float]:
+        """The speed [m/s] of a free ego by the station [m] of its front bumper."""
+        profile = self.profile
+        if profile is None:
+            wanted = float(self.config.reference_speed)
+            return lambda _: wanted
+        return profile.at
+
+    @cached_property
+    def junctions(self) -> tuple[PathJunction, ...]:
+        """The junctions on the path at which vehicles may meet."""
+        session, passages = self.session, self.lane_path.passages
+        return junctions_on(self.path, passages, self.shape.width, session.junctions, session.lanes)
+
+    def stretches(self, edge: str) -> list[tuple[float, float]]:
+        """The stations [m] between which the path leads along an edge, once for each time it does.
+
+        Args:
+            edge: SUMO's id of the edge.
+        """
+        begins = self.lane_path.edges
+        ends = (*begins[1:], self.path.length)
+        lanes = [leave.rpartition("_")[0] for _, leave in self.lane_path.lanes]
+        found = zip(lanes, begins, ends, strict=True)
+        return [(begin, end) for name, begin, end in found if name == edge]
+
+    @cached_property
+    def times_ahead(self) -> Array:
+        """(N,) times [s] of the steps that the ego looks ahead, from now on."""
+        return self.time_step * np.arange(1.0, self.ego.horizon + 1.0)

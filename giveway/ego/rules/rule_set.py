@@ -1,0 +1,223 @@
+"""The rules that hold for one ego, and what they demand together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import inf
+from typing import Any
+
+from giveway.ego.perception.leader import NO_LEADER, Leader
+from giveway.ego.rules.crossings import Crossings
+from giveway.ego.rules.junctions import SIGHT
+from giveway.ego.rules.merge_places import SIGHT as MERGE_SIGHT
+from giveway.ego.rules.merge_places import Behind, Place
+from giveway.ego.rules.merging import Merging
+from giveway.ego.rules.plug_in import plugged_in_rules
+from giveway.ego.rules.protocol import LIGHT, NO_NEEDS, Rule, Situation, Told
+from giveway.ego.rules.right_of_way import RightOfWay
+from giveway.ego.rules.route import RouteContext
+from giveway.ego.rules.scheduled_stops import ScheduledStops
+from giveway.ego.rules.speed_limits import SpeedLimits
+from giveway.ego.rules.traffic_lights import TrafficLights
+from giveway.geometry.kernel import Array
+from pedestrian_model import Crowd
+
+RULES: tuple[Callable[[RouteContext], Rule | None], ...] = (
+    ScheduledStops.on,
+    Merging.on,  # before those that look at the vehicle ahead
+    TrafficLights.on,  # before those that look at where it comes to rest
+    Crossings.on,
+    RightOfWay.on,
+    SpeedLimits.on,
+)
+"""The factories of giveway's own rules, in the order in which the rules are asked.
+
+Each returns the rule of one ego, or None if nothing on its route falls under the rule. To add a
+rule: its file, its line here, its key in `giveway.config.tables.rules`.
+"""
+
+BEYOND = 0.5  # distance [m] beyond a demanded stop that a plan may lead to at most
+
+
+class RuleSet:
+    """Asks each rule of one ego, and keeps the strictest of what they demand.
+
+    Args:
+        rules: Rules in the order in which they are asked.
+        time: SUMO's clock [s] at the departure.
+
+    Attributes:
+        situation: What the rules know now; it is refilled in place.
+        watches: Whether any rule wants to be told what happens in SUMO.
+        needs: What each rule that wants to be told anything wants to be told of.
+        junctions: Junctions whose traffic matters, in the path's order.
+        systems: SUMO's ids of the signal systems that matter.
+        stop: Station [m] at which the front bumper has to stop; inf: nowhere.
+        cause: Reason of the stop; empty without one.
+        latest: Station [m] beyond which no plan leads; inf: anywhere.
+        speed: Speed [m/s] not to be exceeded now; inf: none is demanded.
+        advice: Speed [m/s] advised to a controller that plans ahead; inf: none is.
+        leader: Vehicle to be followed as if it were ahead; `NO_LEADER`: none.
+        lane_speeds: (N,) speeds [m/s] not to be exceeded in the steps ahead, or None.
+    """
+
+    def __init__(self, rules: Sequence[Rule] = (), time: float = 0.0) -> None:
+        self.situation = Situation(time)
+        self._rules = tuple(rules)
+        self._demands = tuple(rule.demand for rule in rules)
+        self._updates: tuple[Any, ...] = _methods(rules, "update")
+        self._advances: tuple[Any, ...] = _methods(rules, "advance")
+        self.needs = [getattr(rule, "needs", NO_NEEDS) for rule in rules]
+        self.systems = frozenset[str]().union(*(needs.systems for needs in self.needs))
+        self.junctions = tuple(place for needs in self.needs for place in needs.junctions)
+        self._merges = tuple(place for needs in self.needs for place in needs.merges)
+        self._keep_clear = sorted(area for needs in self.needs for area in needs.keep_clear)
+        self.watches = bool(self._updates)
+        self._reset()
+
+    @classmethod
+    def on(cls, route: RouteContext) -> RuleSet:
+        """The rules that hold on one ego's route: giveway's own, then those of other packages.
+
+        Args:
+            route: Route of the ego.
+
+        Raises:
+            GivewayError: a rule of another package cannot be found or made.
+        """
+        made = (factory(route) for factory in RULES)
+        own = [rule for rule in made if rule is not None]
+        return cls([*own, *plugged_in_rules(route)], route.time)
+
+    def _reset(self) -> None:
+        self.stop = self.latest = self.speed = self.advice = inf
+        self.cause = ""
+        self.leader = NO_LEADER
+        self.lane_speeds: Array | None = None
+        self.situation.stop_at_light = inf
+
+    @property
+    def beside(self) -> frozenset[str]:
+        """The names of vehicles whose lanes lead them past the path, at the next junctions."""
+        return frozenset[str]().union(*(getattr(rule, "beside", ()) for rule in self._rules))
+
+    @property
+    def keeps_behind(self) -> dict[str, Behind]:
+        """What each vehicle that keeps behind the ego where lanes merge has to heed, by its id."""
+        found: dict[str, Behind] = {}
+        if not self.situation.merging:
+            return found  # no place is in sight
+        for rule in self._rules:
+            found |= getattr(rule, "keeps_behind", {})
+        return found
+
+    @property
+    def remarks(self) -> list[str]:
+        """What the user should know of how the drive went."""
+        return [said for rule in self._rules for said in getattr(rule, "remarks", ())]
+
+    def near_junctions(self, station: float) -> set[str]:
+        """SUMO's ids of the junctions in sight.
+
+        Args:
+            station: Station of the front bumper [m].
+        """
+        return {
+            place.movement.junction
+            for place in self.junctions
+            if place.exit >= station and place.entry - station <= SIGHT
+        }
+
+    def near_merges(self, station: float) -> tuple[Place, ...]:
+        """The places in sight where lanes become one.
+
+        Args:
+            station: Station of the front bumper [m].
+        """
+        return tuple(
+            p for p in self._merges if p.end > station and p.entry - station <= MERGE_SIGHT
+        )
+
+    def to_clear(self, station: float) -> float:
+        """The distance [m] to drive on until the ego has left what it has to keep clear.
+
+        Args:
+            station: Station of the front bumper [m].
+        """
+        left = 0.0
+        for entry, leave in self._keep_clear:
+            if entry >= station:
+                break
+            left = max(left, leave - station)
+        return left
+
+    def update(self, time: float, station: float, speed: float, told: Told) -> None:
+        """Let the rules take note of what is new in SUMO.
+
+        Args:
+            time: SUMO's clock [s].
+            station: Station of the front bumper [m].
+            speed: Speed of the ego [m/s].
+            told: Signals and vehicles that matter.
+        """
+        situation = self.situation
+        situation.time, situation.station, situation.speed = time, station, speed
+        situation.signals, situation.traffic, situation.merging = told
+        for update in self._updates:
+            update(situation)
+
+    def look(self, station: float, speed: float, crowd: Crowd, leader: Leader) -> None:
+        """Ask each rule what it demands, and keep the strictest.
+
+        Args:
+            station: Station of the front bumper [m].
+            speed: Speed of the ego [m/s].
+            crowd: Pedestrians as the ego sees them.
+            leader: Vehicle ahead.
+        """
+        situation = self.situation
+        situation.station, situation.speed = station, speed
+        situation.crowd, situation.leader = crowd, leader
+        self._reset()
+        for ask in self._demands:
+            demand = ask(situation)
+            if demand is None:
+                continue
+            stop, cause, latest, cap, advice, ahead, lane_speeds = demand
+            if stop < self.stop:
+                self.stop, self.cause = stop, cause
+                self.latest = min(self.latest, stop + BEYOND)
+            if cause == LIGHT:
+                situation.stop_at_light = stop
+            if latest < self.latest:
+                self.latest = latest
+            if cap < self.speed:
+                self.speed = cap
+            if advice < self.advice:
+                self.advice = advice
+            if ahead is not NO_LEADER:
+                self.leader = min(self.leader, ahead)
+                situation.leader = min(situation.leader, ahead)
+            if lane_speeds is not None:
+                known = self.lane_speeds
+                self.lane_speeds = lane_speeds if known is None else known.clip(max=lane_speeds)
+
+    def advance(self, station: float, speed: float, time_step: float) -> None:
+        """Let the rules take note of a control step that has passed.
+
+        Args:
+            station: Station of the front bumper [m] after it.
+            speed: Speed of the ego [m/s] after it.
+            time_step: Length of the step [s].
+        """
+        situation = self.situation
+        situation.time += time_step
+        if self._advances:
+            situation.station, situation.speed = station, speed
+            for advance in self._advances:
+                advance(situation, time_step)
+
+
+def _methods(rules: Sequence[Rule], name: str) -> tuple[Any, ...]:
+    """The method ``name`` of each rule that has it."""
+    return tuple(getattr(rule, name) for rule in rules if hasattr(rule, name))

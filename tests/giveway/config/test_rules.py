@@ -1,0 +1,120 @@
+"""The table [rules], and what is said of keys and flags that are gone."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import Any
+
+import pytest
+
+from giveway.cli.flags import set_rules
+from giveway.cli.program import main
+from giveway.config import EgoRunConfig, RunConfig
+from giveway.config.files.layers import Layer, build_config, dump_toml, options
+from giveway.config.old_keys import OLD_FLAGS, OLD_KEYS
+from giveway.config.option import Section
+from giveway.config.tables.rules import OF_PRIORITY, RulesConfig
+from giveway.errors import ConfigError
+
+NAMES = tuple(RulesConfig.model_fields)
+
+
+def ego(**settings: Any) -> EgoRunConfig:
+    return EgoRunConfig.model_validate(settings)
+
+
+def built(settings: dict[str, Any]) -> RunConfig:
+    return build_config([Layer("run.toml", settings)])
+
+
+def test_left_out_the_paper_s_controllers_keep_no_priority() -> None:
+    for controller, kept in (("mpc", True), ("pid-tuned", True), ("mpc-paper", False)):
+        config = ego(controller=controller)
+        assert {config.heeds(name) for name in OF_PRIORITY} == {kept}
+        assert config.heeds("traffic_lights")
+        assert config.heeds("following")
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("controller", ["mpc", "mpc-paper"])
+def test_what_the_user_says_holds(name: str, controller: str) -> None:
+    own = {"controller": controller, "regulation": {"reference_speed": 4.0}}
+    for said in (True, False):
+        assert ego(**own, rules={name: said}).heeds(name) == said
+
+
+def test_lanes_give_the_speed_unless_a_number_does() -> None:
+    assert ego().heeds("speed_limits")
+    assert not ego(regulation={"reference_speed": 4.0}).heeds("speed_limits")
+    with pytest.raises(ConfigError, match=r"\[rules\] speed_limits = false.*give a speed"):
+        built({"rules": {"speed_limits": False}})
+
+
+def test_an_ego_has_rules_of_its_own() -> None:
+    run = {"rules": {"crossings": False}, "egos": ({"rules": {"merging": False}}, {})}
+    first, second = built(run).each_ego()
+    assert [first.heeds(name) for name in ("crossings", "merging")] == [False, False]
+    assert [second.heeds(name) for name in ("crossings", "merging")] == [False, True]
+
+
+@pytest.mark.parametrize("location", OLD_KEYS)
+def test_a_key_that_is_gone_is_answered_with_the_new_one(location: tuple[str, str]) -> None:
+    table, key = location
+    with pytest.raises(ConfigError) as caught:
+        built({table: {key: True}})
+    assert (
+        str(caught.value)
+        == f"run.toml: [{table}] {key}: this key is gone; write " + (OLD_KEYS[location])
+    )
+    with pytest.raises(ConfigError, match=rf"egos\[0\]: {table}.{key}: this key is gone"):
+        built({"egos": ({table: {key: True}},)})
+
+
+def test_what_is_advised_there_is() -> None:
+    keys = {".".join(option.location): option.flag for option in options()}
+    for location, advice in OLD_KEYS.items():
+        assert ".".join(location) not in keys
+        assert any(f"[rules] {name}" in advice for name in NAMES)
+    for old, advice in OLD_FLAGS.items():
+        assert old not in keys.values()
+        flag = advice.split(",")[0].replace("--no-", "--")
+        assert flag in keys.values()
+
+
+@pytest.mark.parametrize("flag", OLD_FLAGS)
+def test_a_flag_that_is_gone_too(flag: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(["run", "street", flag])
+    assert caught.value.code == 2
+    assert f"{flag}: this flag is gone; write {OLD_FLAGS[flag]}" in capsys.readouterr().err
+
+
+def test_a_misspelt_rule_is_answered_with_the_one_meant() -> None:
+    with pytest.raises(ConfigError, match=r"run.toml: \[rules\] crosings: .*'crossings'"):
+        built({"rules": {"crosings": False}})
+
+
+def test_rules_of_other_packages_are_named_with_their_options() -> None:
+    own = {"mine:Rule": {"limit": 8.0}, "mine:Other": True, "mine:Off": False}
+    config = built({"rules": {"crossings": True, **own}})
+    assert config.rules.plugged_in == {"mine:Rule": {"limit": 8.0}, "mine:Other": {}}
+    written = tomllib.loads(dump_toml(config))["rules"]
+    assert written == {"crossings": True, "mine:Rule": {"limit": 8.0}, "mine:Other": True}
+
+
+def test_the_words_of_the_rule_flag() -> None:
+    words = ["zone.limit=8.3", "zone.edge=a", "plain", "mine:Rule", "my.mod:Rule.limit=2"]
+    assert set_rules(words) == {
+        "zone": {"limit": 8.3, "edge": "a"},
+        "plain": True,
+        "mine:Rule": True,
+        "my.mod:Rule": {"limit": 2},
+    }
+    for bad in (["zone.a=1", "zone.a=2"], ["limit=3"]):
+        with pytest.raises(ConfigError, match="--rule "):
+            set_rules(bad)
+
+
+def test_the_table_is_like_the_others() -> None:
+    assert issubclass(RulesConfig, Section)
+    assert RulesConfig.model_config["frozen"]
