@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
+from giveway.ego.preparation import make_waiting_ego
 from giveway.ego.rules.protocol import Told
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.rules.traffic_lights import TrafficLights
-from giveway.ego.waiting_ego import make_waiting_ego
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from giveway.sumo.lane_path import Light

@@ -12,8 +12,8 @@ from giveway.config import EgoRunConfig
 from giveway.ego.controllers import make_controller
 from giveway.ego.ego import Ego
 from giveway.ego.foresight.relevance import MARGIN
+from giveway.ego.preparation import make_waiting_ego
 from giveway.ego.rules.rule_set import RuleSet
-from giveway.ego.waiting_ego import make_waiting_ego
 from giveway.geometry.bodies import VehicleShape
 from giveway.geometry.path import EgoPath
 from pedestrian_model import OPEN_GROUND, Crowd
