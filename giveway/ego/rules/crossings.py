@@ -11,13 +11,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from giveway.crowd.crossings import (
-    ASIDE,
     have_priority,
     is_near,
     is_open,
@@ -26,6 +23,7 @@ from giveway.crowd.crossings import (
     use_of,
 )
 from giveway.ego.perception.leader import Leader
+from giveway.ego.rules.path_crossings import PathCrossing, crossings_on
 from giveway.ego.rules.protocol import YIELD, Demand, Needs, Situation
 from giveway.ego.rules.route import RouteContext
 from giveway.ego.rules.yielding import (
@@ -35,16 +33,9 @@ from giveway.ego.rules.yielding import (
     leaves_no_room,
     needed_braking,
 )
-from giveway.geometry.bodies import VehicleShape
-from giveway.geometry.kernel import Array
-from giveway.geometry.path import EgoPath, fine_near
-from giveway.sumo.crossings import Crossing
 from giveway.sumo.signal_plans import ChangeOf, untold
 from pedestrian_model import Crowd
 
-_SAMPLE, _COARSE = 0.1, 2.0  # [m] between the places of the body that are looked at
-_GRAIN = 0.5  # [m] between the points of its outline, at most
-_BESIDE = 0.8  # [m] from the ego's side to the middle of somebody who is not in its way
 _BEFORE = 1.0  # [s] between the ego and whoever passes its way before or after it
 _AFTER = 0.5  # [s] instead, behind whoever it has waited for: else it would stop for them again
 _PATIENCE = 4.5  # [s] away from the ego's way, and a little more than an encounter's 4 s
@@ -53,102 +44,6 @@ _LAST = 2.0  # [m] before the crossing; farther away a stop at it counts as in t
 _SURE = 1.0  # [s] in addition, before it starts again; else it would creep on bit by bit
 _PULL_AWAY = 1.5  # [m/s^2] of the ego that has waited
 _SIGHT = 60.0  # [m] before a crossing from which on people are looked at
-
-
-class PathCrossing(NamedTuple):
-    """A crossing that a path leads over, in the crossing's own coordinates."""
-
-    entry: float  # [m] station of the front bumper from which on the body is on it
-    exit: float  # [m] station that the rear passes last
-    kerb: Array  # (2,) [m] one end of the crossing's middle line
-    along: Array  # (2,) unit vector to its other end
-    length: float  # [m] between the kerbs
-    half_width: float  # [m]
-    low: float  # [m] from the kerb, where the path's way over it begins, for a body's middle
-    high: float  # [m] and where it ends
-    zebra: bool
-    system: str
-    link: int
-
-
-def crossings_on(
-    path: EgoPath, shape: VehicleShape, crossings: Sequence[Crossing]
-) -> tuple[PathCrossing, ...]:
-    """The crossings that a path leads over, in its order.
-
-    Args:
-        path: the ego's.
-        shape: of its body.
-        crossings: of the network.
-    """
-    if not crossings:
-        return ()
-    found: list[PathCrossing] = []
-    coarse = np.arange(0.0, path.length, _COARSE)
-    middles = _points(path, coarse)
-    for crossing in crossings:
-        kerb, other = crossing.ends
-        length = float(np.hypot(*(other - kerb)))
-        if length <= 0.0:
-            continue
-        away = np.hypot(*(middles - crossing.ends.mean(axis=0)).T)
-        reach = (length + crossing.width) / 2 + shape.length + shape.width + _COARSE
-        near = coarse[away <= reach]
-        if not len(near):
-            continue
-        along = (other - kerb) / length
-        stations = fine_near(near, _COARSE, near[0], path.length, _SAMPLE)
-        outline = _outlines(path, shape, stations)
-        u, w = place_on(outline.reshape(-1, 2), kerb, along)
-        u, w = u.reshape(outline.shape[:2]), w.reshape(outline.shape[:2])
-        inside = (u >= 0.0) & (u <= length) & (np.abs(w) <= crossing.width / 2)
-        for visit in _runs(np.asarray(inside.any(axis=1))):
-            swept = u[visit][inside[visit]]
-            found.append(
-                PathCrossing(
-                    float(stations[visit[0]]),
-                    float(stations[visit[-1]]) - shape.length,
-                    kerb,
-                    along,
-                    length,
-                    crossing.width / 2 + ASIDE,
-                    float(swept.min()) - _BESIDE,
-                    float(swept.max()) + _BESIDE,
-                    crossing.zebra,
-                    crossing.system,
-                    crossing.link,
-                )
-            )
-    return tuple(sorted(found, key=lambda place: place.entry))
-
-
-def _points(path: EgoPath, stations: Array) -> Array:
-    """(n, 2) [m] the path at ``stations`` (n,) [m], which goes on straight before its beginning."""
-    points = path.points(stations)
-    heading = path.headings[0]
-    points += np.outer(np.minimum(stations, 0.0), (np.cos(heading), np.sin(heading)))
-    return points
-
-
-def _outlines(path: EgoPath, shape: VehicleShape, stations: Array) -> Array:
-    """(n, p, 2) [m] points of the sides and the front of the body at each of ``stations`` (n,)."""
-    front, rear = _points(path, stations), _points(path, stations - shape.length)
-    forward = front - rear
-    forward /= np.maximum(np.hypot(forward[:, 0], forward[:, 1]), 1e-9)[:, None]
-    left = np.column_stack([-forward[:, 1], forward[:, 0]])
-    back = np.linspace(0.0, shape.length, max(2, math.ceil(shape.length / _GRAIN)))
-    sides = [(distance, side) for distance in back for side in (-0.5, 0.0, 0.5)]
-    points = [front - a * forward + side * shape.width * left for a, side in sides]
-    return np.stack(points, axis=1)
-
-
-def _runs(inside: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
-    """The stretches of two points or more that are inside."""
-    places = np.flatnonzero(inside)
-    if not len(places):
-        return []
-    pieces = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
-    return [piece for piece in pieces if len(piece) > 1]
 
 
 class Crossings:

@@ -15,7 +15,8 @@ import pytest
 from support.situations import demand_of, stop_of, tell
 
 from giveway.ego.perception.leader import Leader
-from giveway.ego.rules.crossings import Crossings, crossings_on
+from giveway.ego.rules.crossings import Crossings
+from giveway.ego.rules.path_crossings import crossings_on
 from giveway.ego.rules.rule_set import RuleSet
 from giveway.ego.rules.yielding import STOP_BEFORE
 from giveway.geometry.bodies import VehicleShape

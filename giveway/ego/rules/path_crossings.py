@@ -1,0 +1,116 @@
+"""The crossings on an ego's path, and the stretch of the path that lies on each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from giveway.crowd.crossings import ASIDE, place_on
+from giveway.geometry.bodies import VehicleShape
+from giveway.geometry.kernel import Array
+from giveway.geometry.path import EgoPath, fine_near
+from giveway.sumo.crossings import Crossing
+
+_SAMPLE, _COARSE = 0.1, 2.0  # [m] between the places of the body that are looked at
+_GRAIN = 0.5  # [m] between the points of its outline, at most
+_BESIDE = 0.8  # [m] from the ego's side to the middle of somebody who is not in its way
+
+
+class PathCrossing(NamedTuple):
+    """A crossing that a path leads over, in the crossing's own coordinates."""
+
+    entry: float  # [m] station of the front bumper from which on the body is on it
+    exit: float  # [m] station that the rear passes last
+    kerb: Array  # (2,) [m] one end of the crossing's middle line
+    along: Array  # (2,) unit vector to its other end
+    length: float  # [m] between the kerbs
+    half_width: float  # [m]
+    low: float  # [m] from the kerb, where the path's way over it begins, for a body's middle
+    high: float  # [m] and where it ends
+    zebra: bool
+    system: str
+    link: int
+
+
+def crossings_on(
+    path: EgoPath, shape: VehicleShape, crossings: Sequence[Crossing]
+) -> tuple[PathCrossing, ...]:
+    """The crossings that a path leads over, in its order.
+
+    Args:
+        path: the ego's.
+        shape: of its body.
+        crossings: of the network.
+    """
+    if not crossings:
+        return ()
+    found: list[PathCrossing] = []
+    coarse = np.arange(0.0, path.length, _COARSE)
+    middles = _points(path, coarse)
+    for crossing in crossings:
+        kerb, other = crossing.ends
+        length = float(np.hypot(*(other - kerb)))
+        if length <= 0.0:
+            continue
+        away = np.hypot(*(middles - crossing.ends.mean(axis=0)).T)
+        reach = (length + crossing.width) / 2 + shape.length + shape.width + _COARSE
+        near = coarse[away <= reach]
+        if not len(near):
+            continue
+        along = (other - kerb) / length
+        stations = fine_near(near, _COARSE, near[0], path.length, _SAMPLE)
+        outline = _outlines(path, shape, stations)
+        u, w = place_on(outline.reshape(-1, 2), kerb, along)
+        u, w = u.reshape(outline.shape[:2]), w.reshape(outline.shape[:2])
+        inside = (u >= 0.0) & (u <= length) & (np.abs(w) <= crossing.width / 2)
+        for visit in _runs(np.asarray(inside.any(axis=1))):
+            swept = u[visit][inside[visit]]
+            found.append(
+                PathCrossing(
+                    float(stations[visit[0]]),
+                    float(stations[visit[-1]]) - shape.length,
+                    kerb,
+                    along,
+                    length,
+                    crossing.width / 2 + ASIDE,
+                    float(swept.min()) - _BESIDE,
+                    float(swept.max()) + _BESIDE,
+                    crossing.zebra,
+                    crossing.system,
+                    crossing.link,
+                )
+            )
+    return tuple(sorted(found, key=lambda place: place.entry))
+
+
+def _points(path: EgoPath, stations: Array) -> Array:
+    """(n, 2) [m] the path at ``stations`` (n,) [m], which goes on straight before its beginning."""
+    points = path.points(stations)
+    heading = path.headings[0]
+    points += np.outer(np.minimum(stations, 0.0), (np.cos(heading), np.sin(heading)))
+    return points
+
+
+def _outlines(path: EgoPath, shape: VehicleShape, stations: Array) -> Array:
+    """(n, p, 2) [m] points of the sides and the front of the body at each of ``stations`` (n,)."""
+    front, rear = _points(path, stations), _points(path, stations - shape.length)
+    forward = front - rear
+    forward /= np.maximum(np.hypot(forward[:, 0], forward[:, 1]), 1e-9)[:, None]
+    left = np.column_stack([-forward[:, 1], forward[:, 0]])
+    back = np.linspace(0.0, shape.length, max(2, math.ceil(shape.length / _GRAIN)))
+    sides = [(distance, side) for distance in back for side in (-0.5, 0.0, 0.5)]
+    points = [front - a * forward + side * shape.width * left for a, side in sides]
+    return np.stack(points, axis=1)
+
+
+def _runs(inside: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+    """The stretches of two points or more that are inside."""
+    places = np.flatnonzero(inside)
+    if not len(places):
+        return []
+    pieces = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
+    return [piece for piece in pieces if len(piece) > 1]
