@@ -124,8 +124,8 @@ def _battery(connection: Connection, config: str, what: str) -> None:
             )
         connection.send([(finding.rule, finding.problem) for finding in found])
     elif what == RULE.what:
-        from giveway.ego.rules.conformance import check_rule, made_up_route
-        from giveway.ego.rules.plug_in import maker
+        from giveway.ego.rules.plug_ins.conformance import check_rule, made_up_route
+        from giveway.ego.rules.plug_ins.plug_in import maker
 
         (own,) = effective.each_ego()
         ((name, settings),) = own.rules.plugged_in.items()

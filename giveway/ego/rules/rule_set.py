@@ -12,7 +12,7 @@ from giveway.ego.rules.junctions import SIGHT
 from giveway.ego.rules.merge_places import SIGHT as MERGE_SIGHT
 from giveway.ego.rules.merge_places import Behind, Place
 from giveway.ego.rules.merging import Merging
-from giveway.ego.rules.plug_in import plugged_in_rules
+from giveway.ego.rules.plug_ins.plug_in import plugged_in_rules
 from giveway.ego.rules.protocol import LIGHT, NO_NEEDS, Rule, Situation, Told
 from giveway.ego.rules.right_of_way import RightOfWay
 from giveway.ego.rules.route import RouteContext

@@ -11,7 +11,7 @@ from support.situations import NOBODY
 
 from giveway.config.tables.rules import RulesConfig
 from giveway.ego.perception.leader import NO_LEADER, Leader
-from giveway.ego.rules.conformance import made_up_route
+from giveway.ego.rules.plug_ins.conformance import made_up_route
 from giveway.ego.rules.protocol import LIGHT, Demand, Needs, Rule, Situation, Told
 from giveway.ego.rules.rule_set import BEYOND, RULES, RuleSet
 

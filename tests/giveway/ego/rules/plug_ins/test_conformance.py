@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from giveway.ego.rules.conformance import check_rule, made_up_route
+from giveway.ego.rules.plug_ins.conformance import check_rule, made_up_route
 from giveway.ego.rules.protocol import Demand, Situation
 
 ROUTE = made_up_route()

@@ -18,8 +18,8 @@ import numpy as np
 from controller import Finding
 from giveway.config import EgoRunConfig
 from giveway.ego.perception.leader import NO_LEADER, Leader
-from giveway.ego.rules.plug_in import Maker, made
-from giveway.ego.rules.plugged_in import PluggedInRule
+from giveway.ego.rules.plug_ins.plug_in import Maker, made
+from giveway.ego.rules.plug_ins.plugged_in import PluggedInRule
 from giveway.ego.rules.protocol import Demand, Situation
 from giveway.ego.rules.route import RouteContext
 from giveway.errors import RuleError

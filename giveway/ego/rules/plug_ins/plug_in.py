@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from giveway.ego.rules.plugged_in import PluggedInRule
+from giveway.ego.rules.plug_ins.plugged_in import PluggedInRule
 from giveway.ego.rules.protocol import Rule
 from giveway.ego.rules.route import RouteContext
 from giveway.errors import RuleError

@@ -1,0 +1,1 @@
+"""Rules of other packages: found and made, checked among giveway's own, tried by a kit."""
