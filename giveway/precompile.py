@@ -71,7 +71,7 @@ def compile_kernels_once(console: Console | None = None, *, threads: int = 1) ->
     A few tiny runs call them all; numba keeps the machine code in the user's cache folder.
 
     Args:
-        console: for the message; None prints nothing.
+        console: Console for the message; None prints nothing.
         threads: that step the crowd; several have kernels of their own.
     """
     marker = f"{_MARKER}{get_host_cpu_name()}"
@@ -106,7 +106,7 @@ def forget_old_kernels(folder: Path) -> None:
     """Remove the kernels of versions that have not been run for a month.
 
     Args:
-        folder: of the present kernels; those of other versions are in the folders beside it.
+        folder: Folder of the present kernels; those of other versions are in the folders beside it.
     """
     for other in folder.parent.glob(FOLDERS):
         used = [file.stat().st_mtime for file in (other, *other.glob(f"{_MARKER}*"))]

@@ -32,7 +32,7 @@ def recover(journal: Path, verdict: Verdict) -> CrashError:
 
     Args:
         journal: the folder that the dead process wrote to.
-        verdict: on its end.
+        verdict: Verdict on its end.
 
     Returns:
         The error to report; its ``result`` holds the rows, if there are any.
@@ -74,7 +74,7 @@ class LeftJournal:
 
     Attributes:
         path: its folder.
-        scenario: of the run.
+        scenario: Scenario of the run.
         results: where its results were to go; None: nowhere.
         steps: how many were recorded.
         clock: the latest [s] of SUMO's time.

@@ -93,7 +93,7 @@ def extract(archive: Archive, folder: Path, prefixes: Sequence[str]) -> None:
     """Unpack the members whose names begin with one of the prefixes.
 
     Args:
-        archive: from :func:`open_archive`.
+        archive: Archive from :func:`open_archive`.
         folder: exists; nothing is written outside it, and nothing in it replaced.
         prefixes: such as ``"binaries/linux64/"``, ``"resources/"``.
 

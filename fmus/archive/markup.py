@@ -99,7 +99,7 @@ class _LimitedParser:
     """One pass over a document that enforces the limits.
 
     Args:
-        where: of the document, for messages.
+        where: Name of the document in messages.
         root: the first element's name.
         start: called with the name, the attributes and the line of each element; None: not called.
         end: called with its name.

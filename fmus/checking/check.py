@@ -34,10 +34,10 @@ class CheckReport:
     """The result of a check.
 
     Attributes:
-        findings: in the order of the tests.
-        traces: of the drives that ran, by name.
+        findings: Findings in the order of the tests.
+        traces: Traces of the drives that ran, by name.
         expected: what was checked against.
-        convergence: of the step-halving test; None: it was not run.
+        convergence: Convergence of the step-halving test; None: it was not run.
     """
 
     expected: Expected
@@ -71,17 +71,17 @@ def check(
 
     Args:
         opener: makes the vehicle.
-        step_size: of the run [s].
-        fmu_step: of the FMU itself [s]; None: ``step_size``.
+        step_size: Step size of the run [s].
+        fmu_step: Step of the FMU itself [s]; None: ``step_size``.
         unguarded: makes the vehicle without guards, to see what is wrong if they stop it.
-        profile: of the vehicle, for what to change in it.
+        profile: Profile of the vehicle, for what to change in it.
         mass: M of the controller's model, and of the vehicle [kg]; None: nobody knows, and the
             controller's is that of the profile's [model], else 1000 kg.
-        vehicle_class: of SUMO, which tells roughly what the vehicle weighs.
+        vehicle_class: Vehicle class of SUMO, which tells roughly what the vehicle weighs.
         friction: alpha of it [N.s/m].
-        horizon: of the MPC [steps].
+        horizon: Horizon of the MPC [steps].
         force_limit: u_max [N].
-        start_speed: of the rolling start [m/s].
+        start_speed: Start speed of the rolling start [m/s].
         progress: told the name of each drive before it begins.
     """
     known = known_masses(profile, mass, vehicle_class)

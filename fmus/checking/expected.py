@@ -14,11 +14,11 @@ class Expected:
     Attributes:
         mass: M of the controller's model [kg].
         friction: alpha of it [N.s/m].
-        horizon: of the MPC [steps].
-        start_speed: of the run [m/s].
-        force: of the manoeuvres [N].
+        horizon: Horizon of the MPC [steps].
+        start_speed: Start speed of the run [m/s].
+        force: Force of the manoeuvres [N].
         largest_force: u_max [N].
-        profile: of the vehicle; None: the FMU is ours.
+        profile: Profile of the vehicle; None: the FMU is ours.
         known: what the vehicle weighs, as far as anybody has said.
     """
 

@@ -11,7 +11,7 @@ class Finding:
     """The outcome of one test.
 
     Attributes:
-        name: of the test, a few words.
+        name: Name of the test, a few words.
         verdict: "skip" where the test does not apply, or could not be tried any more; "ask" where
             only the user can tell.
         text: what was found, with numbers and units; one line.

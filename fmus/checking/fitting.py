@@ -51,7 +51,7 @@ def prepare(trace: Trace, limits: tuple[float, float] = (np.inf, np.inf)) -> Dri
     """Mark the steps that the fit may use: not the first ones, no standstill, no saturation.
 
     Args:
-        trace: of a drive.
+        trace: Trace of a drive.
         limits: largest drive and brake force that the vehicle carries out [N].
     """
     moving = np.minimum(trace.speed[:-1], trace.speed[1:]) > STANDSTILL

@@ -42,11 +42,11 @@ class Identification:
     """A vehicle's model, its accuracy, and the drives behind it.
 
     Attributes:
-        model: for the profile.
+        model: Model for the profile.
         intervals: half widths of the 95 % intervals of M [kg] and alpha [N.s/m].
         drive_limit: largest drive force that the vehicle carries out [N]; None: not reached.
         brake_limit: largest brake force that arrives [N]; None: not reached.
-        largest_force: of the tests [N].
+        largest_force: Largest force of the tests [N].
         fit: M and alpha with lag and dead time.
         tests: the drives that were fitted.
         validation: the drive that was not fitted.
@@ -90,12 +90,12 @@ def identify(
 
     Args:
         opener: makes the vehicle.
-        path: of the FMU, for messages.
-        step_size: of the MPC, dt [s].
-        horizon: of the MPC, N [steps].
+        path: Path of the FMU, for messages.
+        step_size: Step size of the MPC, dt [s].
+        horizon: Horizon of the MPC, N [steps].
         force_limit: u_max of the MPC [N]; no test uses more.
-        profile: of the vehicle, for what to change in it.
-        speeds: from which the tests start [m/s].
+        profile: Profile of the vehicle, for what to change in it.
+        speeds: Speeds from which the tests start [m/s].
         progress: told how many of the drives are done, and of how many.
 
     Raises:

@@ -43,10 +43,10 @@ def opener_of(
 
     Args:
         path: the .fmu file.
-        step_size: for which a force is held [s].
-        profile: of the vehicle.
+        step_size: Step size for which a force is held [s].
+        profile: Profile of the vehicle.
         start_values: further start values by variable name.
-        isolated: in a process of its own; None: unless it is a shipped FMU.
+        isolated: True: run it in a process of its own; None: unless it is a shipped FMU.
     """
 
     def open_with(fmu_step: float | None) -> Vehicle:
@@ -78,13 +78,13 @@ class Trace:
     """The record of a drive: n steps, n + 1 instants.
 
     Attributes:
-        step_size: of the vehicle [s].
+        step_size: Step size of the vehicle [s].
         force: (n,) held over each step [N].
         position: (n + 1,) [m].
         speed: (n + 1,) [m/s].
         acceleration: (n + 1,) as the vehicle reports it [m/s2].
         cost: (n,) wall clock of each step [s].
-        warnings: of the vehicle.
+        warnings: Warnings of the vehicle.
     """
 
     step_size: float
@@ -120,8 +120,8 @@ def drive(
     Args:
         opener: makes the vehicle.
         phases: one after the other.
-        speed: at the start [m/s].
-        fmu_step: of the FMU itself [s]; None: as its profile says.
+        speed: Speed at the start [m/s].
+        fmu_step: Step of the FMU itself [s]; None: as its profile says.
 
     Raises:
         FmuError: the vehicle cannot be opened or started, or fails on the way.

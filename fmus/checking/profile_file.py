@@ -47,7 +47,7 @@ def profile_text(profile: VehicleProfile, comment: str) -> str:
     """A profile as TOML, without what is at its default.
 
     Args:
-        profile: to write.
+        profile: Profile to write.
         comment: its first line.
     """
     document = tomlkit.document()

@@ -31,7 +31,7 @@ def fit_remarks(
         found: M, alpha and the actuator.
         model: how good they are.
         traces: that were fitted.
-        limits: beyond which they were not [N].
+        limits: Largest forces of the steps that were fitted [N].
     """
     remarks = []
     if model.r_squared < POOR_FIT:

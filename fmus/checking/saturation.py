@@ -68,7 +68,7 @@ def force_limits(tests: Sequence[Sequence[Trace]]) -> tuple[float, float]:
     Level by level: M and alpha from the weaker tests predict the next ones.
 
     Args:
-        tests: by level of force, from weak to strong.
+        tests: Tests by level of force, from weak to strong.
     """
     limits = [np.inf, np.inf]
     for weaker, group in zip(range(1, len(tests)), tests[1:], strict=True):
@@ -101,9 +101,9 @@ def saturation(
     """The smallest force [N] of one sign that falls short of the model, or infinity.
 
     Args:
-        traces: of the forces in question.
-        sign: of those that count.
-        model: of the vehicle.
+        traces: Traces of the forces in question.
+        sign: Sign of the forces that count.
+        model: Model of the vehicle.
         weaker: the same tests with less force. Where a larger force lets more arrive, as in a
             higher gear, there is no limit.
     """

@@ -67,10 +67,10 @@ def known_masses(
     """What the measured mass can be compared with.
 
     Args:
-        profile: with what was identified. A vehicle that is driven by an acceleration or a speed
-            seems as heavy as its [inverse_map], whatever it weighs.
+        profile: Profile with what was identified. A vehicle that is driven by an acceleration or a
+            speed seems as heavy as its [inverse_map], whatever it weighs.
         mass: given by the user [kg].
-        vehicle_class: of SUMO, given by the user.
+        vehicle_class: Vehicle class of SUMO, given by the user.
     """
     known = []
     if profile is not None and (profile.inputs.acceleration or profile.inputs.speed_setpoint):
@@ -94,8 +94,8 @@ def gross_error(
     Args:
         measured: M of the fit [kg].
         known: what it is compared with.
-        role: of the input that drives.
-        speed_unit: in which the speed is read.
+        role: Role of the input that drives.
+        speed_unit: Unit in which the speed is read.
 
     Returns:
         None: it is within a factor of :data:`GROSS`.

@@ -53,7 +53,8 @@ class Convergence:
         finer: what it was compared with [s]; None: the FMU can do no finer steps.
         problem: why ``step`` is too coarse, one clause; empty if it is not.
         advised: the largest step that converges [s]; None: none was found, or none is needed.
-        traces: of the manoeuvre from the start speed: with ``step`` and ``finer``, where they ran.
+        traces: Traces of the manoeuvre from the start speed: with ``step`` and ``finer``, where
+            they ran.
     """
 
     step: float
@@ -76,9 +77,9 @@ def require_converged(
     Args:
         opener: makes the vehicle for a step of its FMU; how long a force is held stays the same.
         fmu_step: the FMU's in the run [s].
-        path: of the FMU, for messages.
+        path: Path of the FMU, for messages.
         force: that drives and brakes [N].
-        start_speed: of the run [m/s]; the manoeuvre is driven from it and from rest.
+        start_speed: Start speed of the run [m/s]; the manoeuvre is driven from it and from rest.
 
     Raises:
         FmuOutputError: the steps are too coarse; the message names one that is not.
@@ -257,7 +258,7 @@ def goes_the_wrong_way(trace: Trace) -> bool:
     speed.
 
     Args:
-        trace: of the :func:`manoeuvre`.
+        trace: Trace of the :func:`manoeuvre`.
     """
     change = np.diff(trace.speed) / trace.step_size
     driven, braked = change[trace.force > 0.0], change[trace.force < 0.0]

@@ -26,7 +26,7 @@ class Side:
 
     Attributes:
         mass: as which it seems to move [kg].
-        lag: of its actuator, first order [s].
+        lag: Lag of its actuator, first order [s].
         delay: its dead time [s].
     """
 
@@ -47,7 +47,7 @@ def fit_apart(drives: Sequence[Drive], delay: float) -> Sides:
     """Mass, lag and dead time of each side, from the steps after its own last force.
 
     Args:
-        drives: in which both forces occur, one after the other.
+        drives: Drives in which both forces occur, one after the other.
         delay: dead time of both together [s]; a side has it, or none.
     """
     return Sides(_fit_side(drives, 1.0, delay), _fit_side(drives, -1.0, delay))
@@ -89,8 +89,8 @@ def side_remarks(sides: Sides, step: float, profile: VehicleProfile | None) -> l
 
     Args:
         sides: as fitted.
-        step: of the controller [s]: lags that differ by less are the same.
-        profile: of the vehicle, for the line that mends it.
+        step: Step of the controller [s]: lags that differ by less are the same.
+        profile: Profile of the vehicle, for the line that mends it.
     """
     drive, brake = sides.drive, sides.brake
     if drive is None or brake is None:

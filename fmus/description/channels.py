@@ -16,7 +16,7 @@ def find_channel(model: Model, place: str, name: str) -> Channel:
     """The variable, or the element of an array, that is called ``name``.
 
     Args:
-        model: of the FMU.
+        model: Model of the FMU.
         place: where the name stands, for errors.
         name: ``x``, or ``x[2]`` for an array's second element.
 

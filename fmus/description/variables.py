@@ -60,7 +60,7 @@ def read_variables(root: Element, version: str, where: str) -> dict[str, Variabl
     """All variables by name, in the order of the file.
 
     Args:
-        root: of the model description.
+        root: Root of the model description.
         version: "1.0", "2.0" or "3.0".
         where: named in errors.
 

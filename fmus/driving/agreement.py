@@ -37,8 +37,8 @@ class Agreement:
         Args:
             moved: change of the position [m].
             way: integral of the speed, by the trapezoid rule [m].
-            slack: by how much that may be wrong [m].
-            duration: of the step [s].
+            slack: Largest error of that position [m].
+            duration: Duration of the step [s].
 
         Returns:
             the way by the position [m], that by the speed [m], and in how long [s]; 0 s: since the

@@ -19,11 +19,11 @@ class ControllerFmu:
 
     Args:
         prepared: the controller.
-        folder: of its unpacked FMU, which stays.
+        folder: Folder of its unpacked FMU, which stays.
 
     Attributes:
-        answer: of the last step, in the FMU's own unit.
-        time: at the end of that step [s].
+        answer: Answer of the last step, in the FMU's own unit.
+        time: Time at the end of that step [s].
 
     Raises:
         FmuPlatformError: it has no binary that can be loaded.

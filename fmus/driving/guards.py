@@ -11,7 +11,7 @@ class Guard:
     """Finds faults in new states, and puts them into words.
 
     Args:
-        limits: of the profile.
+        limits: Limits of the profile.
         names: what the FMU calls its speed, position and acceleration.
     """
 
@@ -30,7 +30,7 @@ class Guard:
             position: [m].
             speed: [m/s].
             acceleration: [m/s2].
-            jump: by how much the position differs from the integrated speed [m].
+            jump: Difference between the position and the integrated speed [m].
             at: time [s].
         """
         for role, value in (
@@ -61,7 +61,7 @@ class Guard:
         Args:
             moved: distance by the position [m].
             way: distance by the integrated speed [m].
-            duration: in which they were driven [s]; 0: since the start.
+            duration: Time over which they were driven [s]; 0: since the start.
             at: time [s].
         """
         position, speed = self._names["position"], self._names["speed"]

@@ -79,10 +79,10 @@ class Motion:
         """Take over the state after a step.
 
         Args:
-            outputs: of the FMU.
+            outputs: Outputs of the FMU.
             force: held over the step [N].
-            duration: of the step [s].
-            time: at its end [s].
+            duration: Duration of the step [s].
+            time: Time at its end [s].
 
         Raises:
             FmuOutputError: no car can have this state.

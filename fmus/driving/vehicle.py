@@ -28,7 +28,7 @@ class VehicleFmu(Drivable):
 
     Args:
         path: the .fmu file.
-        step_size: of the controller [s].
+        step_size: Step size of the controller [s].
         profile: which variable plays which part; None: the shipped FMUs' own, or a draft from
             names and units if it leaves no doubt.
         start_values: further start values by variable name, set at every :meth:`start`.

@@ -46,12 +46,12 @@ def load(
     Args:
         model: as read.
         interface: the one of its interfaces that is to run.
-        folder: with the extracted FMU; the caller removes it after :meth:`Instance.close`.
+        folder: Folder with the extracted FMU; the caller removes it after :meth:`Instance.close`.
         binary: this platform's library, by its name in the archive.
-        solver: of Model Exchange; None: CVode where it runs.
+        solver: Solver of Model Exchange; None: CVode where it runs.
         tolerance: relative: of Model Exchange's solver, or told to a Co-Simulation FMU.
-        rewinds: before each step keep the state, so that a discarded step can be done again in
-            smaller ones; only with Co-Simulation FMUs that can save their state.
+        rewinds: True: keep the state before each step, so that a discarded step can be done again
+            in smaller ones; only with Co-Simulation FMUs that can save their state.
         stop_time: told to the FMU [s]; None: it has none.
 
     Raises:

@@ -75,7 +75,7 @@ class Calls(ABC):
         library: loaded.
         model: the FMU.
         interface: that is to run.
-        folder: with the extracted FMU.
+        folder: Folder with the extracted FMU.
         messages: receives the FMU's messages.
 
     Raises:

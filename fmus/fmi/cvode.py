@@ -54,7 +54,7 @@ class Cvode:
     """Backward differentiation formulas with a dense Jacobian from differences.
 
     Args:
-        system: to integrate; at least one state.
+        system: System to integrate; at least one state.
         tolerance: relative; times a state's nominal value it is the absolute one.
     """
 

@@ -82,7 +82,7 @@ class Arguments:
     """The arguments of a format, one after the other.
 
     Args:
-        slots: of registers and the stack, as the receivers get them.
+        slots: Slots of registers and the stack, as the receivers get them.
     """
 
     def __init__(self, slots: Sequence[Any]) -> None:

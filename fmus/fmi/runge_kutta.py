@@ -23,7 +23,7 @@ class RungeKutta:
     Both results combined are of order 5 (Richardson; Hairer, Norsett & Wanner 1993, II.4).
 
     Args:
-        system: to integrate.
+        system: System to integrate.
         tolerance: relative; times a state's nominal value it is the absolute one.
     """
 

@@ -16,14 +16,14 @@ class Vehicle(ABC):
     """What giveway drives, in this process or in one of its own.
 
     Args:
-        path: of the FMU.
+        path: Path of the FMU.
 
     Attributes:
         position: [m] as of the last step.
         speed: [m/s] as of the last step.
         acceleration: [m/s2] as of the last step.
         time: [s] the number of steps times the step size, never a running sum.
-        step_size: of the controller [s].
+        step_size: Step size of the controller [s].
         knows_grades: whether it has an input for the road's grade.
         record: what the profile wants to have recorded.
         recorded: values of the profile's ``record`` as of the last step, in the FMU's own units.

@@ -35,10 +35,10 @@ class FmuProcess:
         prepared: the vehicle or controller.
 
     Attributes:
-        warnings: of the FMU, since its last start.
+        warnings: Warnings of the FMU, since its last start.
         failed: the episode has failed: the FMU is no more asked to end.
         last: the numbers of a reply that told an error; empty: none did.
-        last_time: of it [s].
+        last_time: Time [s] of its last step.
 
     Raises:
         FmuError: it cannot be unpacked, or no process can be started.
@@ -85,8 +85,8 @@ class FmuProcess:
 
         Args:
             what: is to be done.
-            numbers: of the request.
-            timeout: in which it must be done [s].
+            numbers: Numbers of the request.
+            timeout: Timeout in which it must be done [s].
             when: says when that was, for messages.
 
         Returns:

@@ -21,7 +21,7 @@ class LinuxHost:
     """Has a watchdog process fork the FMU's processes; see :mod:`fmus.isolation.watchdog`.
 
     Args:
-        path: of the FMU.
+        path: Path of the FMU.
         folder: temporary; the watchdog removes it when this process has ended.
 
     Attributes:

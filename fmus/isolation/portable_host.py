@@ -20,7 +20,7 @@ class PortableHost:
     """Starts a new interpreter for every episode.
 
     Args:
-        path: of the FMU.
+        path: Path of the FMU.
         folder: temporary.
 
     Attributes:

@@ -52,7 +52,7 @@ class VehicleRider:
 
     Args:
         prepared: the vehicle.
-        folder: of its unpacked FMU.
+        folder: Folder of its unpacked FMU.
     """
 
     def __init__(self, prepared: Prepared, folder: Path) -> None:
@@ -98,7 +98,7 @@ class ControllerRider:
 
     Args:
         prepared: the controller.
-        folder: of its unpacked FMU.
+        folder: Folder of its unpacked FMU.
     """
 
     def __init__(self, prepared: PreparedController, folder: Path) -> None:

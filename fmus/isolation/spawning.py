@@ -33,9 +33,9 @@ def spawn(
     """Start an interpreter like this one that runs ``main`` of a module of this package.
 
     Args:
-        path: of the FMU, named in errors.
+        path: Path of the FMU, named in errors.
         module: name of the module in this package.
-        arguments: of its ``main``: numbers and texts.
+        arguments: Arguments of its ``main``: numbers and texts.
         folder: the vehicle's temporary folder.
         output: where the interpreter prints.
         pass_fds: file descriptors that it inherits.

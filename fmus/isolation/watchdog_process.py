@@ -26,12 +26,13 @@ class WatchdogProcess:
     """A watchdog, see :mod:`fmus.isolation.watchdog`; it imports while its vehicle goes on.
 
     Args:
-        path: of the FMU, named in errors.
-        folder: of the vehicle, temporary; the watchdog removes it when this process has ended.
+        path: Path of the FMU, named in errors.
+        folder: Folder of the vehicle, temporary; the watchdog removes it when this process has
+            ended.
 
     Attributes:
         process: the watchdog.
-        has_answered: at least once.
+        has_answered: True after its first answer.
 
     Raises:
         FmuCrashError: it cannot be started.
@@ -54,9 +55,9 @@ class WatchdogProcess:
 
         Args:
             what: is asked for.
-            argument: of that.
+            argument: Argument of that.
             timeout: [s].
-            files: to be handed over.
+            files: Files to be handed over.
 
         Raises:
             OSError: there is none.

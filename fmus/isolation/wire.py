@@ -69,7 +69,7 @@ class Client:
         Args:
             what: is to be done.
             numbers: as many as were agreed on, or fewer: 0 from there on.
-            timeout: in which the reply must come [s].
+            timeout: Timeout in which the reply must come [s].
 
         Raises:
             TimeoutError: no reply came.

@@ -68,7 +68,7 @@ def main(port: int, token: str, folder: str) -> NoReturn:
     """Run as a worker without a watchdog; connect back to the process that wants the FMU.
 
     Args:
-        port: on this machine.
+        port: Port on this machine.
         token: proves that this is the worker that is waited for.
         folder: the temporary folder.
     """

@@ -10,11 +10,11 @@ def gain_line(
     """The line that multiplies an axis's gain: ``gain = 1.0`` in place of ``gain = -1.0``.
 
     Args:
-        profile: of the vehicle; None: without a gain.
+        profile: Profile of the vehicle; None: without a gain.
         table: ``inputs`` or ``outputs``.
-        role: of the table.
-        factor: by which the gain is wrong.
-        quote: before and after each line.
+        role: Role of the table.
+        factor: Factor by which the gain is wrong.
+        quote: Quote before and after each line.
     """
     axis = getattr(getattr(profile, table), role, None) if profile is not None else None
     present = axis.gain if isinstance(axis, Axis) else None

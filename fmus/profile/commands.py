@@ -25,7 +25,7 @@ class Command(ABC):
         Args:
             force: u [N], forwards positive.
             speed: v [m/s] now.
-            inputs: to be filled.
+            inputs: Inputs to be filled.
         """
 
 
@@ -114,9 +114,9 @@ def make_command(profile: VehicleProfile, wires: Sequence[Wire], step_size: floa
     """The inverse map for the inputs that a profile names.
 
     Args:
-        profile: of the FMU.
-        wires: of its inputs, in the order of :func:`fmus.profile.wiring.wire`.
-        step_size: of the controller [s].
+        profile: Profile of the FMU.
+        wires: Wires of its inputs, in the order of :func:`fmus.profile.wiring.wire`.
+        step_size: Step size of the controller [s].
     """
     inputs, M, alpha = profile.inputs, profile.inverse_map.mass, profile.inverse_map.friction
     if inputs.force is not None:

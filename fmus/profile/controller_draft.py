@@ -47,7 +47,7 @@ class ControllerDraft:
     """What names say of a controller's variables, and what they leave open.
 
     Attributes:
-        path: of the FMU.
+        path: Path of the FMU.
         inputs: variables by role.
         answers: the same of its outputs.
         open: variables that a role is to be found for, with what is asked.

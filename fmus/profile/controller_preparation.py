@@ -24,12 +24,12 @@ class PreparedController:
     """A controller that is ready to be unpacked and loaded.
 
     Attributes:
-        model: of the FMU.
-        profile: by which it is asked.
+        model: Model of the FMU.
+        profile: Profile by which it is asked.
         wiring: which variables it is told and answers by.
         pace: how the control steps and the FMU's fit together.
-        bounds: of the inputs.
-        step_size: between two questions [s].
+        bounds: Bounds of the inputs.
+        step_size: Step size between two questions [s].
         binary: this platform's binary in the archive.
     """
 
@@ -59,7 +59,7 @@ def prepare_controller(
 
     Args:
         path: the .fmu file.
-        step_size: between two questions [s].
+        step_size: Step size between two questions [s].
         setup: what the run is set to, by the names of the profile's table ``setup`` [SI].
         profile: which variable plays which part; None: a draft from names, if it leaves no doubt.
         start_values: further start values by variable name.

@@ -98,7 +98,7 @@ def make_controller_profile(values: dict[str, Any], origin: str) -> ControllerPr
     """The controller profile in nested dictionaries.
 
     Args:
-        values: with the keys of the TOML file.
+        values: Values with the keys of the TOML file.
         origin: named in errors.
 
     Raises:

@@ -17,10 +17,10 @@ class ControllerWiring:
     """A controller profile that fits its FMU.
 
     Attributes:
-        interface: by which it is run.
+        interface: Interface by which it is run.
         inputs: one for each number that it is told; those of a series stand one after another.
         answer: its output.
-        start_values: of its parameters.
+        start_values: Start values of its parameters.
     """
 
     interface: Interface
@@ -44,10 +44,11 @@ def wire_controller(
     """Find everything that ``profile`` names in an FMU.
 
     Args:
-        model: of the FMU.
+        model: Model of the FMU.
         profile: which variable plays which part.
         setup: what the run is set to, by the names of the profile's table ``setup`` [SI].
-        start_values: by variable name; they come after the profile's own and ``setup``.
+        start_values: Start values by variable name; they come after the profile's own and
+            ``setup``.
 
     Raises:
         FmuInterfaceError: the FMU has not the kind that the profile asks for.

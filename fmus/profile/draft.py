@@ -63,7 +63,7 @@ class Draft:
     """A drafted profile.
 
     Attributes:
-        entries: in the order of the file.
+        entries: Entries in the order of the file.
         remarks: what a user should know besides.
     """
 

@@ -18,7 +18,7 @@ class Role:
     """How the variables of a role are usually named.
 
     Attributes:
-        dimension: of its quantity.
+        dimension: Dimension of its quantity.
         names: whole names (without separators and fillers), the strongest evidence.
         words: parts of a name that point at the role.
         never: parts of a name that exclude the role, besides those of :data:`OTHER_PARTS`.

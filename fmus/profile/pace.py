@@ -15,7 +15,7 @@ class Pace:
     """``substeps`` steps of the FMU per control step, or ``stretch`` control steps per FMU step.
 
     Attributes:
-        step: of the FMU [s].
+        step: Step of the FMU [s].
         substeps: 1 unless the FMU's step is the shorter one.
         stretch: 1 unless the FMU's step is the longer one: the force is then held over it.
     """
@@ -62,11 +62,11 @@ def pace_of(
     """The pace of the profile's step, else of the one that the FMU can do.
 
     Args:
-        path: of the FMU, for messages.
+        path: Path of the FMU, for messages.
         wanted: the step that the profile names [s].
-        interface: of the FMU.
+        interface: Interface of the FMU.
         default: the step of its default experiment [s].
-        step_size: of the controller [s].
+        step_size: Step size of the controller [s].
 
     Raises:
         FmuProfileError: they do not fit each other.
@@ -120,8 +120,8 @@ def between(
     Args:
         start: position and speed.
         end: position and speed.
-        duration: of the step [s].
-        share: of the step that has passed, 0 to 1.
+        duration: Duration of the step [s].
+        share: Share of the step that has passed, 0 to 1.
     """
     (s_0, v_0), (s_1, v_1) = start, end
     r, h = share, duration

@@ -39,13 +39,13 @@ class Prepared:
     """A vehicle that is ready to be unpacked and loaded.
 
     Attributes:
-        model: of the FMU.
-        profile: by which it is driven.
+        model: Model of the FMU.
+        profile: Profile by which it is driven.
         wiring: which variables it is driven and read by.
         command: the inverse map.
         pace: how the controller's steps and the FMU's fit together.
-        bounds: of the inputs.
-        step_size: of the controller [s].
+        bounds: Bounds of the inputs.
+        step_size: Step size of the controller [s].
         binary: this platform's binary in the archive.
         ours: a shipped FMU: its outputs are trusted, and its state need not be saved.
     """
@@ -77,7 +77,7 @@ def prepare(
 
     Args:
         path: the .fmu file.
-        step_size: of the controller [s].
+        step_size: Step size of the controller [s].
         profile: which variable plays which part; None: the shipped FMUs' own, or a draft from
             names and units if it leaves no doubt.
         start_values: further start values by variable name.

@@ -101,7 +101,7 @@ def read_tables(path: Path, what: str, guide: str) -> dict[str, Any]:
     """The tables of a profile's TOML file.
 
     Args:
-        path: of the file.
+        path: Path of the file.
         what: it is expected to be.
         guide: where one is to be had.
 
@@ -125,8 +125,8 @@ def validated(kind: type[_Profile], values: dict[str, Any], origin: str, guide: 
     """A profile of a kind.
 
     Args:
-        kind: of profile.
-        values: with the keys of the TOML file.
+        kind: Kind of profile.
+        values: Values with the keys of the TOML file.
         origin: named in errors.
         guide: that describes the keys.
 

@@ -155,7 +155,7 @@ def make_profile(values: dict[str, Any], origin: str) -> VehicleProfile:
     """The vehicle profile in nested dictionaries.
 
     Args:
-        values: with the keys of the TOML file.
+        values: Values with the keys of the TOML file.
         origin: named in errors.
 
     Raises:

@@ -90,8 +90,8 @@ def make_wire(model: Model, table: str, role: str, axis: Axis) -> Wire:
     """The wire of one role.
 
     Args:
-        model: of the FMU.
-        table: of the profile, and the role in it.
+        model: Model of the FMU.
+        table: Table of the profile, and the role in it.
         role: see above.
         axis: which variable plays it.
 

@@ -81,9 +81,9 @@ def wire(
     """Find everything that ``profile`` names in an FMU.
 
     Args:
-        model: of the FMU.
+        model: Model of the FMU.
         profile: which variable plays which part.
-        start_values: by variable name; they come after the profile's ``parameters``.
+        start_values: Start values by variable name; they come after the profile's ``parameters``.
 
     Raises:
         FmuInterfaceError: the FMU has not the kind that the profile asks for.

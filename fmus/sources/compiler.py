@@ -133,7 +133,7 @@ class Compiler:
     """A C and C++ compiler for this machine.
 
     Attributes:
-        name: for messages.
+        name: Name for messages.
         c: the command for C.
         cpp: the command for C++.
     """

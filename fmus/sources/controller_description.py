@@ -235,9 +235,9 @@ def model_description(
     """The file modelDescription.xml of an export.
 
     Args:
-        version: of FMI.
+        version: Version of FMI.
         parameters: the start values; in FMI 2 the horizon is also the number of inputs.
-        token: of :func:`token_of`.
+        token: Token of :func:`token_of`.
         tool: what generated the FMU.
         sources: the C files, in the order of compilation.
     """

@@ -31,7 +31,7 @@ def export_controller(
     parameters give the same bytes.
 
     Args:
-        path: of the .fmu file; one that is there is replaced.
+        path: Path of the .fmu file; one that is there is replaced.
         parameters: None: the paper's.
         fmi_version: "2.0" (N scalar inputs for the predicted positions) or "3.0" (an array whose
             size follows the structural parameter N).

@@ -51,7 +51,7 @@ class Recipe:
 
     Attributes:
         model: its name, also that of the libraries.
-        folder: of the sources.
+        folder: Folder of the sources.
         files: headers and C files but for the front end, in the order of the archive.
         archives: the .fmu file per FMI version.
         flags: more of them for the compiler.

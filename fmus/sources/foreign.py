@@ -35,10 +35,10 @@ class Sources:
     """What one library is compiled of; all paths within the archive.
 
     Attributes:
-        identifier: of the model, the library's name.
+        identifier: Identifier of the model, the library's name.
         files: C and C++.
         includes: folders.
-        definitions: of the preprocessor, ``NAME`` or ``NAME=VALUE``.
+        definitions: Definitions of the preprocessor, ``NAME`` or ``NAME=VALUE``.
     """
 
     identifier: str

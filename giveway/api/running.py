@@ -92,7 +92,7 @@ def run_checked(
         pictures: as for :func:`run`.
         watcher: as for :func:`run`.
         journal: an empty folder for the rows, to be read should this process die.
-        wording: of the caller, for messages.
+        wording: Wording of the caller, for messages.
     """
     folder = None if results is None else Path(results)
     if parquet:

@@ -45,7 +45,7 @@ class Painter:
     Args:
         run: the results folder.
         sampled: its trajectories.
-        size: of a frame, width and height [pixels].
+        size: Size of a frame, width and height [pixels].
     """
 
     def __init__(self, run: RunFolder, sampled: Sampled, size: tuple[int, int]) -> None:

@@ -34,7 +34,7 @@ class Net:
     """A network's normal lanes and projection.
 
     Attributes:
-        file: of the network.
+        file: File of the network.
         offset: (2,) [m] that netconvert has added to projected coordinates.
         projection: PROJ's parameters; "!" where there is none.
     """

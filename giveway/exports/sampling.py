@@ -27,7 +27,7 @@ class Track:
     """One object as long as it is there without a break.
 
     Attributes:
-        id: of SUMO; from its second presence on followed by ``#2``, ``#3`` ...
+        id: SUMO's id; from its second presence on followed by ``#2``, ``#3`` ...
         object: SUMO's id.
         type: as in ``trajectories.csv``.
         first: index of its first instant.
@@ -56,8 +56,8 @@ class Sampled:
     Attributes:
         begin: [s] of SUMO's clock.
         step: [s].
-        count: of instants.
-        tracks: in the order of their first rows.
+        count: Count of instants.
+        tracks: Tracks in the order of their first rows.
     """
 
     begin: float
@@ -79,7 +79,7 @@ def sampled(run: RunFolder, step: float | None = None) -> Sampled:
 
     Args:
         run: the results folder.
-        step: between two instants [s], whole milliseconds as SUMO's; None: the control step.
+        step: Step between two instants [s], whole milliseconds as SUMO's; None: the control step.
 
     Raises:
         ConfigError: the step makes no sense.

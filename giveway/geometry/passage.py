@@ -31,10 +31,10 @@ def look(
         stations: (k + 1,) [m] of its vertices.
         first: the first segment that counts.
         last: the last segment that counts.
-        x: of the point [m].
-        y: of the point [m].
+        x: Coordinate x of the point [m].
+        y: Coordinate y of the point [m].
         front: the station [m] of the ego's front.
-        half_width: of the corridor along the path [m].
+        half_width: Half width of the corridor along the path [m].
         reach: how far [m] the point could move.
 
     Returns:

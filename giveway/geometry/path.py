@@ -75,8 +75,8 @@ class EgoPath:
         """The pose of a body whose front and rear both have their middle on the path.
 
         Args:
-            station: of the front's middle [m].
-            length: of the body [m]; 0 gives the path's own direction.
+            station: Station of the front's middle [m].
+            length: Length of the body [m]; 0 gives the path's own direction.
         """
         return Pose(*body_pose(self.vertices, self.stations, self.headings, station, length))
 

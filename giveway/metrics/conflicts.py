@@ -84,7 +84,7 @@ class Critical:
 
     Attributes:
         pedestrians: how many pedestrians had one.
-        share: of the control instants at which somebody had one.
+        share: Share of the control instants at which somebody had one.
         minimum_ttc: [s] the smallest time to collision with the moving ego; nan if there is none.
     """
 

@@ -40,8 +40,8 @@ class Found:
         name: as the user wrote it.
         reference: ``module:attribute``.
         distribution: the installed distribution that has it.
-        version: of the distribution.
-        sha256: of all files of its package.
+        version: Version of the distribution.
+        sha256: SHA-256 of all files of its package.
     """
 
     socket: Socket
@@ -119,9 +119,9 @@ def load_class(name: str, socket: Socket, settings: Mapping[str, Any]) -> tuple[
     """The class that a name means, and the options that it is made with; None: it has none.
 
     Args:
-        name: of the plug-in.
+        name: Name of the plug-in.
         socket: it is for.
-        settings: of its options, as the user has set them.
+        settings: Settings of its options, as the user has set them.
 
     Raises:
         ConfigError: its options cannot be used.

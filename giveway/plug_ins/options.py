@@ -20,7 +20,7 @@ def read_options(
     """The options of a plug-in.
 
     Args:
-        name: of the plug-in, for messages.
+        name: Name of the plug-in, for messages.
         kind: its ``Options``, a dataclass or pydantic model; None: it has no options.
         values: as the user has set them; a command line's are texts.
         socket: that the plug-in is for.

@@ -12,11 +12,11 @@ class Socket:
     Attributes:
         what: is plugged in there.
         setting: the key that names it, as a TOML file has it.
-        location: of that key.
+        location: Location of that key.
         options: the table of its options.
         manifest: the key of a run's manifest that tells of it.
-        group: of the entry points that declare such code.
-        flag: of the command line that names it.
+        group: Group of the entry points that declare such code.
+        flag: Flag of the command line that names it.
         set_flag: that sets one of its options.
         method: that such a class has to have.
     """

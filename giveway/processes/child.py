@@ -43,7 +43,7 @@ class Supervised:
     An end that is not reported by leaving this context is a crash, even one with exit code 0.
 
     Args:
-        folder: of the journal, from :func:`take_journal_folder`; with None the context does
+        folder: Folder of the journal, from :func:`take_journal_folder`; with None the context does
             nothing.
     """
 

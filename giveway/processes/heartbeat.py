@@ -65,8 +65,8 @@ class Heartbeat:
     """The shared memory of a child, which stores, and its supervisor, which reads.
 
     Args:
-        folder: of the journal; the file is made if there is none. With None the memory is this
-            process's own.
+        folder: Folder of the journal; the file is made if there is none. With None the memory is
+            this process's own.
 
     Attributes:
         slots: the memory, one int64 each. The loop stores into ``slots[PHASE]`` and
@@ -137,7 +137,7 @@ class Stillness:
     The time between looks is added up; the clock would go on while both processes are suspended.
 
     Args:
-        heartbeat: to look at.
+        heartbeat: Heartbeat to look at.
     """
 
     def __init__(self, heartbeat: Heartbeat) -> None:

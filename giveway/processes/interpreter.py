@@ -13,7 +13,7 @@ def command(code: str, arguments: list[int | str]) -> list[str]:
 
     Args:
         code: what it runs; ``arguments`` is a name there.
-        arguments: for the code.
+        arguments: Arguments for the code.
     """
     flags = {
         "-E": sys.flags.ignore_environment,

@@ -24,7 +24,7 @@ class TerminatedError(KeyboardInterrupt):
     """Somebody has asked this process to end, by a signal other than Ctrl-C's.
 
     Args:
-        number: of the signal.
+        number: Number of the signal.
     """
 
     def __init__(self, number: int) -> None:
@@ -51,7 +51,7 @@ class SignalHandler:
     main thread, where handlers cannot be set, nothing changes.
 
     Args:
-        numbers: of the signals.
+        numbers: Numbers of the signals.
     """
 
     def __init__(self, numbers: Iterable[int]) -> None:

@@ -39,7 +39,8 @@ class ScenarioFiles:
         config_file: the .sumocfg.
         options: each option that it sets, under the name that SUMO's help lists, to its value.
         net_file: the road network.
-        route_files, additional_files: in the order in which SUMO reads them.
+        route_files, additional_files: Files in the order in which SUMO
+            reads them.
         begin: first instant [s].
         end: last instant [s]; None if the scenario ends when nobody is left.
         step_length: SUMO's step [s].

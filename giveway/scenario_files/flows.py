@@ -36,7 +36,7 @@ def flows_due(files: Iterable[Path], after: float, until: float, begin: float) -
         files: everything that SUMO reads, compressed or not.
         after: [s].
         until: [s].
-        begin: of the simulation [s], when flows begin that do not say when.
+        begin: Start of the simulation [s], when flows begin that do not say when.
     """
     due = []
     try:

@@ -28,7 +28,7 @@ def rewrite(source: IO[bytes], target: IO[bytes], visit: Visitor, names: frozens
         target: receives the copy.
         visit: called with an element's name, its attributes and its parent's name; returns the
             new values of the attributes that change. Attributes that the element lacks are ignored.
-        names: of the elements that it is called for.
+        names: Names of the elements that it is called for.
     """
     copy = _Copy(target, visit, names)
     pending = b""

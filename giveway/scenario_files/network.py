@@ -23,8 +23,8 @@ def read_network(net_file: Path, handlers: Mapping[str, Callable[[dict[str, str]
 
     Args:
         net_file: the network.
-        handlers: by the elements' names; a missing attribute may raise ``KeyError``, a bad value
-            ``ValueError``.
+        handlers: Handlers by the elements' names; a missing attribute may raise ``KeyError``, a bad
+            value ``ValueError``.
 
     Raises:
         ScenarioError: unreadable, damaged, or no SUMO network.

@@ -50,7 +50,7 @@ class Start:
     """How to start SUMO.
 
     Attributes:
-        command: for ``libsumo.start``.
+        command: Command for ``libsumo.start``.
         remarks: what differs from the scenario, one line each, for the user.
         outputs: each output file as the scenario has it, to the file written instead.
         copies: each rewritten copy of a scenario file, to its original.

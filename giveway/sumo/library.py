@@ -27,8 +27,8 @@ def direct(sumo: Any, domain: str, function: str) -> Any:
 
     Args:
         sumo: the libsumo module.
-        domain: of SUMO's interface, such as ``vehicle``.
-        function: of the domain.
+        domain: Domain of SUMO's interface, such as ``vehicle``.
+        function: Function of the domain.
     """
     native = getattr(sumo.libsumo, "_libsumo", None)
     return getattr(native, f"{domain}_{function}", getattr(getattr(sumo, domain), function))

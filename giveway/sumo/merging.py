@@ -35,7 +35,7 @@ def mergings(
 
     Args:
         sumo: the libsumo module.
-        lanes: on which the route enters and leaves each of its edges.
+        lanes: Lanes on which the route enters and leaves each of its edges.
         begins: station [m] at which each edge begins.
         shape: gives the centre line of a lane.
     """

@@ -231,9 +231,9 @@ class SumoSession:
         Args:
             egos: id and front bumper's pose after the step, of each ego.
             ids: the persons' ids.
-            x: of each person [m], finite.
-            y: of each person [m], finite.
-            angles: of each person [deg, 0 = north, clockwise], finite.
+            x: Coordinate x of each person [m], finite.
+            y: Coordinate y of each person [m], finite.
+            angles: Angles of each person [deg, 0 = north, clockwise], finite.
 
         Raises:
             SumoError: SUMO failed, or disagrees by more than 1e-6 m.

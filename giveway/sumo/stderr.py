@@ -33,7 +33,7 @@ class NativeStderr:
     Use the object itself as the context manager, round one call at a time; ``close`` at the end.
 
     Args:
-        path: of the file, for whoever wants to read it after this process has died; None: a
+        path: Path of the file, for whoever wants to read it after this process has died; None: a
             temporary file without a name.
     """
 

@@ -250,7 +250,7 @@ class SumoVehicles:
         """Let SUMO insert an ego as soon as its own check finds room there; see :meth:`claim`.
 
         Args:
-            ego_id: of the ego.
+            ego_id: Id of the ego.
             edges: its route.
             lane: SUMO's id of the lane.
             position: [m] of the front bumper along the lane's centre line.

@@ -33,7 +33,7 @@ class Fit:
     """An error [m] before and after, and the difference with its interval.
 
     Attributes:
-        difference: after minus before; negative where the fit is better.
+        difference: Difference after minus before; negative where the fit is better.
         low, high: its clip-bootstrap interval; nan with fewer than two clips.
     """
 
@@ -61,7 +61,7 @@ class Calibration:
         apart: [m] the smallest distance between two people's centres, in the data and in replays
             of all clips (before, after).
         at_bound: the parameters that ended at the end of their range.
-        evaluations: of the objective.
+        evaluations: Evaluations of the objective.
         converged: whether the optimiser arrived before it ran out of evaluations.
     """
 
@@ -98,9 +98,9 @@ def calibrate(
         start: where the search starts; parameters that are not named stay.
         names: fields of :class:`VciParameters`.
         held_out: share of the clips that the fit does not see, in each kind of clip alike.
-        seed: of the choice of these clips.
+        seed: Seed of the choice of these clips.
         own_pace: each pedestrian's desired speed is its present speed; else the parameters'.
-        evaluations: of the objective, at most.
+        evaluations: Evaluations of the objective, at most.
         protocol: how the clips are cut and judged; None: as :func:`protocol_of` has it.
         progress: called with evaluations done, at most, and the least error so far.
 

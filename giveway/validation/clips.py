@@ -32,7 +32,7 @@ class Clip:
     """One recording, in a right-handed frame: x as in the image, y up.
 
     Attributes:
-        name: of its files, like ``front_interaction_01``.
+        name: Name of its files, like ``front_interaction_01``.
         dataset: what its files do not say.
         first_frame: the dataset's number of frame 0 here.
         ids: (n,) of the pedestrians.

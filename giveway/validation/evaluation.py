@@ -69,7 +69,7 @@ def evaluate(
     Args:
         cut: the windows, at least one.
         by: the predictors by name.
-        protocol: by which the windows were cut.
+        protocol: Protocol by which the windows were cut.
         clips: how many clips there are, those without a window included.
         advance: called after each window.
     """

@@ -84,10 +84,10 @@ class Search:
     """One descent from ``start``.
 
     Args:
-        objective: to minimise.
-        start: of the search; parameters that are not named stay.
-        names: of the free parameters; none may start at 0.
-        evaluations: of the objective, at most.
+        objective: Objective to minimise.
+        start: Start of the search; parameters that are not named stay.
+        names: Names of the free parameters; none may start at 0.
+        evaluations: Evaluations of the objective, at most.
         progress: called with evaluations done, at most, and the least error so far.
     """
 

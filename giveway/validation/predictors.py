@@ -46,8 +46,8 @@ class VciPredictor:
     """The pedestrian model: all pedestrians jointly, under the vehicles as they drove.
 
     Args:
-        parameters: of the model.
-        time_step: from frame to frame [s].
+        parameters: Parameters of the model.
+        time_step: Time step from frame to frame [s].
         frames: H, of a window.
         own_pace: each pedestrian's desired speed is its present speed and not the parameters'; in
             a run it is known of each pedestrian, too.

@@ -66,7 +66,7 @@ class Window:
 
     Attributes:
         clip: its place among the clips.
-        frame: of the clip, at which the prediction begins.
+        frame: Frame of the clip, at which the prediction begins.
         who: (n,) the pedestrians seen there, by their place in the clip.
         position, velocity, destination: (n, 2) [m], [m/s], [m].
         vehicles: (H, m, 7) at 0 ... H - 1 frames ahead, as the pedestrian model takes them.

@@ -55,7 +55,7 @@ def validate(
 
     Args:
         clips: as :func:`giveway.validation.read_clips` reads them.
-        parameters: of the pedestrian model.
+        parameters: Parameters of the pedestrian model.
         protocol: how the clips are cut and judged; None: as :func:`protocol_of` has it.
         progress: called with how much is done, and of how much.
 

@@ -63,7 +63,7 @@ def stops_without_cause(
 
     Args:
         drive: the ego's.
-        areas: on its way.
+        areas: Areas on its way.
         owed: when it owed somebody the way at which of them.
     """
     time, found = drive.ego.time, []
@@ -88,7 +88,7 @@ def owed_to(drive: Drive, encounters: Sequence[Encounter]) -> list[Owed]:
 
     Args:
         drive: the ego's.
-        encounters: of the drive.
+        encounters: Encounters of the drive.
     """
     found: dict[float, Mask] = {}
     for met in encounters:

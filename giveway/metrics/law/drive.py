@@ -33,9 +33,9 @@ class Drive:
 
     Attributes:
         ego: its track, T instants.
-        shape: of its body.
-        body_radius: of a pedestrian [m].
-        way: with all that stood on it.
+        shape: Shape of its body.
+        body_radius: Body radius of a pedestrian [m].
+        way: Way with all that stood on it.
         crowd: everybody on foot, counted from the ego's first instant.
         people: where they mean to walk and how fast, counted likewise.
         signals: the traffic lights' changes.

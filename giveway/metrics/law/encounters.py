@@ -67,8 +67,8 @@ def encounters(drive: Drive, area: Area, walk: Walk) -> list[Encounter]:
 
     Args:
         drive: the ego's.
-        area: of the crossing.
-        walk: over it.
+        area: Area of the crossing.
+        walk: Walk over the crossing.
     """
     to_go, to_leave = walk.reach - walk.progress, walk.clear - walk.progress
     speed, room = drive.ego.speed[walk.steps], area.entry - drive.front[walk.steps]
@@ -113,8 +113,8 @@ def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
 
     Args:
         drive: the ego's.
-        area: of the crossing.
-        walk: over it.
+        area: Area of the crossing.
+        walk: Walk over the crossing.
     """
     front = drive.front[walk.steps]
     counts = walk.priority & (front >= area.entry - BY) & (front <= area.leave)

@@ -82,7 +82,7 @@ class Ledger:
     """How an ego kept to the law of the road.
 
     Attributes:
-        summary: in numbers.
+        summary: Summary in numbers.
         events: all encounters and violations, in order of time.
     """
 

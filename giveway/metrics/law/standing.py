@@ -45,7 +45,7 @@ def blocked_crossings(
 
     Args:
         drive: the ego's.
-        areas: on its way.
+        areas: Areas on its way.
         owed: when it owed somebody the way at which of them.
     """
     free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, areas, owed)
@@ -69,7 +69,7 @@ def blocked_junctions(
 
     Args:
         drive: the ego's.
-        areas: on its way.
+        areas: Areas on its way.
         owed: when it owed somebody the way at a crossing.
     """
     free = _stands(drive) & ~somebody_in_front(drive) & ~_lets_pass(drive, areas, owed)

@@ -39,7 +39,7 @@ def walks_over(drive: Drive, area: Area) -> list[Walk]:
 
     Args:
         drive: whose crowd it is.
-        area: on its way.
+        area: Area on its way.
     """
     crowd, people = drive.crowd, drive.people
     if not len(crowd.step) or not len(people.step):
@@ -82,7 +82,7 @@ def is_open(drive: Drive, area: Area) -> NDArray[np.bool_]:
 
     Args:
         drive: the ego's.
-        area: on its way.
+        area: Area on its way.
     """
     crossing = area.crossing
     if not crossing.system:
