@@ -6,7 +6,7 @@ import sys
 from dataclasses import dataclass
 from typing import Final
 
-from fmus.archive.gate import Archive, open_archive, read_start
+from fmus.archive.archive_check import Archive, open_archive, read_start
 from fmus.description.model import Interface, Model
 from fmus.errors import FmuPlatformError
 from fmus.text import printable

@@ -12,7 +12,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-from fmus.archive.gate import DESCRIPTION, ROOT, Archive, open_archive
+from fmus.archive.archive_check import DESCRIPTION, ROOT, Archive, open_archive
 from fmus.archive.markup import Element, parse
 from fmus.description.binaries import platforms_of
 from fmus.description.model import FmuDescription, Interface, Kind, Model, Unit, Variable

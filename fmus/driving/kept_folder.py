@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 from typing import Final
 
-from fmus.archive.gate import open_archive
+from fmus.archive.archive_check import open_archive
 from fmus.profile.preparation import Prepared, unpack
 
 PREFIX: Final = "vehicle-fmu-"

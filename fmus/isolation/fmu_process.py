@@ -19,7 +19,7 @@ from fmus.profile.preparation import unpack
 from fmus.text import printable
 
 if TYPE_CHECKING:
-    from fmus.isolation.riders import Rider
+    from fmus.isolation.hosted import Hosted
     from fmus.profile.controller_preparation import PreparedController
     from fmus.profile.preparation import Prepared
 
@@ -31,7 +31,7 @@ class FmuProcess:
     """Whatever the FMU does in its process, this one goes on.
 
     Args:
-        rider: what the FMU is run as.
+        hosted: what the FMU is run as.
         prepared: the vehicle or controller.
 
     Attributes:
@@ -44,17 +44,17 @@ class FmuProcess:
         FmuError: it cannot be unpacked, or no process can be started.
     """
 
-    def __init__(self, rider: type[Rider], prepared: Prepared | PreparedController) -> None:
+    def __init__(self, hosted: type[Hosted], prepared: Prepared | PreparedController) -> None:
         self.path = prepared.path
         self.warnings: list[str] = []
         self.failed = False
         self.last: Sequence[float] = ()
         self.last_time = 0.0
-        self._numbers = rider.numbers(prepared)
+        self._numbers = hosted.numbers(prepared)
         self._client: Client | None = None
         folder = Path(tempfile.mkdtemp(prefix="vehicle-fmu-"))
         try:
-            self._host = make_process_host(Order(rider, prepared, folder / "fmu"), folder)
+            self._host = make_process_host(Order(hosted, prepared, folder / "fmu"), folder)
         except BaseException:
             remove(folder)
             raise

@@ -9,7 +9,7 @@ from fmus.errors import FmuOutputError, FmuStateError
 from fmus.interfaces.vehicle import Vehicle
 from fmus.isolation import processor
 from fmus.isolation.fmu_process import FmuProcess, while_starting
-from fmus.isolation.riders import VehicleRider
+from fmus.isolation.hosted import HostedVehicle
 from fmus.isolation.wire import LOAD, START, STEP
 from fmus.profile.preparation import prepare
 from fmus.profile.vehicle_profile import VehicleProfile
@@ -55,7 +55,7 @@ class IsolatedVehicle(Vehicle):
         self.record = prepared.wiring.record
         self.knows_grades = prepared.wiring.grade is not None
         self._steps, self._force = 0, 0.0
-        self._process = FmuProcess(VehicleRider, prepared)
+        self._process = FmuProcess(HostedVehicle, prepared)
 
     def start(self, *, position: float = 0.0, speed: float = 0.0) -> None:
         """Begin (again) at time 0, in a new process.

@@ -11,7 +11,7 @@ from math import inf, isfinite, isnan
 from pathlib import Path
 from typing import Protocol
 
-from fmus.archive.gate import extract, open_archive
+from fmus.archive.archive_check import extract, open_archive
 from fmus.description.binaries import binary_of
 from fmus.description.model import Model, Value
 from fmus.description.reading import read_model

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from fmus.archive.gate import DESCRIPTION, ROOT, Archive, extract, open_archive, read_start
+from fmus.archive.archive_check import DESCRIPTION, ROOT, Archive, extract, open_archive, read_start
 from fmus.archive.markup import Element, parse
 from fmus.archive.packing import write_archive
 from fmus.description.binaries import START, Platform, misfit, this_platform

@@ -12,7 +12,7 @@ from fmus.profile.controller_preparation import PreparedController
 from fmus.profile.preparation import Prepared
 
 
-class Rider(Protocol):
+class Hosted(Protocol):
     """One FMU for one episode.
 
     Attributes:
@@ -47,7 +47,7 @@ class Rider(Protocol):
         """End the FMU."""
 
 
-class VehicleRider:
+class HostedVehicle:
     """A vehicle: START position [m], speed [m/s]; STEP force [N], grade [rad].
 
     Args:
@@ -93,7 +93,7 @@ class VehicleRider:
         self._vehicle.close()
 
 
-class ControllerRider:
+class HostedController:
     """A controller: START nothing; STEP its inputs, in its own units; answers its output.
 
     Args:
