@@ -165,7 +165,7 @@ def _started() -> subprocess.Popen[bytes]:
 
 
 def help_compiling(parent: int) -> None:
-    """What the process beside ``parent`` does."""
+    """Return what the process beside ``parent`` does."""
     die_with(parent)
     with _rarely_collected():
         for settings in _WALKS:
@@ -189,7 +189,7 @@ def _tiny_run() -> None:
 
 
 def _call_the_rest() -> None:
-    """What no tiny run calls."""
+    """Return what no tiny run calls."""
     _solve_without_solution()
     _branch_off()
     _come_and_go()

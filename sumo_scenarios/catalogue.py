@@ -118,7 +118,7 @@ def _unknown(text: str, bundled: tuple[str, ...]) -> str:
 
 
 def _neighbours(path: Path) -> dict[str, str]:
-    """What could be a scenario in the folder of `path`: lower-case name to path."""
+    """Return what could be a scenario in the folder of `path`: lower-case name to path."""
     try:
         entries = sorted(path.parent.iterdir())
         return {

@@ -47,7 +47,7 @@ class CheckReport:
 
     @property
     def passed(self) -> bool:
-        """Whether no test failed."""
+        """Return whether no test failed."""
         return all(finding.verdict != "fail" for finding in self.findings)
 
 

@@ -85,7 +85,7 @@ def _of_side(drive: Drive, sign: float) -> Drive:
 
 
 def side_remarks(sides: Sides, step: float, profile: VehicleProfile | None) -> list[str]:
-    """What the user should know of the two sides, one line each.
+    """Return what the user should know of the two sides, one line each.
 
     Args:
         sides: as fitted.

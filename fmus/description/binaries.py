@@ -1,4 +1,4 @@
-"""Which binary of an FMU runs here, judged by its folder and by its first bytes."""
+"""The choice of the binary that runs on this platform, by folder and first bytes."""
 
 import platform
 import struct
@@ -16,7 +16,7 @@ SUFFIXES: Final = {"linux": ".so", "windows": ".dll", "darwin": ".dylib"}
 OLD_SYSTEMS: Final = {"linux": "linux", "windows": "win", "darwin": "darwin"}
 PROCESSORS: Final = {"amd64": "x86_64", "x64": "x86_64", "arm64": "aarch64"}
 X86: Final = frozenset({"i386", "i486", "i586", "i686", "x86", "x86pc"})
-START: Final = 4096  # [bytes] of a library that are looked at
+START: Final = 4096  # [bytes] beginning of a library that is examined
 
 ELF_LIBRARY: Final = 3  # ET_DYN
 ELF_MACHINES: Final = {3: "x86", 40: "arm", 62: "x86_64", 183: "aarch64", 243: "riscv64"}
@@ -38,11 +38,11 @@ class Platform:
 
     @property
     def suffix(self) -> str:
-        """Of a shared library."""
+        """File suffix of a shared library."""
         return SUFFIXES.get(self.system, ".so")
 
     def folders(self, fmi_version: str) -> tuple[str, ...]:
-        """Where an FMU may keep its library for this platform, the standard's own name first.
+        """Return the folders of an FMU's library for this platform, the standard's own name first.
 
         FMI 1 and 2 know the system and a number of bits; tools use FMI 3's names there too, for
         processors that the older standards do not name.
@@ -92,7 +92,7 @@ def platforms_of(archive: Archive) -> tuple[str, ...]:
 
 
 def _no_binary(model: Model, interface: Interface, archive: Archive) -> str:
-    """Why there is none, and what to do."""
+    """Return the reason why there is no binary, and the advice for the user."""
     here = this_platform()
     folders = here.folders(model.fmi_version)
     what = f"no binaries/{folders[0]}/{interface.identifier}{here.suffix} for this platform"
@@ -108,7 +108,7 @@ def _no_binary(model: Model, interface: Interface, archive: Archive) -> str:
 
 
 def misfit(start: bytes, wanted: Platform) -> str:
-    """Why a library cannot be loaded on a platform, as a phrase; empty if it seems to fit.
+    """Return why a library cannot be loaded on a platform, as a phrase; empty if it seems to fit.
 
     Args:
         start: its first bytes, up to :data:`START`.

@@ -1,4 +1,4 @@
-"""What an FMU says about itself: its interfaces, its variables, their units."""
+"""The description of an FMU: its interfaces, its variables, their units."""
 
 import enum
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 class Kind(enum.StrEnum):
-    """How an FMU is stepped."""
+    """The kinds in which an FMU is stepped."""
 
     CO_SIMULATION = "co-simulation"  # it brings its own solver
     MODEL_EXCHANGE = "model-exchange"  # it gives derivatives; the solver is ours
@@ -30,7 +30,7 @@ Dimension = tuple[int, int, int, int, int, int, int, int]
 
 @dataclass(frozen=True)
 class FmuDescription:
-    """What identifies an FMU in the record of a run."""
+    """The data that identify an FMU in the record of a run."""
 
     name: str  # the model's name
     fmi_version: str  # e.g. "2.0"
@@ -45,7 +45,7 @@ class Unit:
 
     Attributes:
         name: as the FMU writes it.
-        dimension: None: the FMU does not tell.
+        dimension: Exponents of the base units; None: the FMU does not tell.
     """
 
     name: str
@@ -74,27 +74,27 @@ class Variable:
 
     @property
     def scalar(self) -> bool:
-        """Not an array."""
+        """True if the variable is not an array."""
         return not self.shape
 
     @property
     def is_real(self) -> bool:
-        """A floating-point variable."""
+        """True for a floating-point variable."""
         return self.kind in REAL_TYPES
 
     @property
     def is_integer(self) -> bool:
-        """A whole number or an enumeration."""
+        """True for a whole number or an enumeration."""
         return self.kind in INTEGER_TYPES
 
     @property
     def is_boolean(self) -> bool:
-        """True or false."""
+        """True for a boolean variable."""
         return self.kind == "Boolean"
 
     @property
     def size(self) -> int:
-        """How many values it has."""
+        """Number of values of the variable."""
         size = 1
         for extent in self.shape:
             size *= extent
@@ -110,7 +110,7 @@ class Channel:
 
     @property
     def name(self) -> str:
-        """As a user would write it: ``x``, or ``x[2]`` for an array's second element."""
+        """Name as a user would write it: ``x``, or ``x[2]`` for an array's second element."""
         return (
             f"{self.variable.name}[{self.element + 1}]"
             if self.variable.shape

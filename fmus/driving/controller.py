@@ -1,4 +1,4 @@
-"""A controller that is an FMU: told what it sees, asked for its answer, once in each step."""
+"""A controller that is an FMU: at each step it receives its inputs and returns its answer."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from fmus.profile.controller_preparation import PreparedController
 class ControllerFmu:
     """Runs a controller FMU in this process.
 
-    Its answer at t_k is what it puts out at the end of the step from t_k, told what it sees at
-    t_k: whether it decides as soon as it is told or as it steps, there is no lag.
+    The answer at t_k is the output at the end of the step from t_k, with the inputs at t_k. There
+    is no lag, whether the FMU computes its outputs with its inputs or with its step.
 
     Args:
         prepared: the controller.
@@ -57,10 +57,10 @@ class ControllerFmu:
         self._instance.start(wiring.start_values, channels, [wiring.answer.channel])
 
     def step(self, told: Sequence[float]) -> None:
-        """Ask at t_k; an FMU whose step is longer is asked once in each of its own.
+        """Do one control step; an FMU whose step is longer is asked once in each of its own steps.
 
         Args:
-            told: what it sees, in its own units.
+            told: Values of its inputs, in its own units.
 
         Raises:
             FmuStepError: it does not do the step.

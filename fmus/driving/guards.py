@@ -1,14 +1,14 @@
-"""Finding motions that no car has: they show that an FMU is at fault, whatever it returns."""
+"""Detection of motions that no car has: they show that an FMU is at fault."""
 
 from math import isfinite
 
 from fmus.profile.vehicle_profile import Limits
 
-DRIVEN = 200.0  # [N] a car that does not react to so much is stuck
+DRIVEN = 200.0  # [N] force to which every car reacts
 
 
 class Guard:
-    """Finds faults in new states, and puts them into words.
+    """Finds faults in new states, and describes them.
 
     Args:
         limits: Limits of the profile.
@@ -24,7 +24,7 @@ class Guard:
     def fault(
         self, position: float, speed: float, acceleration: float, jump: float, at: float
     ) -> str:
-        """What is wrong with a new state; empty if nothing is.
+        """Return the fault of a new state as a message, or an empty text.
 
         Args:
             position: [m].
@@ -56,7 +56,7 @@ class Guard:
         )
 
     def disagreement(self, moved: float, way: float, duration: float, at: float) -> str:
-        """What is wrong with a position that is not the integrated speed.
+        """Return the message that the position is not the integrated speed.
 
         Args:
             moved: distance by the position [m].
@@ -72,7 +72,7 @@ class Guard:
         )
 
     def watch(self, changed: bool, force: float, speed: float, step: float, at: float) -> str:
-        """A warning about a state that stands still though it is driven; empty if there is none.
+        """Return a warning if the state stands still although it is driven, or an empty text.
 
         Args:
             changed: whether the motion has changed in this step.
@@ -94,7 +94,7 @@ class Guard:
         )
 
     def once(self, kind: str, warning: str) -> str:
-        """The warning the first time; empty afterwards."""
+        """Return the warning the first time, and an empty text afterwards."""
         if kind in self._warned:
             return ""
         self._warned.add(kind)

@@ -1,4 +1,4 @@
-"""An FMU's outputs as a motion in SI units, checked against what no car does."""
+"""An FMU's outputs as a motion in SI units, checked for plausibility."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from fmus.errors import FmuOutputError
 from fmus.profile.preparation import Prepared
 from fmus.profile.wiring import Wiring
 
-_STILL = 1e-9  # [m/s] or [m] a smaller change in a step is rounding, and no motion
-_REVERSING = -0.05  # [m/s] beyond what a stop within a step may overshoot
+_STILL = 1e-9  # [m/s] or [m] change in a step up to which it is rounding
+_REVERSING = -0.05  # [m/s] speed beyond the overshoot of a stop within a step
 
 
 class Motion:
@@ -24,7 +24,7 @@ class Motion:
         position: [m].
         speed: [m/s].
         acceleration: [m/s2].
-        warnings: what the user should know.
+        warnings: Warnings for the user.
     """
 
     def __init__(self, prepared: Prepared) -> None:
@@ -133,7 +133,7 @@ class Motion:
             self._note(self._guard.once("reverse", backwards))
 
     def _judge(self, jump: float, slack: float, time: float) -> None:
-        """Refuse a state that no car can have; ``slack`` [m] of its ``jump`` [m] is allowed."""
+        """Refuse a state that no car can have, apart from ``slack`` [m] of its ``jump`` [m]."""
         good = (
             -self._limit <= self.speed <= self._limit
             and abs(jump) <= self._jump + slack
@@ -161,7 +161,7 @@ class Motion:
 
 
 def names_of(wiring: Wiring) -> dict[str, str]:
-    """What the FMU calls the quantities of the motion."""
+    """Return the FMU's names of the quantities of the motion."""
     names = {}
     for role in ("speed", "position", "acceleration"):
         index = wiring.output(role)

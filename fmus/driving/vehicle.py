@@ -1,4 +1,4 @@
-"""A vehicle whose longitudinal motion is an FMU: a force in; position, speed, acceleration out."""
+"""A vehicle whose longitudinal motion is an FMU, with a force as its input."""
 
 import os
 import tempfile
@@ -159,13 +159,13 @@ class VehicleFmu(Drivable):
 
     @property
     def between_steps(self) -> bool:
-        """Not within a step of the FMU that is longer than the controller's."""
+        """True unless the FMU is within a step that is longer than the controller's."""
         return (self._earlier + self._steps) % self._pace.stretch == 0
 
     # --- steps ---------------------------------------------------------------------------------
 
     def step(self, force: float, grade: float = 0.0) -> None:
-        """Hold ``force`` [N] for one step on a ``grade`` [rad]; the results are in the attributes.
+        """Hold ``force`` [N] for one step on a ``grade`` [rad], and set the attributes.
 
         Raises:
             FmuStepError: the force is not a finite number, or the FMU does not do the step.
@@ -217,7 +217,7 @@ class VehicleFmu(Drivable):
     # --- end -----------------------------------------------------------------------------------
 
     def close(self) -> None:
-        """Free everything, including the temporary folder; nothing happens the second time."""
+        """Free everything, including the temporary folder; a second call does nothing."""
         if not self._closed:
             self._closed = True
             self._refuse("has been closed; make a new one")
@@ -225,7 +225,7 @@ class VehicleFmu(Drivable):
             self._resources.close()
 
     def _own_step(self) -> str:
-        """Advice for an FMU that does steps of one length only: the end of a message, or empty."""
+        """Return advice for an FMU with steps of one length only, as the end of a message."""
         wanted, interface = self.prepared.model.default_step, self.prepared.wiring.interface
         if interface.variable_step or wanted is None or isclose(wanted, self._pace.step):
             return ""

@@ -36,7 +36,7 @@ _RightHandSide = CFUNCTYPE(c_int, c_double, c_void_p, c_void_p, c_void_p)
 
 
 def available() -> bool:
-    """Whether FMPy has SUNDIALS for this platform."""
+    """Return whether FMPy has SUNDIALS for this platform."""
     try:
         _libraries()
     except Exception:  # loading a foreign library can raise anything
@@ -55,7 +55,7 @@ class Cvode:
 
     Args:
         system: System to integrate; at least one state.
-        tolerance: relative; times a state's nominal value it is the absolute one.
+        tolerance: Relative tolerance; the absolute one is this times a state's nominal value.
     """
 
     remedy = "a greater `tolerance`"

@@ -24,7 +24,7 @@ class RungeKutta:
 
     Args:
         system: System to integrate.
-        tolerance: relative; times a state's nominal value it is the absolute one.
+        tolerance: Relative tolerance; the absolute one is this times a state's nominal value.
     """
 
     remedy = '`solver = "cvode"`, it is for stiff systems, or a greater `tolerance`,'
@@ -80,7 +80,7 @@ class RungeKutta:
         return self._propose(self._start, self._x_start, time - self._start)[0]
 
     def close(self) -> None:
-        """Nothing to free."""
+        """Do nothing: there is nothing to free."""
 
     def _arrive(
         self, start: float, x_start: NDArray[np.float64], end: float, x: NDArray[np.float64]

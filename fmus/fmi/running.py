@@ -103,14 +103,14 @@ class Instance(ABC):
         self.tick = self.make_tick(into, out)
 
     def prepare(self) -> None:  # noqa: B027
-        """What is to be done between the initialisation and the first step."""
+        """Prepare the instance between its initialisation and the first step."""
 
     @abstractmethod
     def make_tick(self, into: Transfer, out: Transfer) -> Tick:
         """The function that does a step."""
 
     def note_status(self, status: int) -> int:
-        """The status, or ERROR for one that FMI does not know; the worst one is remembered."""
+        """Remember the worst status, and return the status (ERROR if FMI does not know it)."""
         if not 0 <= status <= PENDING:
             self.messages.add(ERROR, f"it returned {named(status)}, which FMI does not know")
             status = ERROR

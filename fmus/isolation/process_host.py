@@ -1,4 +1,4 @@
-"""Starting and ending the FMU's processes, as seen from who wants them."""
+"""The interface for starting and ending the FMU's processes."""
 
 import pickle
 import socket

@@ -39,7 +39,7 @@ _WARNINGS, _WARNING, _MESSAGE = 20, 400, 2000  # number, characters: JSON stays 
 
 @dataclass(frozen=True)
 class Order:
-    """What the process shall run: an FMU, as what, and the folder that holds it unpacked."""
+    """The order for a process: the FMU, its adapter, and the folder that holds it unpacked."""
 
     hosted: type[Hosted]
     prepared: Any
@@ -50,7 +50,7 @@ class Order:
         return self.hosted(self.prepared, self.folder)
 
     def import_ahead(self) -> None:
-        """Import what the FMU will need, so that forked workers need not import it again."""
+        """Import the modules that the FMU will need, so that forked workers need not do it."""
         if self.prepared.wiring.interface.kind is Kind.MODEL_EXCHANGE:
             from fmus.fmi import cvode
 
@@ -65,12 +65,12 @@ def read_order(folder: str) -> Order:
 
 
 def main(port: int, token: str, folder: str) -> NoReturn:
-    """Run as a worker without a watchdog; connect back to the process that wants the FMU.
+    """Run as a worker without a watchdog, and connect back to the client.
 
     Args:
         port: Port on this machine.
-        token: proves that this is the worker that is waited for.
-        folder: the temporary folder.
+        token: Proof that this is the expected worker.
+        folder: Temporary folder.
     """
     parent = os.getppid()
 
@@ -87,7 +87,7 @@ def main(port: int, token: str, folder: str) -> NoReturn:
 
 
 def serve(order: Order, connection: socket.socket) -> NoReturn:
-    """Answer requests until the connection is closed; then end the process."""
+    """Answer requests until the connection is closed, then end the process."""
     status = CONNECTION_LOST
     with suppress(BaseException):  # whatever happens, the other side notices the closed connection
         _protect()

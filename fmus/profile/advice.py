@@ -1,4 +1,4 @@
-"""Lines to write into a profile, given what stands there already."""
+"""Lines to write into a profile, given its present contents."""
 
 from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import VehicleProfile
@@ -7,7 +7,7 @@ from fmus.profile.vehicle_profile import VehicleProfile
 def gain_line(
     profile: VehicleProfile | None, table: str, role: str, factor: float, quote: str = "`"
 ) -> str:
-    """The line that multiplies an axis's gain: ``gain = 1.0`` in place of ``gain = -1.0``.
+    """Return the line that multiplies an axis's gain: ``gain = 1.0`` for ``gain = -1.0``.
 
     Args:
         profile: Profile of the vehicle; None: without a gain.

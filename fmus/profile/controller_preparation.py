@@ -26,8 +26,8 @@ class PreparedController:
     Attributes:
         model: Model of the FMU.
         profile: Profile by which it is asked.
-        wiring: which variables it is told and answers by.
-        pace: how the control steps and the FMU's fit together.
+        wiring: Variables for its inputs and its answer.
+        pace: Relation of the control steps to the FMU's steps.
         bounds: Bounds of the inputs.
         step_size: Step size between two questions [s].
         binary: this platform's binary in the archive.
@@ -43,7 +43,7 @@ class PreparedController:
 
     @property
     def path(self) -> Path:
-        """Of the FMU."""
+        """Path of the FMU."""
         return self.model.path
 
 
@@ -55,12 +55,12 @@ def prepare_controller(
     profile: ControllerProfile | None = None,
     start_values: Mapping[str, Value] | None = None,
 ) -> PreparedController:
-    """Read a controller FMU through the archive's gate and fit a profile to it.
+    """Check and read a controller FMU, and fit a profile to it.
 
     Args:
         path: the .fmu file.
         step_size: Step size between two questions [s].
-        setup: what the run is set to, by the names of the profile's table ``setup`` [SI].
+        setup: Settings of the run, by the names of the profile's table ``setup`` [SI].
         profile: which variable plays which part; None: a draft from names, if it leaves no doubt.
         start_values: further start values by variable name.
 
@@ -87,7 +87,7 @@ def prepare_controller(
 
 
 def choose_controller_profile(path: Path, profile: ControllerProfile | None) -> ControllerProfile:
-    """The profile to ask an FMU by: the one given, or a draft.
+    """Return the profile for asking an FMU: the given one, or a draft.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.

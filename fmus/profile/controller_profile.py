@@ -1,4 +1,4 @@
-"""A controller profile: which variable of a controller FMU is told what, and which one answers.
+"""A controller profile: the roles of a controller FMU's inputs and outputs.
 
 The same tables are a TOML file and what :func:`fmus.profile.controller_draft.draft_controller`
 guesses. Whether it fits an FMU is checked by :mod:`fmus.profile.controller_wiring`.
@@ -23,7 +23,7 @@ class SpeedAnswer(Axis):
 
 
 class ControllerInputs(Table):
-    """What the FMU is told at each step; a series is an array, or ``x[1]``, ``x[2]``, ..."""
+    """The inputs of the FMU at each step; a series is an array, or ``x[1]``, ``x[2]``, ..."""
 
     speed: Axis | None = None  # [m/s]
     acceleration: Axis | None = None  # [m/s2]
@@ -41,7 +41,7 @@ class ControllerInputs(Table):
 
 
 class ControllerOutputs(Table):
-    """What it answers: one of force, acceleration, speed."""
+    """The FMU's answer: one of force, acceleration, speed."""
 
     force: Axis | None = None  # [N] forwards positive
     acceleration: Axis | None = None  # [m/s2]
@@ -57,7 +57,7 @@ class ControllerOutputs(Table):
 
 
 class ControllerSetup(Table):
-    """Parameters that are set to what the run is set to."""
+    """The FMU's parameters that get the settings of the run."""
 
     time_step: Axis | None = None  # [s] between two answers
     mass: Axis | None = None  # M [kg]
@@ -69,7 +69,7 @@ class ControllerSetup(Table):
 
 
 class ControllerProfile(Table):
-    """Everything that giveway needs to ask a controller FMU."""
+    """The settings that giveway needs to ask a controller FMU."""
 
     fmu: Stepping = Stepping()
     inputs: ControllerInputs

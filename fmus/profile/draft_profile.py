@@ -121,7 +121,7 @@ def _distinct(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> bool:
 
 
 def _merit(ranked: dict[str, list[Guess]], way: tuple[str, ...]) -> float:
-    """How well a way to drive fits: its weakest guess counts; two good ones beat a single one."""
+    """Rate a way to drive by its weakest guess; two inputs of its own beat a single one."""
     weakest = min(ranked[role][0].score for role in way)
     fits = min(-1 if ranked[role][0].fits is False else 0 for role in way)
     both = 1 if len(way) > 1 and way != ("throttle", "brake") else 0
@@ -208,7 +208,7 @@ def _outputs(model: Model) -> list[Entry]:
 
 
 def _initial(model: Model) -> list[Entry]:
-    """The variables for the start; without an unambiguous one the vehicle is driven up to speed."""
+    """Return the variables for the start; without a clear one the vehicle is run up to speed."""
     free = [
         v
         for v in model.variables.values()

@@ -1,4 +1,4 @@
-"""How the controller's steps and an FMU's own steps fit together."""
+"""The communication step plan: the relation of the controller's steps to an FMU's own steps."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,12 +12,12 @@ _MOST = 1_000_000  # substeps: more would take minutes
 
 @dataclass(frozen=True)
 class Pace:
-    """``substeps`` steps of the FMU per control step, or ``stretch`` control steps per FMU step.
+    """The plan: ``substeps`` FMU steps per control step, or ``stretch`` control steps per FMU step.
 
     Attributes:
         step: Step of the FMU [s].
         substeps: 1 unless the FMU's step is the shorter one.
-        stretch: 1 unless the FMU's step is the longer one: the force is then held over it.
+        stretch: 1 unless the FMU's step is the longer one; the force is held over it.
     """
 
     step: float
@@ -26,7 +26,7 @@ class Pace:
 
 
 def make_pace(control_step: float, fmu_step: float | None) -> Pace:
-    """The pace for a control step [s] and the FMU's own step [s], None: the same.
+    """Return the plan for a control step [s] and the FMU's own step [s], by default the same.
 
     Raises:
         FmuProfileError: neither is a whole multiple of the other, or there are too many substeps.
@@ -59,13 +59,13 @@ def pace_of(
     default: float | None,
     step_size: float,
 ) -> Pace:
-    """The pace of the profile's step, else of the one that the FMU can do.
+    """Return the plan for the profile's step, or else for a step that the FMU can do.
 
     Args:
         path: Path of the FMU, for messages.
-        wanted: the step that the profile names [s].
+        wanted: Step that the profile names [s].
         interface: Interface of the FMU.
-        default: the step of its default experiment [s].
+        default: Step of the FMU's default experiment [s].
         step_size: Step size of the controller [s].
 
     Raises:
@@ -97,14 +97,14 @@ def pace_of(
 
 
 def divides(part: float, whole: float) -> bool:
-    """Whether ``whole`` is a multiple of ``part``, up to rounding."""
+    """Return whether ``whole`` is a multiple of ``part``, up to rounding."""
     if part < 1e-9 * whole:
         return True  # finer than floating-point numbers can tell
     return part <= whole * (1 + 1e-9) and abs(round(whole / part) * part - whole) <= 1e-9 * whole
 
 
 def step_to_run_with(fmu_step: float, usual: float = 0.05) -> str:
-    """The flag that a run needs for an FMU's own step [s]; empty if the usual step fits."""
+    """Return the flag that a run needs for an FMU's step [s]; empty if the usual one fits."""
     try:
         make_pace(usual, fmu_step)
     except FmuProfileError:

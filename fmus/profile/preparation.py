@@ -41,13 +41,13 @@ class Prepared:
     Attributes:
         model: Model of the FMU.
         profile: Profile by which it is driven.
-        wiring: which variables it is driven and read by.
-        command: the inverse map.
-        pace: how the controller's steps and the FMU's fit together.
+        wiring: Variables for its inputs and outputs.
+        command: Inverse map.
+        pace: Relation of the controller's steps to the FMU's steps.
         bounds: Bounds of the inputs.
         step_size: Step size of the controller [s].
         binary: this platform's binary in the archive.
-        ours: a shipped FMU: its outputs are trusted, and its state need not be saved.
+        ours: True for a shipped FMU: its outputs are trusted, and its state need not be saved.
     """
 
     model: Model
@@ -62,7 +62,7 @@ class Prepared:
 
     @property
     def path(self) -> Path:
-        """Of the FMU."""
+        """Path of the FMU."""
         return self.model.path
 
 
@@ -73,7 +73,7 @@ def prepare(
     profile: VehicleProfile | None = None,
     start_values: Mapping[str, Value] | None = None,
 ) -> Prepared:
-    """Read an FMU through the archive's gate and fit a profile to it.
+    """Check and read an FMU, and fit a profile to it.
 
     Args:
         path: the .fmu file.
@@ -109,7 +109,7 @@ def prepare(
 
 
 def choose_profile(path: Path, profile: VehicleProfile | None) -> VehicleProfile:
-    """The profile to drive an FMU by: the one given, the shipped FMUs' own, or a draft.
+    """Return the profile to drive by: the given one, the shipped FMUs' own, or a draft.
 
     Raises:
         FmuFileError: the file is missing, or no readable FMU.
@@ -127,19 +127,19 @@ def _chosen(model: Model, profile: VehicleProfile | None) -> VehicleProfile:
 
 
 class Loadable(Protocol):
-    """An FMU of which is known what this platform needs."""
+    """An FMU whose binary for this platform is known."""
 
     @property
     def path(self) -> Path:
-        """Of the FMU."""
+        """Path of the FMU."""
 
     @property
     def binary(self) -> str:
-        """This platform's, in the archive."""
+        """Name of this platform's binary in the archive."""
 
 
 def unpack(prepared: Loadable, folder: Path) -> None:
-    """Unpack what this platform needs of the FMU into ``folder``.
+    """Unpack the members for this platform into ``folder``.
 
     Raises:
         FmuArchiveError: a member is damaged.
@@ -151,7 +151,7 @@ def unpack(prepared: Loadable, folder: Path) -> None:
 
 
 def bounds_of(inputs: Sequence[Wire]) -> tuple[Bound, ...]:
-    """The ranges that an FMU declares for its inputs, as far as it does."""
+    """Return the ranges that an FMU declares for its inputs."""
     return tuple(
         Bound(
             index,

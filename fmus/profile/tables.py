@@ -1,4 +1,4 @@
-"""What all profiles share: tables, axes, how an FMU is stepped, start values, and their errors."""
+"""The common parts of all profiles: tables, axes, stepping, start values, and their errors."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Axis(Table):
 
 
 class Stepping(Table):
-    """How an FMU is stepped."""
+    """The settings for stepping an FMU."""
 
     kind: Literal["co-simulation", "model-exchange"] | None = None  # None: the former if it can
     step: float | None = Field(None, gt=0, le=10)  # [s] the FMU's own; None: the control step
@@ -59,7 +59,7 @@ class Stepping(Table):
 
 
 def flat(values: Any) -> Any:
-    """An unquoted ``vehicle.mass = 1`` is a table in TOML; here it is the variable's name."""
+    """Return the variables' values by full name: ``vehicle.mass = 1`` is a table in TOML."""
     if not isinstance(values, dict):
         return values
     found: dict[str, Any] = {}
@@ -102,8 +102,8 @@ def read_tables(path: Path, what: str, guide: str) -> dict[str, Any]:
 
     Args:
         path: Path of the file.
-        what: it is expected to be.
-        guide: where one is to be had.
+        what: Expected contents, in words.
+        guide: Place of a guide, for messages.
 
     Raises:
         FmuProfileError: the file is missing, or not TOML.
@@ -128,7 +128,7 @@ def validated(kind: type[_Profile], values: dict[str, Any], origin: str, guide: 
         kind: Kind of profile.
         values: Values with the keys of the TOML file.
         origin: named in errors.
-        guide: that describes the keys.
+        guide: Description of the keys, for messages.
 
     Raises:
         FmuProfileError: a key or value cannot be used.

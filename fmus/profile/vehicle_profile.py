@@ -1,4 +1,4 @@
-"""A vehicle profile: which variable of an FMU plays which part, in which unit, with what limits.
+"""A vehicle profile: the roles, units and limits of an FMU's variables.
 
 The same tables are a TOML file (``car.toml``), the draft that ``giveway fmu inspect`` prints, and
 the argument of :class:`fmus.VehicleFmu`. Whatever stands in a file is checked here; whether it
@@ -77,7 +77,7 @@ class Outputs(Table):
 
 
 class Initial(Table):
-    """The variables that set where and how fast the FMU starts."""
+    """The variables that set the FMU's first position and speed."""
 
     speed: Axis | None = None  # [m/s] parameter or input with a start value
     position: Axis | None = None  # [m]; None: the position counts from where the FMU starts
@@ -85,13 +85,13 @@ class Initial(Table):
 
 
 class Fmu(Stepping):
-    """How a vehicle's FMU is stepped."""
+    """The settings for stepping a vehicle's FMU."""
 
     self_check: bool = True  # compare one step with two half steps before the run
 
 
 class Limits(Table):
-    """Limits that no car exceeds: beyond them the FMU is at fault and the run ends."""
+    """The limits that no car exceeds. Beyond them the FMU is at fault and the run ends."""
 
     speed: float = Field(100.0, gt=0, le=1e9)  # [m/s] absolute
     position_jump: float = Field(1.0, gt=0, le=1e9)  # [m] more or less than the speed accounts for
@@ -120,7 +120,7 @@ class FittedModel(Table):
 
 
 class VehicleProfile(Table):
-    """Everything that giveway needs to drive a foreign FMU."""
+    """The settings that giveway needs to drive a foreign FMU."""
 
     record: tuple[str, ...] = Field((), max_length=100)  # variables whose values the rows keep
     fmu: Fmu = Fmu()

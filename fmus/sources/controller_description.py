@@ -24,7 +24,7 @@ _OBSTACLE: Final = 100  # ... and OBSTACLE of instance.h
 
 @dataclass(frozen=True, slots=True)
 class _Variable:
-    """A variable; it is calculated if ``start`` is None."""
+    """A variable. It is calculated if ``start`` is None."""
 
     name: str
     reference: int
@@ -39,7 +39,7 @@ class _Variable:
 
     @property
     def variability(self) -> str:
-        """As the causality wants it."""
+        """Variability that belongs to the causality."""
         if self.causality in ("parameter", "structuralParameter"):
             return "fixed"
         return "discrete" if self.causality == "output" else "continuous"
@@ -153,7 +153,7 @@ _TYPES: Final[dict[FmiVersion, dict[str, str]]] = {
 
 
 def _attributes(values: Mapping[str, object]) -> str:
-    """XML attributes; those that are None are left out."""
+    """Return XML attributes without those that are None."""
     return "".join(f" {k}={quoteattr(_text(v))}" for k, v in values.items() if v is not None)
 
 
@@ -187,7 +187,7 @@ def _element(version: FmiVersion, v: _Variable) -> str:
 
 
 def _structure(version: FmiVersion, variables: list[_Variable]) -> Iterator[str]:
-    """Every output depends on every input, at once; at the start on every parameter too."""
+    """Yield the dependencies: every output on every input, at the start on parameters, too."""
     inputs = [i for i, v in enumerate(variables, start=1) if v.causality == "input"]
     outputs = [i for i, v in enumerate(variables, start=1) if v.causality == "output"]
     if version == "2.0":
@@ -238,7 +238,7 @@ def model_description(
         version: Version of FMI.
         parameters: the start values; in FMI 2 the horizon is also the number of inputs.
         token: Token of :func:`token_of`.
-        tool: what generated the FMU.
+        tool: Name of the tool that generated the FMU.
         sources: the C files, in the order of compilation.
     """
     head = {

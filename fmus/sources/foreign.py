@@ -1,7 +1,7 @@
 """Compiling the C sources of an FMU that has no binary for this platform.
 
-The archive passes the gate as ever. Compiling runs nothing of the FMU; what comes out is an FMU
-like any other, with one more binary, and runs in a process of its own.
+The archive is checked as always. Compiling runs nothing of the FMU. The result is an FMU like any
+other, with one more binary, and runs in a process of its own.
 """
 
 import os
@@ -32,7 +32,7 @@ ENTRIES: Final = {"1.0": "{0}_fmi", "2.0": "fmi2Instantiate", "3.0": "fmi3Instan
 
 @dataclass(frozen=True)
 class Sources:
-    """What one library is compiled of; all paths within the archive.
+    """The sources of one library; all paths are within the archive.
 
     Attributes:
         identifier: Identifier of the model, the library's name.
@@ -138,7 +138,7 @@ def _plain_names(model: Model) -> Iterator[str]:
 
 
 def _sources(archive: Archive, model: Model) -> Iterator[Sources]:
-    """What each library of the FMU is compiled of.
+    """Yield the sources of each library of the FMU.
 
     Raises:
         FmuBuildError: the FMU does not bring them.

@@ -39,7 +39,7 @@ def outcome(
     error: Exception | None,
     elapsed: float,
 ) -> RunResult:
-    """What the loop has left behind."""
+    """Return what the loop has left behind."""
     rows = recorder.rows()
     egos = results_of_egos(parts.config, rows, ending, loop.endings)
     touched = [text for text in map(vehicle_contacts.remark, egos) if text]

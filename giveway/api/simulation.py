@@ -84,13 +84,13 @@ def simulate(
 
 
 def _tell(watcher: Watcher | None, doing: str) -> None:
-    """What is done after the drive."""
+    """Return what is done after the drive."""
     if watcher is not None:
         watcher(Progress(0.0, 0.0, math.nan, math.nan, math.nan, "", 0, doing))
 
 
 def _in_our_words(error: Exception, scenario: Scenario) -> Exception:
-    """What a run has failed by; SUMO's own errors with the scenario that they are about."""
+    """Return what a run has failed by; SUMO's own errors with the scenario that they are about."""
     if not is_refusal(error):
         return error
     reason = " ".join(str(error).split())
@@ -102,7 +102,7 @@ def _in_our_words(error: Exception, scenario: Scenario) -> Exception:
 def _guarded(
     call: Callable[[], Result], scenario: Scenario
 ) -> tuple[Result | None, Exception | None]:
-    """What a call returns, or its failure: the run's rows are the user's in any case."""
+    """Return what a call returns, or its failure: the run's rows are the user's in any case."""
     try:
         return call(), None
     except PedestrianModelError as error:

@@ -89,7 +89,7 @@ def _network(files: ScenarioFiles, network: Contents, demand: Contents) -> list[
 
 
 def _walkways(network: Counter[str], demand: Contents) -> Finding:
-    """Where SUMO's own persons can walk; giveway's pedestrians need no infrastructure."""
+    """Return where SUMO's own persons can walk; giveway's pedestrians need no infrastructure."""
     subject = "walkways"
     if network["walkingarea"] and network["sidewalk"]:
         text = (

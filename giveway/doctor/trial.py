@@ -100,7 +100,7 @@ def _loaded(seen: dict[str, Any]) -> list[Finding]:
 
 
 def _warnings(stderr: str, copies: dict[str, str]) -> list[Finding]:
-    """What SUMO complained of without giving up."""
+    """Return what SUMO complained of without giving up."""
     for copy, original in copies.items():
         stderr = stderr.replace(copy, original)
     findings = []
@@ -129,7 +129,7 @@ def _outputs(seen: dict[str, Any]) -> list[Finding]:
 
 
 def _remarks(seen: dict[str, Any]) -> list[Finding]:
-    """What a run changes, if the findings on the scenario do not say it already."""
+    """Return what a run changes, if the findings on the scenario do not say it already."""
     said = ("outputs", "pedestrian.model", "random")
     parted = [remark.partition(": ") for remark in seen["remarks"]]
     return [note(option, text) for option, _, text in parted if option not in said]
@@ -152,7 +152,7 @@ def _egos(seen: dict[str, Any]) -> list[Finding]:
 def _people_of_your_own(
     config_file: Path, seen: dict[str, Any], net_file: Path | None
 ) -> list[Finding]:
-    """Where added pedestrians would cross the first vehicle's way."""
+    """Return where added pedestrians would cross the first vehicle's way."""
     if net_file is None or len(seen["way"]) < 2:
         return []
     try:

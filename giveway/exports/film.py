@@ -76,7 +76,7 @@ class Painter:
         return Box.around(np.concatenate(points), _MARGIN)
 
     def _view(self, index: int) -> Box:
-        """What a frame shows."""
+        """Return what a frame shows."""
         if not self._follows:
             return self._whole
         ego = self._egos[0]

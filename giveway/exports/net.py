@@ -95,7 +95,7 @@ class Net:
         return [self.place(int(k), point) for k, point in zip(found, points, strict=True)]
 
     def place(self, k: int, point: shapely.Point) -> Place:
-        """Where on the k-th lane is nearest to a point [m]."""
+        """Return where on the k-th lane is nearest to a point [m]."""
         edge, lane, length, line = self._lanes[k]
         along = min(line.project(point) * length / max(line.length, 1e-9), length)
         return Place(edge, lane, along, line.distance(point))

@@ -10,7 +10,7 @@ TOUCH = 0.01
 
 
 def rectangles_overlap(one: Array, other: Array, deeper_than: float = TOUCH) -> NDArray[np.bool_]:
-    """Whether rectangles overlap, pair by pair: no axis of either separates the two.
+    """Return whether rectangles overlap, pair by pair: no axis of either separates the two.
 
     Args:
         one: (..., 5) x and y [m] of the front's middle, heading [rad], length and width [m].

@@ -24,7 +24,7 @@ def look(
     half_width: float,
     reach: float,
 ) -> tuple[float, bool]:
-    """Where a path comes by a point in front of the ego, and whether that may come to pass.
+    """Return where a path comes by a point in front of the ego, and whether that may come to pass.
 
     Args:
         vertices: (k + 1, 2) [m] of the path.

@@ -299,7 +299,7 @@ class DriveEnv(gymnasium.Env[Any, NDArray[np.float32]]):
         return around
 
     def _hits(self, speed: float, around: Array) -> bool:
-        """Whether the front touches somebody while the ego drives."""
+        """Return whether the front touches somebody while the ego drives."""
         beside = np.maximum(np.abs(around[:, 1]) - self._half, 0.0)
         touched = np.hypot(around[:, 0], beside) <= self._radius
         touched &= (around[:, 0] >= 0.0) | (beside == 0.0) & (around[:, 0] > -self._radius)

@@ -44,7 +44,7 @@ def anticipation(
     reference_speed: float | None,
     stop_speed: float,
 ) -> Anticipation:
-    """How early an ego slowed for people, and how long it stood in their midst.
+    """Return how early an ego slowed for people, and how long it stood in their midst.
 
     Args:
         ego: the ego's track, T instants.
@@ -129,7 +129,7 @@ def _among(ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, stop_speed: fl
 def _passages(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """When [s] and where [m] people cross the ego's line of travel close to its bumpers.
+    """Return when [s] and where [m] people cross the ego's line of travel close to its bumpers.
 
     Places count from the ego's centre, positive in front.
     """

@@ -50,7 +50,7 @@ class Proximity(NamedTuple):
 def proximity(
     ego: EgoTrack, crowd: CrowdTrack, shape: VehicleShape, body_radius: float
 ) -> Proximity:
-    """How close every pedestrian and the ego came, record by record, in one pass.
+    """Return how close every pedestrian and the ego came, record by record, in one pass.
 
     Args:
         ego: the ego's track, T instants.

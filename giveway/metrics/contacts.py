@@ -39,7 +39,7 @@ def contacts(
     body_radius: float,
     clearance: NDArray[np.float64],
 ) -> NDArray[np.str_]:
-    """How each pedestrian and the ego came into contact, if they did.
+    """Return how each pedestrian and the ego came into contact, if they did.
 
     A contact is frontal if at its first instant the pedestrian's centre is ahead of the line of
     the front bumper and the ego moves, or if both hold later on while the ego is the faster one

@@ -136,7 +136,7 @@ def pedestrian_columns(
 
 
 def walks_without_ego(time: NDArray[np.float64], crowd: CrowdTrack) -> "pd.DataFrame":
-    """How every pedestrian walked where there was no ego: the columns that need none.
+    """Return how every pedestrian walked where there was no ego: the columns that need none.
 
     Args:
         time: (T,) [s] the control instants.

@@ -81,7 +81,7 @@ def _separation_in_step(
 
 @inner
 def _out_of_reach(b: int, x: float, y: float, blocks: NDArray[np.float64]) -> bool:
-    """Whether the ego touches no circle at (x, y) in any step of block b."""
+    """Return whether the ego touches no circle at (x, y) in any step of block b."""
     return bool((x - blocks[b, 0]) ** 2 + (y - blocks[b, 1]) ** 2 > blocks[b, 2])
 
 
@@ -136,7 +136,7 @@ def ego_comes_later(
     blocks: NDArray[np.float64],
     body: tuple[float, float, float],
 ) -> bool:
-    """Whether the ego touches a circle at (x, y) within ``nearest`` after t, not before.
+    """Return whether the ego touches a circle at (x, y) within ``nearest`` after t, not before.
 
     Arguments as for ``separation``.
     """

@@ -17,7 +17,7 @@ _STANDING = 0.1  # [m/s] a free speed below it says nothing
 
 
 def slowed(ego: EgoTrack, reference: float | None) -> bool:
-    """Whether the ego was, at any instant, below 0.8 times its speed with nobody about.
+    """Return whether the ego was, at any instant, below 0.8 times its speed with nobody about.
 
     The free speed rises with 0.5 m/s^2 from the start up to the reference speed of the place. A
     stop (a red light) or a vehicle less than 30 m in front may slow an ego that is alone, too: such

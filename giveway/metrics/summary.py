@@ -242,7 +242,7 @@ def _share(whom: NDArray[np.bool_]) -> float:
 
 
 def _beyond(hardest: NDArray[np.float64], people: WorstMotion) -> NDArray[np.bool_]:
-    """Which pedestrians accelerated harder than ``people`` allows, by more than rounding."""
+    """Return which pedestrians accelerated harder than ``people`` allows, by more than rounding."""
     with np.errstate(invalid="ignore"):
         return np.asarray(hardest > people.acceleration * _ROUNDING, dtype=np.bool_)
 

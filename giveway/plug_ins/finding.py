@@ -57,12 +57,12 @@ class Found:
 
 
 def is_reference(name: str) -> bool:
-    """Whether a name is ``module:attribute`` and not that of an entry point."""
+    """Return whether a name is ``module:attribute`` and not that of an entry point."""
     return _REFERENCE.fullmatch(name) is not None
 
 
 def is_fmu(name: str) -> bool:
-    """Whether a name is that of a file with an FMU."""
+    """Return whether a name is that of a file with an FMU."""
     return name.lower().endswith(".fmu")
 
 
@@ -82,7 +82,7 @@ def declared_names(socket: Socket = CONTROLLER) -> list[str]:
 
 
 def find(name: str, socket: Socket = CONTROLLER) -> Found:
-    """What a name means; nobody's code is imported.
+    """Return what a name means; nobody's code is imported.
 
     Raises:
         ControlError: nothing installed has it.

@@ -47,7 +47,7 @@ def require_sound_model() -> Callable[..., None]:
 
 
 def _maker(kind: Any, options: dict[str, Any]) -> Callable[[Any], object]:
-    """What makes the plug-in, as giveway does."""
+    """Return what makes the plug-in, as giveway does."""
     from giveway.plug_ins.options import read_options
 
     own = read_options(kind.__name__, getattr(kind, "Options", None), options)

@@ -22,7 +22,7 @@ WINDOWS_CAUSES = {
 
 
 def cause_of_end(returncode: int) -> str:
-    """Why a process ended that did not end by itself: "SIGSEGV", "exit(3) called ...".
+    """Return why a process ended that did not end by itself: "SIGSEGV", "exit(3) called ...".
 
     Args:
         returncode: as :mod:`subprocess` has it: minus the signal, or the exit code.
@@ -45,12 +45,12 @@ def let_speak(process: subprocess.Popen[bytes]) -> None:
 
 
 def stood_still(seconds: float) -> str:
-    """Why a process was killed that had shown no sign of life for so many ``seconds``."""
+    """Return why a process was killed that had shown no sign of life for so many ``seconds``."""
     return f"no progress for {seconds:g} s"
 
 
 def text_in(file: Path) -> str:
-    """What a dead process has written into ``file``; empty without the file."""
+    """Return what a dead process has written into ``file``; empty without the file."""
     try:
         return file.read_text(encoding="utf-8", errors="replace").strip()
     except OSError:

@@ -57,7 +57,7 @@ class Pulse(NamedTuple):
 
     @property
     def place(self) -> str:
-        """Where that is, in words that continue a sentence."""
+        """Return where that is, in words that continue a sentence."""
         return _PLACES[self.phase].format(time=self.time, step=self.step)
 
 
@@ -121,7 +121,7 @@ class Heartbeat:
 
     @property
     def kept(self) -> bool:
-        """Whether the journal is to be kept."""
+        """Return whether the journal is to be kept."""
         return bool(self.slots[_KEEP])
 
     def read(self) -> Pulse:

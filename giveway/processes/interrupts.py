@@ -33,7 +33,7 @@ class TerminatedError(KeyboardInterrupt):
 
 
 def who_ended(error: KeyboardInterrupt) -> str:
-    """How the user has ended us, in a word or two: "interrupted", or "ended by SIGTERM"."""
+    """Return how the user has ended us, in a word or two: "interrupted", or "ended by SIGTERM"."""
     if isinstance(error, TerminatedError):
         return f"ended by {signal.Signals(error.number).name}"
     return "interrupted"

@@ -40,7 +40,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def in_use(folder: Path) -> bool:
-    """Whether another process has locked a folder.
+    """Return whether another process has locked a folder.
 
     Raises:
         OSError: it cannot be opened.

@@ -93,7 +93,7 @@ def journal_folder() -> Iterator[Path]:
 
 
 def journal_place() -> Path:
-    """Where journals are.
+    """Return where journals are.
 
     ``/var/tmp`` comes before ``/tmp``, which often is memory that the run itself needs; ``TMPDIR``
     before both.
@@ -114,7 +114,7 @@ def journals() -> list[Path]:
 
 
 def verdict_on_left(journal: Path) -> Verdict:
-    """What became of a process whose supervisor, killed too, could not tell.
+    """Return what became of a process whose supervisor, killed too, could not tell.
 
     Raises:
         OSError: the folder cannot be read.
@@ -134,7 +134,7 @@ def _sweep(place: Path) -> None:
 
 
 def own_command() -> list[str]:
-    """How this very process was started, interpreter options included."""
+    """Return how this very process was started, interpreter options included."""
     return [sys.executable, *sys.orig_argv[1:]]
 
 

@@ -87,7 +87,7 @@ class ScenarioFiles:
         return {name: value for name, value in self.options.items() if "teleport" in name}
 
     def is_set(self, option: str) -> bool:
-        """Whether the scenario switches a yes-or-no option on."""
+        """Return whether the scenario switches a yes-or-no option on."""
         return self.options.get(option, "").strip().lower() in _TRUE
 
     def require_inputs(self) -> None:

@@ -156,5 +156,5 @@ class _Editor:
 
 
 def _has_signs(file: Path) -> bool:
-    """Whether the file can name an output at all; reads it once, in pieces."""
+    """Return whether the file can name an output at all; reads it once, in pieces."""
     return any(sign in text for text in pieces(file) for sign in _SIGNS)

@@ -19,7 +19,7 @@ _COMPARED = 5_000  # declared names among which a similar one is looked for
 
 
 def undeclared(name: str, files: Iterable[Path]) -> str | None:
-    """What to say if no vehicle ``name`` is declared in ``files``; None if one is or may be.
+    """Return what to say if no vehicle ``name`` is declared in ``files``; None if one is or may be.
 
     Args:
         name: SUMO's id of a vehicle; one of a flow is the flow's id, a point and a number.
@@ -45,7 +45,7 @@ def undeclared(name: str, files: Iterable[Path]) -> str | None:
 
 
 def declares(name: str, files: Iterable[Path]) -> bool:
-    """Whether a vehicle ``name`` is certainly declared in ``files``."""
+    """Return whether a vehicle ``name`` is certainly declared in ``files``."""
     flow, _, number = name.rpartition(".")
     wanted = {(b"vehicle", name), (b"trip", name)}
     if number.isdecimal():
@@ -72,7 +72,7 @@ def _in(text: bytes) -> Iterator[tuple[bytes, str]]:
 
 
 def declares_people(files: Iterable[Path]) -> bool:
-    """Whether a person or a flow of persons is declared in any of ``files``, or may be."""
+    """Return whether a person or a flow of persons is declared in any of ``files``, or may be."""
     try:
         return any(
             _PERSON.search(text) or _INCLUDE in text for file in files for text in pieces(file)

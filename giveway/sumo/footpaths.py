@@ -84,7 +84,7 @@ class FootPaths:
         return Foot(lane.name, _inside(lane, position), lateral, abs(lateral))
 
     def index(self, person: str, edges: Sequence[str], lane: str, arrival: float) -> int:
-        """Which of the ``edges`` of its route a person on ``lane`` is on.
+        """Return which of the ``edges`` of its route a person on ``lane`` is on.
 
         Of a person inside a junction it is the edge before the junction.
         """

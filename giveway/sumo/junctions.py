@@ -27,7 +27,7 @@ class Movement(NamedTuple):
 
     @property
     def has_stop_sign(self) -> bool:
-        """Whether one has to stand before it first; no light governs it."""
+        """Return whether one has to stand before it first; no light governs it."""
         return self.state in ("s", "w") and not self.system
 
 

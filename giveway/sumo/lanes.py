@@ -124,7 +124,7 @@ class Lanes:
         return heights_of(self._sumo, lane, self.shape(lane), begin, length)
 
     def mergings(self, lane_path: LanePath) -> tuple[Merging, ...]:
-        """Where others come onto the lanes of a path, in its order."""
+        """Return where others come onto the lanes of a path, in its order."""
         return mergings(self._sumo, lane_path.lanes, lane_path.edges, self.shape)
 
     @cached_property
@@ -151,7 +151,7 @@ class Lanes:
         return length
 
     def speed_limit(self, lane: str) -> float:
-        """What SUMO lets vehicles drive on a lane [m/s], whatever they are."""
+        """Return what SUMO lets vehicles drive on a lane [m/s], whatever they are."""
         return float(self._sumo.lane.getMaxSpeed(lane))
 
     def point(self, lane: str, position: float) -> tuple[float, float]:
@@ -305,7 +305,7 @@ class Lanes:
 
 
 def admits(sumo: Any, lane: str, kind: str) -> bool:
-    """Whether vehicles (or persons) of SUMO's class ``kind`` may use ``lane``."""
+    """Return whether vehicles (or persons) of SUMO's class ``kind`` may use ``lane``."""
     allowed = sumo.lane.getAllowed(lane)
     return (not allowed or kind in allowed) and kind not in sumo.lane.getDisallowed(lane)
 

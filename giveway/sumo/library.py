@@ -35,7 +35,7 @@ def direct(sumo: Any, domain: str, function: str) -> Any:
 
 
 def is_refusal(error: BaseException) -> bool:
-    """Whether an error is SUMO's own, from a call that it could not carry out."""
+    """Return whether an error is SUMO's own, from a call that it could not carry out."""
     sumo = import_libsumo()
     return isinstance(error, (sumo.TraCIException, sumo.FatalTraCIError))  # no common base
 

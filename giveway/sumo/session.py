@@ -146,12 +146,12 @@ class SumoSession:
 
     @property
     def messages(self) -> str:
-        """What SUMO has printed on stderr so far: warnings, mostly."""
+        """Return what SUMO has printed on stderr so far: warnings, mostly."""
         return of_others(self._stderr.text(), self._added)
 
     @property
     def expects_more(self) -> bool:
-        """Whether anybody is on the way or yet to depart."""
+        """Return whether anybody is on the way or yet to depart."""
         return bool(self._sumo.simulation.getMinExpectedNumber() > 0)
 
     def light_state(self, system: str) -> str:

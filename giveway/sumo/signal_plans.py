@@ -63,7 +63,7 @@ class SignalPlans:
         return SignalChange(self._left(system), plan[plan[phase].follows].state)
 
     def greens(self, system: str, link: int) -> Greens:
-        """When a movement may go within one round of the plan; none: nobody can tell.
+        """Return when a movement may go within one round of the plan; none: nobody can tell.
 
         Args:
             system: SUMO's id of the traffic light.

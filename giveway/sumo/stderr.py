@@ -11,7 +11,7 @@ _MET = re.compile(r"^Warning: Collision of person '([^']*)' and person '([^']*)'
 
 
 def of_others(text: str, ours: Container[str]) -> str:
-    """What SUMO has printed, without collisions among people who are where we move them.
+    """Return what SUMO has printed, without collisions among people who are where we move them.
 
     Its books have all of them on one lane, whose beginning is where somebody new appears.
 

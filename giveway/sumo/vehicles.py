@@ -97,7 +97,7 @@ class SumoVehicles:
         return self._bodies(others) if others else NO_VEHICLES
 
     def _bodies(self, names: Sequence[str]) -> BackgroundVehicles:
-        """Where the vehicles are, at least one, and what they are like."""
+        """Return where the vehicles are, at least one, and what they are like."""
         vehicle, ids = self._vehicle, tuple(names)
         for name in ids:
             if name not in self._shapes:
@@ -137,7 +137,7 @@ class SumoVehicles:
         )
 
     def on_a_road(self, name: str) -> bool:
-        """Whether the vehicle is on a lane outside of junctions."""
+        """Return whether the vehicle is on a lane outside of junctions."""
         road = self._vehicle.getRoadID(name)
         return bool(road) and not road.startswith(":")
 
@@ -156,7 +156,7 @@ class SumoVehicles:
         ]
 
     def parked(self, name: str) -> bool:
-        """Whether the vehicle stands beside the road."""
+        """Return whether the vehicle stands beside the road."""
         return bool(self._vehicle.isStoppedParking(name))
 
     def edges_of_entry(self, but: Collection[str]) -> set[str]:
@@ -224,7 +224,7 @@ class SumoVehicles:
         return str(found[0]) if found else ""
 
     def deceleration(self, name: str) -> float:
-        """How hard the vehicle's driver brakes [m/s^2]."""
+        """Return how hard the vehicle's driver brakes [m/s^2]."""
         return float(self._vehicle.getDecel(name))
 
     def time_loss(self, name: str) -> float:

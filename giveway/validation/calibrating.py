@@ -45,7 +45,7 @@ class Fit:
 
     @property
     def improves(self) -> bool:
-        """Whether it is better by more than the choice of clips explains."""
+        """Return whether it is better by more than the choice of clips explains."""
         return self.high < 0.0
 
 
@@ -208,6 +208,6 @@ def _judged(
 
 
 def _touching(clips: Sequence[Clip], parameters: VciParameters, protocol: Protocol) -> int:
-    """How many touch a vehicle in replays of whole clips by the model."""
+    """Return how many touch a vehicle in replays of whole clips by the model."""
     table = contact_table(clips, parameters, protocol)
     return int(table.loc[table["predictor"] == VCI, "touching"].sum())

@@ -40,7 +40,7 @@ class Validation:
 
     @property
     def pedestrians(self) -> int:
-        """How many were recorded, in all clips."""
+        """Return how many were recorded, in all clips."""
         return sum(len(clip.ids) for clip in self.clips)
 
 

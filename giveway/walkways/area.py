@@ -33,7 +33,7 @@ def sidewalk_area(survey: Survey, place: shapely.Geometry) -> shapely.MultiPolyg
 
 
 def _joined(parts: list[shapely.Geometry]) -> shapely.MultiPolygon:
-    """What parts come to together: gaps closed, spits cut off."""
+    """Return what parts come to together: gaps closed, spits cut off."""
     closed = shapely.union_all(parts).buffer(_GAP, join_style="mitre")
     opened = closed.buffer(-_GAP - _SLIVER, join_style="mitre")
     area = opened.buffer(_SLIVER, join_style="mitre").simplify(_SIMPLE)

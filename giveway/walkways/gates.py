@@ -51,7 +51,7 @@ def track_of(side: float) -> int:
 
 
 def places(gates: Array, side: float) -> Array:
-    """Where (k, 2) [m] somebody on ``side`` [-1, 1] walks through each gate."""
+    """Return where (k, 2) [m] somebody on ``side`` [-1, 1] walks through each gate."""
     return gates[:, 0:2] + side * gates[:, 2:4]
 
 

@@ -105,7 +105,7 @@ class Interior:
         return self._round(order, start[0, :2], end[0, :2], width)
 
     def _sees(self, a: Array, b: Array) -> bool:
-        """Whether the straight line between two points is inside."""
+        """Return whether the straight line between two points is inside."""
         return bool(self._room.covers(shapely.LineString([a, b])))
 
     def _inside(self, place: Array) -> Array:

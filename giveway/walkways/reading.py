@@ -162,7 +162,7 @@ class _Reader:
 
 
 def _admits(lane: dict[str, str], vehicle_class: str) -> bool:
-    """Whether a lane's ``allow`` or ``disallow`` lets a class use it, as SUMO reads them."""
+    """Return whether a lane's ``allow`` or ``disallow`` lets a class use it, as SUMO reads them."""
     allow = lane.get("allow")
     if allow:
         return allow == "all" or vehicle_class in allow.split()

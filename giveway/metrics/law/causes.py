@@ -84,7 +84,7 @@ def stops_without_cause(
 
 
 def owed_to(drive: Drive, encounters: Sequence[Encounter]) -> list[Owed]:
-    """Where and when the ego owed somebody the way.
+    """Return where and when the ego owed somebody the way.
 
     Args:
         drive: the ego's.
@@ -98,7 +98,7 @@ def owed_to(drive: Drive, encounters: Sequence[Encounter]) -> list[Owed]:
 
 
 def _sight(drive: Drive, areas: Sequence[Area], front: float) -> float:
-    """How far ahead a vehicle keeps the ego from leaving what it has to keep free [m]."""
+    """Return how far ahead a vehicle keeps the ego from leaving what it has to keep free [m]."""
     length = drive.shape.length
     kept_free = [(area.entry, area.leave) for area in areas]
     kept_free += [(place.entry, place.exit + length) for place in drive.way.junctions]
@@ -107,7 +107,7 @@ def _sight(drive: Drive, areas: Sequence[Area], front: float) -> float:
 
 
 def _foes(drive: Drive, front: float) -> float:
-    """How far ahead of its ``front`` [m] foes pass for whom the ego waits [m].
+    """Return how far ahead of its ``front`` [m] foes pass for whom the ego waits [m].
 
     As far as the junction goes in which or before which it stands: from where a network lets
     vehicles wait inside, it may be 17 m to where ways cross.
@@ -117,12 +117,12 @@ def _foes(drive: Drive, front: float) -> float:
 
 
 def _at(place: JunctionOnWay, front: float) -> bool:
-    """Whether the front is in a junction, or right before it."""
+    """Return whether the front is in a junction, or right before it."""
     return place.entry - SIGHT <= front < place.exit
 
 
 def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple[Mask, float]]:
-    """When (T,) there was a cause of a stand, and how long [s] before that it counts."""
+    """Return when (T,) there was a cause of a stand, and how long [s] before that it counts."""
     time, front = drive.ego.time, stand.front
     for entry, there in owed:
         if front <= entry <= front + SIGHT:

@@ -49,7 +49,7 @@ class Encounter(NamedTuple):
 
     @property
     def failed(self) -> bool:
-        """Whether the ego failed to yield."""
+        """Return whether the ego failed to yield."""
         return self.too_early > 0.0
 
 
@@ -96,7 +96,7 @@ def _comes(speed: Array, fastest: float, time: Array) -> Array:
 
 
 def _leaves(drive: Drive, walk: Walk, to_leave: Array, end: int) -> float:
-    """When [s] a person whose record ``end`` is the first without a claim gave it up."""
+    """Return when [s] a person whose record ``end`` is the first without a claim gave it up."""
     time = drive.ego.time[walk.steps]
     if end == len(time):
         return float(time[-1])
@@ -135,7 +135,7 @@ def pushed_back(drive: Drive, area: Area, walk: Walk) -> list[PushedBack]:
 
 
 def _goes_back_anyway(drive: Drive, area: Area, walk: Walk, first: int, last: int) -> float:
-    """How far [m] a person goes back in the twin about the records ``first`` to ``last``."""
+    """Return how far [m] a person goes back in the twin about the records ``first`` to ``last``."""
     twin = drive.undisturbed
     if twin is None:
         return 0.0
@@ -163,7 +163,7 @@ def _may_push(drive: Drive, walk: Walk) -> NDArray[np.bool_]:
 
 
 def waiting_time(drive: Drive, found: Encounter) -> float:
-    """How long [s] somebody stood although the ego had to let them pass."""
+    """Return how long [s] somebody stood although the ego had to let them pass."""
     steps = found.walk.steps
     lasting = np.append(np.diff(drive.ego.time), 0.0)[steps]
     return float(lasting[found.owed & (found.walk.speed < drive.stop_speed)].sum())

@@ -145,7 +145,7 @@ def ledger(drive: Drive, vehicles: Sequence[VehicleContact] = ()) -> Ledger:
 
 
 def count(events: Iterable[Event]) -> dict[str, int]:
-    """How many events there are of each kind, in the order of their first."""
+    """Return how many events there are of each kind, in the order of their first."""
     found: dict[str, int] = {}
     for event in events:
         found[event.kind] = found.get(event.kind, 0) + 1

@@ -49,7 +49,7 @@ def red_lights(drive: Drive) -> list[RedLight]:
 
 
 def _since(drive: Drive, line: StopLine, time: float) -> float:
-    """When [s] the line's light got the colour that it has at ``time`` [s]."""
+    """Return when [s] the line's light got the colour that it has at ``time`` [s]."""
     mine = drive.signals.system == line.system
     changes = drive.signals.time[mine]
     changes = changes[changes <= time + 1e-6]
