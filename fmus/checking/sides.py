@@ -22,12 +22,12 @@ UNEQUAL = 1.15  # a factor between the two masses that is worth a remark
 
 @dataclass(frozen=True)
 class Side:
-    """What the tests show of one side.
+    """The result of the tests for one side, driving or braking.
 
     Attributes:
-        mass: as which it seems to move [kg].
+        mass: Mass as which it seems to move [kg].
         lag: Lag of its actuator, first order [s].
-        delay: its dead time [s].
+        delay: Dead time of its actuator [s].
     """
 
     mass: float
@@ -88,7 +88,7 @@ def side_remarks(sides: Sides, step: float, profile: VehicleProfile | None) -> l
     """Return what the user should know of the two sides, one line each.
 
     Args:
-        sides: as fitted.
+        sides: Fits of both sides.
         step: Step of the controller [s]: lags that differ by less are the same.
         profile: Profile of the vehicle, for the line that mends it.
     """

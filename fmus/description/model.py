@@ -44,7 +44,7 @@ class Unit:
     """A unit as an FMU defines it: SI = factor * raw + offset.
 
     Attributes:
-        name: as the FMU writes it.
+        name: Name as the FMU writes it.
         dimension: Exponents of the base units; None: the FMU does not tell.
     """
 

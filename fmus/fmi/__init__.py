@@ -44,8 +44,8 @@ def load(
     """Load an FMU's library, ready to be started.
 
     Args:
-        model: as read.
-        interface: the one of its interfaces that is to run.
+        model: Model description of the FMU.
+        interface: Interface that is to run.
         folder: Folder with the extracted FMU; the caller removes it after :meth:`Instance.close`.
         binary: this platform's library, by its name in the archive.
         solver: Solver of Model Exchange; None: CVode where it runs.

@@ -105,7 +105,7 @@ class Cvode:
         self._require("CVodeSetMinStep", c_double(SMALLEST * max(1.0, abs(time))))
 
     def expect_events(self) -> None:
-        """Nothing to do: CVode always starts with small steps."""
+        """Do nothing: CVode always starts with small steps."""
 
     def step(self, stop: float) -> float:  # noqa: D102
         self._undefined = ""

@@ -28,7 +28,7 @@ class SpeedSetpoint(Axis):
 
 
 class Inputs(Table):
-    """How the FMU is driven; one of: force, drive_force and brake_force, acceleration, throttle and
+    """The inputs that drive the FMU, one of: force, drive_force and brake_force, acceleration, throttle and
     brake, speed_setpoint.
     """  # noqa: D205 - one sentence
 

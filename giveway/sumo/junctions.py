@@ -1,4 +1,4 @@
-"""The junctions of the loaded network: which ways lead through one, and who lets whom go first."""
+"""The junctions of the loaded network: the movements through them, and their priorities."""
 
 from functools import cached_property
 from pathlib import Path
@@ -27,7 +27,7 @@ class Movement(NamedTuple):
 
     @property
     def has_stop_sign(self) -> bool:
-        """Return whether one has to stand before it first; no light governs it."""
+        """True if a vehicle has to stop before the link, and no light governs it."""
         return self.state in ("s", "w") and not self.system
 
 
@@ -47,11 +47,11 @@ class Junctions:
         self._known: dict[str, dict[int, Movement]] = {}
 
     def at(self, inside: str) -> dict[int, Movement]:
-        """:meth:`of` the junction inside which a link ends with the lane ``inside``."""
+        """Return :meth:`of` the junction inside which a link ends with the lane ``inside``."""
         return self.of(self._junctions.get(inside, ""))
 
     def of(self, junction: str) -> dict[int, Movement]:
-        """All movements of vehicles through a junction, by number.
+        """Return all movements of vehicles through a junction, by number.
 
         Raises:
             ScenarioError: the network's file cannot be read (any more).

@@ -16,7 +16,7 @@ class Light(NamedTuple):
 
 
 class Passage(NamedTuple):
-    """A lane path's way through a junction."""
+    """The part of a lane path inside a junction."""
 
     entry: float  # [m] station of the line before it
     exit: float  # [m] station of the next edge's lane
@@ -30,7 +30,7 @@ class Passage(NamedTuple):
 
 
 class SpeedLimit(NamedTuple):
-    """From where on a lane path another lane's limit holds."""
+    """A station of a lane path from which another lane's limit holds."""
 
     station: float  # [m] along the lane path
     speed: float  # [m/s]
@@ -38,7 +38,7 @@ class SpeedLimit(NamedTuple):
 
 @dataclass(frozen=True)
 class LanePath:
-    """What lies along a route: the lanes' centre line, the traffic lights and limits on it."""
+    """The path along a route: the lanes' centre line, the traffic lights and limits on it."""
 
     points: Array  # (k, 2) [m]
     lights: tuple[Light, ...]

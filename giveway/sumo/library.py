@@ -7,7 +7,7 @@ from giveway.errors import InstallationError
 
 
 def import_libsumo() -> Any:
-    """The module, which has no types.
+    """Import and return libsumo, which has no types.
 
     Raises:
         InstallationError: it cannot be imported.
@@ -23,7 +23,7 @@ def import_libsumo() -> Any:
 
 
 def direct(sumo: Any, domain: str, function: str) -> Any:
-    """``sumo.domain.function`` without the wrapper's own call, which takes as long as the answer.
+    """Return ``sumo.domain.function`` without its wrapper, which doubles the time of a call.
 
     Args:
         sumo: the libsumo module.

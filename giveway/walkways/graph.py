@@ -1,4 +1,4 @@
-"""How the lanes around a junction hang together: the graph of its walkingareas and crossings.
+"""The connections of the lanes around a junction: the graph of its walkingareas and crossings.
 
 A *portal* is where a lane or a crossing meets a walkingarea. People go from portal to portal
 inside a walkingarea, and along a crossing from its one portal to the other. Lanes outside of
@@ -30,7 +30,7 @@ class End(NamedTuple):
 
 @dataclass(frozen=True)
 class Portal:
-    """Where an end of a lane or crossing meets a walkingarea."""
+    """A place where an end of a lane or crossing meets a walkingarea."""
 
     end: End
     area: str
@@ -38,7 +38,7 @@ class Portal:
 
 
 class Step(NamedTuple):
-    """What is left to go from a portal, and the portal that comes next."""
+    """The remaining distance from a portal, and the portal that comes next."""
 
     distance: float  # [m]
     portal: int  # index; -1: none, this is the target

@@ -145,7 +145,7 @@ class Interior:
 
     @cached_property
     def _visible(self) -> NDArray[np.bool_]:
-        """(k, k) whether two corners see each other."""
+        """Return a matrix (k, k): whether two corners see each other."""
         near = self._near_corners
         k = len(near)
         ends = np.stack([np.repeat(near, k, axis=0), np.tile(near, (k, 1))], axis=1)

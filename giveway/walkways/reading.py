@@ -63,7 +63,7 @@ class Link:
 
 @dataclass
 class Survey:
-    """What the network file says of walking; edges by id.
+    """The part of a network file that concerns walking; edges are listed by id.
 
     Attributes:
         edges: normal edges with a lane for pedestrians.
