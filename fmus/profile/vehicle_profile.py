@@ -28,9 +28,11 @@ class SpeedSetpoint(Axis):
 
 
 class Inputs(Table):
-    """The inputs that drive the FMU, one of: force, drive_force and brake_force, acceleration, throttle and
-    brake, speed_setpoint.
-    """  # noqa: D205 - one sentence
+    """The inputs that drive the FMU.
+
+    One of these is given: force, drive_force and brake_force, acceleration, throttle and brake,
+    speed_setpoint.
+    """
 
     force: Axis | None = None  # [N] forwards positive
     drive_force: Axis | None = None  # [N] never negative

@@ -55,7 +55,7 @@ class Lanes:
         start: float = 0.0,
         by: Mapping[int, int] | None = None,
     ) -> LanePath:
-        """Return the path along ``edges``, junctions included, with as few lane changes as it takes.
+        """Return the path along ``edges``, junctions included, with few lane changes.
 
         Args:
             edges: the route.
