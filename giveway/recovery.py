@@ -1,4 +1,4 @@
-"""After a crash of native code: the rows that the run had recorded, as a result like any other."""
+"""Recovery after a crash of native code: the recorded rows become a result like any other."""
 
 import shutil
 import tomllib

@@ -1,4 +1,4 @@
-"""How scenarios are found: by the name of a bundled one, by folder, or by .sumocfg file."""
+"""Finding scenarios: by the name of a bundled one, by folder, or by .sumocfg file."""
 
 import difflib
 import os

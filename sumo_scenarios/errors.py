@@ -1,4 +1,4 @@
-"""What can go wrong here, one class per thing a user can do something about."""
+"""The errors of this package, one class per thing that a user can do something about."""
 
 
 class ScenarioError(Exception):

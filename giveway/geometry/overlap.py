@@ -1,4 +1,4 @@
-"""Whether the rectangles of vehicles overlap."""
+"""The overlap of vehicles' rectangles."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +14,8 @@ def rectangles_overlap(one: Array, other: Array, deeper_than: float = TOUCH) -> 
 
     Args:
         one: (..., 5) x and y [m] of the front's middle, heading [rad], length and width [m].
-        other: likewise; the leading axes of both are broadcast.
-        deeper_than: [m] by which they have to reach into each other.
+        other: Rectangles in the same form; the leading axes of both are broadcast.
+        deeper_than: Depth [m] by which they have to reach into each other.
     """
     x, y, psi, length, width = np.moveaxis(one, -1, 0)
     x_2, y_2, psi_2, length_2, width_2 = np.moveaxis(other, -1, 0)
