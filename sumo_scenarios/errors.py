@@ -2,7 +2,7 @@
 
 
 class ScenarioError(Exception):
-    """A scenario cannot be found or read; the message says what was looked for and what to do."""
+    """A scenario cannot be found or read. The message tells what was expected and what to do."""
 
 
 class BuildError(ScenarioError):

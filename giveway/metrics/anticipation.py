@@ -50,7 +50,7 @@ def anticipation(
         ego: Track of the ego, T instants.
         crowd: Track of the crowd, R records of n pedestrians in time order.
         shape: Rectangle of the ego.
-        body_Radius: radius of a pedestrian [m].
+        body_radius: Radius of a pedestrian [m].
         reference_speed: Reference speed v_r [m/s]; None: the lanes' limits count.
         stop_speed: Speed [m/s] below which the ego stands.
 

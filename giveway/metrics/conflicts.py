@@ -56,7 +56,7 @@ def proximity(
         ego: Track of the ego, T instants.
         crowd: Track of the crowd, R records.
         shape: Rectangle of the ego.
-        body_Radius: radius of a pedestrian [m].
+        body_radius: Radius of a pedestrian [m].
 
     Raises:
         ValueError: a record points outside the ego's track.
@@ -104,7 +104,7 @@ def conflicts(
         ego: Track of the ego, T instants.
         crowd: Track of the crowd.
         shape: Rectangle of the ego.
-        body_Radius: radius of a pedestrian [m].
+        body_radius: Radius of a pedestrian [m].
         stop_speed: Speed [m/s] above which the ego moves.
 
     Raises:

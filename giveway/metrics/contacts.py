@@ -50,7 +50,7 @@ def contacts(
         ego: Track of the ego, T instants.
         crowd: Track of the crowd, R records of n pedestrians in time order.
         shape: Rectangle of the ego.
-        body_Radius: radius of a pedestrian [m].
+        body_radius: Radius of a pedestrian [m].
         clearance: Clearance (R,) [m] of :func:`giveway.metrics.proximity`; below zero is a contact.
 
     Returns:

@@ -119,8 +119,8 @@ def gave_way(
     influence, but lets it go first.
 
     Args:
-        run: (n,) Who was first in the run, as in :class:`Encroachment`.
-        twin: (n,) Who was first in the twin.
+        run: Road user (n,) who was first in the run, as in :class:`Encroachment`.
+        twin: Road user (n,) who was first in the twin.
         crossed: (n,) Whether the person counts.
     """
     met = crossed & (run != "")

@@ -66,7 +66,7 @@ def encroachment(
         ego: Track of the ego, T instants.
         crowd: Track of the crowd, R records of n pedestrians.
         shape: Rectangle of the ego.
-        body_Radius: radius of a pedestrian [m].
+        body_radius: Radius of a pedestrian [m].
         clock: (K,) [s] control instants to which the crowd's records belong, the first T of them
             the ego's; None: the ego's.
 

@@ -81,7 +81,7 @@ def pedestrian_metrics(
         ego: Track of the ego, T instants.
         crowd: Track of the crowd, R records of n pedestrians in time order.
         shape: Rectangle of the ego.
-        body_Radius: radius of a pedestrian [m].
+        body_radius: Radius of a pedestrian [m].
 
     Returns:
         n rows in the order of ``crowd.ids``; a pedestrian who was never seen has nan throughout,

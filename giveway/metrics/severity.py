@@ -75,7 +75,7 @@ def severities(
         ego: Track of the ego, T instants.
         crowd: Track of the crowd, R records of n pedestrians.
         shape: Rectangle of the ego.
-        body_Radius: radius of a pedestrian [m].
+        body_radius: Radius of a pedestrian [m].
         stop_speed: Speed [m/s] above which the ego moves.
         per_pedestrian: Table of ``pedestrian_metrics``.
 
