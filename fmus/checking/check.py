@@ -100,7 +100,7 @@ def check(
         _halve(report, opener, fmu_step or step_size)
     traces = report.traces
     if "response" in traces:
-        report.findings.append(observe.pace(traces["response"]))
+        report.findings.append(observe.time_per_step(traces["response"]))
     if traces:
         report.findings.append(observe.warnings(traces))
     return report

@@ -260,7 +260,7 @@ def actuator_lag(model: Fit | None, step: float, expected: Expected) -> Finding:
     )  # fmt: skip
 
 
-def pace(response: Trace) -> Finding:
+def time_per_step(response: Trace) -> Finding:
     """Measure how long a step takes."""
     name, cost = "time per step", 1e6 * response.cost
     text = f"{np.median(cost):.0f} us (median), {np.quantile(cost, 0.95):.0f} us (95 %)"

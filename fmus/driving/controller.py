@@ -65,18 +65,18 @@ class ControllerFmu:
         Raises:
             FmuStepError: it does not do the step.
         """
-        pace, instance = self.prepared.pace, self._instance
-        if self._steps % pace.stretch == 0:
+        step_plan, instance = self.prepared.step_plan, self._instance
+        if self._steps % step_plan.stretch == 0:
             for index, value in enumerate(told):
                 instance.inputs[index] = value
-            first = self._steps // pace.stretch * pace.substeps
-            for number in range(first, first + pace.substeps):
-                status = instance.tick(number * pace.step, pace.step)
+            first = self._steps // step_plan.stretch * step_plan.substeps
+            for number in range(first, first + step_plan.substeps):
+                status = instance.tick(number * step_plan.step, step_plan.step)
                 if status > WARNING:
                     said = instance.messages.take() or "without a message"
                     raise FmuStepError(
-                        f"{self.prepared.path}: no step from {number * pace.step:.10g} s to "
-                        f"{(number + 1) * pace.step:.10g} s: the FMU returned "
+                        f"{self.prepared.path}: no step from {number * step_plan.step:.10g} s to "
+                        f"{(number + 1) * step_plan.step:.10g} s: the FMU returned "
                         f"'{STATUS_NAMES[status]}', {said}"
                     )
             self.answer = instance.outputs[0]

@@ -51,7 +51,7 @@ class IsolatedVehicle(Vehicle):
         self.warnings = []
         self._start_timeout = prepared.profile.fmu.start_timeout
         self._step_timeout = prepared.profile.fmu.step_timeout
-        self._stretch = prepared.pace.stretch
+        self._stretch = prepared.step_plan.stretch
         self.record = prepared.wiring.record
         self.knows_grades = prepared.wiring.grade is not None
         self._steps, self._force = 0, 0.0

@@ -15,8 +15,8 @@ from fmus.description.reading import read_model
 from fmus.profile.controller_draft import draft_controller
 from fmus.profile.controller_profile import ControllerProfile
 from fmus.profile.controller_wiring import ControllerWiring, wire_controller
-from fmus.profile.pace import Pace, pace_of
 from fmus.profile.preparation import Bound, bounds_of
+from fmus.profile.step_plan import StepPlan, step_plan_of
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class PreparedController:
         model: Model of the FMU.
         profile: Profile by which it is asked.
         wiring: Variables for its inputs and its answer.
-        pace: Relation of the control steps to the FMU's steps.
+        step_plan: Relation of the control steps to the FMU's steps.
         bounds: Bounds of the inputs.
         step_size: Step size between two questions [s].
         binary: this platform's binary in the archive.
@@ -36,7 +36,7 @@ class PreparedController:
     model: Model
     profile: ControllerProfile
     wiring: ControllerWiring
-    pace: Pace
+    step_plan: StepPlan
     bounds: tuple[Bound, ...]
     step_size: float
     binary: str
@@ -79,7 +79,7 @@ def prepare_controller(
         model=model,
         profile=profile,
         wiring=wiring,
-        pace=pace_of(path, profile.fmu.step, interface, model.default_step, step_size),
+        step_plan=step_plan_of(path, profile.fmu.step, interface, model.default_step, step_size),
         bounds=bounds_of(wiring.inputs),
         step_size=step_size,
         binary=binary_of(model, interface),

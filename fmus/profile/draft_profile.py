@@ -12,7 +12,6 @@ from fmus.description.model import Kind, Model, Variable
 from fmus.errors import FmuProfileError
 from fmus.profile.draft import Draft, Entry, Line, toml_value
 from fmus.profile.matching import ROLES, Guess, guesses, unambiguous
-from fmus.profile.pace import divides
 from fmus.profile.questions import (
     axis_question,
     braking_question,
@@ -23,6 +22,7 @@ from fmus.profile.questions import (
     signed_question,
     unit_question,
 )
+from fmus.profile.step_plan import divides
 from fmus.profile.vehicle_profile import VehicleProfile, make_profile
 from fmus.text import listed, printable
 

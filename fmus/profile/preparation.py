@@ -19,7 +19,7 @@ from fmus.errors import FmuVariableError
 from fmus.profile.bundled import BUNDLED_PROFILE, is_bundled
 from fmus.profile.commands import Command, make_command
 from fmus.profile.draft_profile import draft_profile, require_confident
-from fmus.profile.pace import Pace, pace_of
+from fmus.profile.step_plan import StepPlan, step_plan_of
 from fmus.profile.vehicle_profile import VehicleProfile
 from fmus.profile.wires import Wire
 from fmus.profile.wiring import Wiring, wire
@@ -43,7 +43,7 @@ class Prepared:
         profile: Profile by which it is driven.
         wiring: Variables for its inputs and outputs.
         command: Inverse map.
-        pace: Relation of the controller's steps to the FMU's steps.
+        step_plan: Relation of the controller's steps to the FMU's steps.
         bounds: Bounds of the inputs.
         step_size: Step size of the controller [s].
         binary: this platform's binary in the archive.
@@ -54,7 +54,7 @@ class Prepared:
     profile: VehicleProfile
     wiring: Wiring
     command: Command
-    pace: Pace
+    step_plan: StepPlan
     bounds: tuple[Bound, ...]
     step_size: float
     binary: str
@@ -100,7 +100,9 @@ def prepare(
         profile=profile,
         wiring=wiring,
         command=make_command(profile, wiring.inputs, step_size),
-        pace=pace_of(path, profile.fmu.step, wiring.interface, model.default_step, step_size),
+        step_plan=step_plan_of(
+            path, profile.fmu.step, wiring.interface, model.default_step, step_size
+        ),
         bounds=bounds_of(wiring.inputs),
         step_size=step_size,
         binary=binary_of(model, wiring.interface),

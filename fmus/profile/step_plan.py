@@ -11,7 +11,7 @@ _MOST = 1_000_000  # substeps: more would take minutes
 
 
 @dataclass(frozen=True)
-class Pace:
+class StepPlan:
     """The plan: ``substeps`` FMU steps per control step, or ``stretch`` control steps per FMU step.
 
     Attributes:
@@ -25,14 +25,14 @@ class Pace:
     stretch: int = 1
 
 
-def make_pace(control_step: float, fmu_step: float | None) -> Pace:
+def make_step_plan(control_step: float, fmu_step: float | None) -> StepPlan:
     """Return the plan for a control step [s] and the FMU's own step [s], by default the same.
 
     Raises:
         FmuProfileError: neither is a whole multiple of the other, or there are too many substeps.
     """
     if fmu_step is None:
-        return Pace(control_step)
+        return StepPlan(control_step)
     if fmu_step * _MOST < control_step:
         raise FmuProfileError(
             f"an FMU step of {fmu_step:g} s is more than {_MOST} times smaller than the control "
@@ -40,10 +40,10 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
         )
     substeps = max(1, round(control_step / fmu_step))
     if abs(substeps * fmu_step - control_step) <= _FIT * control_step:
-        return Pace(control_step / substeps, substeps=substeps)
+        return StepPlan(control_step / substeps, substeps=substeps)
     stretch = max(1, round(fmu_step / control_step))
     if abs(stretch * control_step - fmu_step) <= _FIT * fmu_step:
-        return Pace(stretch * control_step, stretch=stretch)
+        return StepPlan(stretch * control_step, stretch=stretch)
     near = control_step / max(1, round(control_step / fmu_step))
     raise FmuProfileError(
         f"an FMU step of {fmu_step:g} s does not fit the control step of {control_step:g} s; "
@@ -52,13 +52,13 @@ def make_pace(control_step: float, fmu_step: float | None) -> Pace:
     )
 
 
-def pace_of(
+def step_plan_of(
     path: Path,
     wanted: float | None,
     interface: Interface,
     default: float | None,
     step_size: float,
-) -> Pace:
+) -> StepPlan:
     """Return the plan for the profile's step, or else for a step that the FMU can do.
 
     Args:
@@ -91,7 +91,7 @@ def pace_of(
                 "write the length that it does as step in [fmu] of the profile"
             )
     try:
-        return make_pace(step_size, wanted)
+        return make_step_plan(step_size, wanted)
     except FmuProfileError as error:
         raise FmuProfileError(f"{path}: {error}") from None
 
@@ -106,7 +106,7 @@ def divides(part: float, whole: float) -> bool:
 def step_to_run_with(fmu_step: float, usual: float = 0.05) -> str:
     """Return the flag that a run needs for an FMU's step [s]; empty if the usual one fits."""
     try:
-        make_pace(usual, fmu_step)
+        make_step_plan(usual, fmu_step)
     except FmuProfileError:
         return f" and run with --time-step {fmu_step:g}"
     return ""
