@@ -2,7 +2,7 @@
 
 A first line is headless if it opens with a relative clause ("Which ..."), a preposition ("Of ..."),
 or a word that refers to other text ("Likewise", "None"). An entry of ``Args`` is genitive if a
-preposition follows its colon ("config: of the ego."). CONTRIBUTING.md says how to write instead.
+preposition follows its colon ("config: of the ego."). CONTRIBUTING.md has the rules of writing.
 
     python .ci/words.py                               lists everything in the five packages
     python .ci/words.py giveway/ego --headless 2 --genitive 0     fails above 2 % or above 0

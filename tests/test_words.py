@@ -1,12 +1,16 @@
-"""The script that counts sentences without a head, on sentences written for it."""
+"""The script that counts sentences without a head, and the glossary's words in the code."""
 
+import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-_SCRIPT = Path(__file__).parents[1] / ".ci/words.py"
+_ROOT = Path(__file__).parents[1]
+_SCRIPT = _ROOT / ".ci/words.py"
+_PACKAGES = ("giveway", "controller", "pedestrian_model", "fmus", "sumo_scenarios")
 
 _MODULE = '''
 """The crowd of one scenario."""
@@ -72,3 +76,39 @@ def test_only_a_limit_that_is_exceeded_fails(
 ) -> None:
     done, _ = _words(tmp_path, *limits, "--quiet", first="Of people.", crowd="of the scenario.")
     assert done == code
+
+
+def _glossary() -> list[list[str]]:
+    """The rows of the glossary's tables: term, meaning, unit, and what it is not called."""
+    text = (_ROOT / "docs/glossary.md").read_text(encoding="utf-8")
+    rows = [line.strip("|").split("|") for line in text.splitlines() if line.startswith("|")]
+    cells = [[cell.strip() for cell in row] for row in rows]
+    return [row for row in cells if row[0] != "term" and set(row[0]) != {"-"}]
+
+
+def _identifiers(file: Path) -> set[str]:
+    """The names that a module defines or uses, and its own."""
+    nodes = ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+    attributes = ("name", "id", "attr", "arg", "asname")
+    found = {getattr(node, attribute, None) for node in nodes for attribute in attributes}
+    return {name for name in found if isinstance(name, str)} | {file.stem}
+
+
+def test_the_glossary_has_one_complete_row_per_term() -> None:
+    rows = _glossary()
+    assert {len(row) for row in rows} == {4}
+    terms = [row[0] for row in rows]
+    assert sorted(set(terms)) == sorted(terms)
+    assert all(row[1] for row in rows)
+
+
+def test_no_identifier_is_a_word_that_the_glossary_forbids() -> None:
+    forbidden = {twin: row[0] for row in _glossary() for twin in re.findall(r"`([^`]+)`", row[3])}
+    assert forbidden
+    found = [
+        f"{file.relative_to(_ROOT)}: {name}; call it {forbidden[name]}"
+        for package in _PACKAGES
+        for file in sorted((_ROOT / package).rglob("*.py"))
+        for name in sorted(_identifiers(file) & forbidden.keys())
+    ]
+    assert found == []
