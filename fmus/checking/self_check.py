@@ -50,7 +50,7 @@ class Convergence:
 
     Attributes:
         step: the FMU's, as the run would take it [s].
-        finer: what it was compared with [s]; None: the FMU can do no finer steps.
+        finer: Step [s] that it was compared with; None if the FMU can do no finer steps.
         problem: why ``step`` is too coarse, one clause; empty if it is not.
         advised: the largest step that converges [s]; None: none was found, or none is needed.
         traces: Traces of the manoeuvre from the start speed: with ``step`` and ``finer``, where
@@ -78,7 +78,7 @@ def require_converged(
         opener: makes the vehicle for a step of its FMU; how long a force is held stays the same.
         fmu_step: the FMU's in the run [s].
         path: Path of the FMU, for messages.
-        force: that drives and brakes [N].
+        force: Force [N] that drives and brakes.
         start_speed: Start speed of the run [m/s]; the manoeuvre is driven from it and from rest.
 
     Raises:

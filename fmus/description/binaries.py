@@ -112,7 +112,7 @@ def misfit(start: bytes, wanted: Platform) -> str:
 
     Args:
         start: its first bytes, up to :data:`START`.
-        wanted: where it is to run.
+        wanted: Platform on which it is to run.
     """
     try:
         system, processors, library = _header(start)

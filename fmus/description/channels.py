@@ -17,7 +17,7 @@ def find_channel(model: Model, place: str, name: str) -> Channel:
 
     Args:
         model: Model of the FMU.
-        place: where the name stands, for errors.
+        place: Place of the name in the profile, for errors.
         name: ``x``, or ``x[2]`` for an array's second element.
 
     Raises:

@@ -35,8 +35,8 @@ class Agreement:
         """Take over one step, and return how position and speed have come apart, or None.
 
         Args:
-            moved: change of the position [m].
-            way: integral of the speed, by the trapezoid rule [m].
+            moved: Change of the position [m].
+            way: Integral of the speed, by the trapezoid rule [m].
             slack: Largest error of that position [m].
             duration: Duration of the step [s].
 

@@ -12,7 +12,7 @@ class Guard:
 
     Args:
         limits: Limits of the profile.
-        names: what the FMU calls its speed, position and acceleration.
+        names: The FMU's names of its speed, position and acceleration.
     """
 
     def __init__(self, limits: Limits, names: dict[str, str]) -> None:
@@ -27,9 +27,9 @@ class Guard:
         """Return the fault of a new state as a message, or an empty text.
 
         Args:
-            position: [m].
-            speed: [m/s].
-            acceleration: [m/s2].
+            position: Position [m].
+            speed: Speed [m/s].
+            acceleration: Acceleration [m/s2].
             jump: Difference between the position and the integrated speed [m].
             at: time [s].
         """
@@ -75,10 +75,10 @@ class Guard:
         """Return a warning if the state stands still although it is driven, or an empty text.
 
         Args:
-            changed: whether the motion has changed in this step.
-            force: held over it [N].
-            speed: [m/s].
-            step: [s].
+            changed: True if the motion has changed in this step.
+            force: Force held over the step [N].
+            speed: Speed [m/s].
+            step: Step [s].
             at: time [s].
         """
         if changed or (speed == 0.0 and force < DRIVEN) or abs(force) < DRIVEN:

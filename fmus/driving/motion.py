@@ -21,9 +21,9 @@ class Motion:
         prepared: the vehicle.
 
     Attributes:
-        position: [m].
-        speed: [m/s].
-        acceleration: [m/s2].
+        position: Position [m].
+        speed: Speed [m/s].
+        acceleration: Acceleration [m/s2].
         warnings: Warnings for the user.
     """
 

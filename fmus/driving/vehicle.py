@@ -29,7 +29,7 @@ class VehicleFmu(Drivable):
     Args:
         path: the .fmu file.
         step_size: Step size of the controller [s].
-        profile: which variable plays which part; None: the shipped FMUs' own, or a draft from
+        profile: Roles of the FMU's variables; None: the shipped FMUs' own, or a draft from
             names and units if it leaves no doubt.
         start_values: further start values by variable name, set at every :meth:`start`.
 
@@ -99,8 +99,8 @@ class VehicleFmu(Drivable):
         """Begin (again) at time 0 with a new instance of the FMU.
 
         Args:
-            position: [m].
-            speed: [m/s]; an FMU without a parameter for it is driven up to it before time 0.
+            position: Position [m].
+            speed: Speed [m/s]; an FMU without a parameter for it is driven up to it before time 0.
 
         Raises:
             FmuStartError: the FMU refuses its start values, or does not start at this speed.

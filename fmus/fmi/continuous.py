@@ -83,7 +83,7 @@ class ContinuousSystem:
         """Write x' to an address.
 
         Args:
-            time: [s].
+            time: Time [s].
             x: address of the states.
             slope: address for the derivatives.
 
@@ -170,7 +170,7 @@ def locate(
         crossed: Function that tells whether it has happened at a time between the two.
         before: Time [s] at which it has not happened.
         after: Time [s] at which it has happened.
-        resolution: [s].
+        resolution: Resolution [s].
     """
     while after - before > resolution:
         middle = before + 0.5 * (after - before)

@@ -122,7 +122,7 @@ class Transfer:
 
     Attributes:
         view: one double per channel.
-        function, arguments: what to call at every step; returns a status.
+        function, arguments: Call of every step, which returns a status.
     """
 
     def __init__(self, calls: Calls, verb: str, channels: Sequence[Channel]) -> None:

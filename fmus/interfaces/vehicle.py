@@ -19,14 +19,14 @@ class Vehicle(ABC):
         path: Path of the FMU.
 
     Attributes:
-        position: [m] as of the last step.
-        speed: [m/s] as of the last step.
-        acceleration: [m/s2] as of the last step.
-        time: [s] the number of steps times the step size, never a running sum.
+        position: Position [m] as of the last step.
+        speed: Speed [m/s] as of the last step.
+        acceleration: Acceleration [m/s2] as of the last step.
+        time: Time [s]: the number of steps times the step size, never a running sum.
         step_size: Step size of the controller [s].
-        knows_grades: whether it has an input for the road's grade.
+        knows_grades: True if it has an input for the road's grade.
         record: Variables that the profile wants to have recorded.
-        recorded: values of the profile's ``record`` as of the last step, in the FMU's own units.
+        recorded: Values of the profile's ``record`` as of the last step, in the FMU's own units.
         warnings: Warnings for the user since the last start.
     """
 

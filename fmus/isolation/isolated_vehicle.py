@@ -25,8 +25,8 @@ class IsolatedVehicle(Vehicle):
 
     Args:
         path: the .fmu file.
-        step_size: [s].
-        profile: which variable plays which part, and the time-outs; None as for ``VehicleFmu``.
+        step_size: Step size [s].
+        profile: Roles of the FMU's variables, and time-outs; None as for ``VehicleFmu``.
         start_values: further start values by variable name.
 
     Raises:
@@ -61,8 +61,8 @@ class IsolatedVehicle(Vehicle):
         """Begin (again) at time 0, in a new process.
 
         Args:
-            position: [m].
-            speed: [m/s].
+            position: Position [m].
+            speed: Speed [m/s].
 
         Raises:
             FmuPlatformError: the FMU's binary cannot be loaded.

@@ -25,7 +25,7 @@ class LinuxHost:
         folder: temporary; the watchdog removes it when this process has ended.
 
     Attributes:
-        sound: see :class:`fmus.isolation.process_host.ProcessHost`.
+        sound: Flag, see :class:`fmus.isolation.process_host.ProcessHost`.
     """
 
     def __init__(self, path: Path, folder: Path) -> None:

@@ -24,7 +24,7 @@ class PortableHost:
         folder: temporary.
 
     Attributes:
-        sound: see :class:`fmus.isolation.process_host.ProcessHost`.
+        sound: Flag, see :class:`fmus.isolation.process_host.ProcessHost`.
     """
 
     def __init__(self, path: Path, folder: Path) -> None:

@@ -37,7 +37,7 @@ def spawn(
         module: name of the module in this package.
         arguments: Arguments of its ``main``: numbers and texts.
         folder: the vehicle's temporary folder.
-        output: where the interpreter prints.
+        output: File for the output of the interpreter.
         pass_fds: file descriptors that it inherits.
 
     Raises:

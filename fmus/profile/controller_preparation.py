@@ -61,7 +61,7 @@ def prepare_controller(
         path: the .fmu file.
         step_size: Step size between two questions [s].
         setup: Settings of the run, by the names of the profile's table ``setup`` [SI].
-        profile: which variable plays which part; None: a draft from names, if it leaves no doubt.
+        profile: Roles of the FMU's variables; None: a draft from names, if it leaves no doubt.
         start_values: further start values by variable name.
 
     Raises:

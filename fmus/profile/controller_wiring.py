@@ -45,7 +45,7 @@ def wire_controller(
 
     Args:
         model: Model of the FMU.
-        profile: which variable plays which part.
+        profile: Roles of the FMU's variables.
         setup: Settings of the run, by the names of the profile's table ``setup`` [SI].
         start_values: Start values by variable name; they come after the profile's own and
             ``setup``.

@@ -161,7 +161,7 @@ class Guess:
 
     Attributes:
         name_score: 10 for a name of the role, 9 with fillers, 6 for a part of it, 0 for the unit.
-        fits: whether its unit is of the role's dimension; None: it has no unit, or an unknown one.
+        fits: True if its unit is of the role's dimension; None without a known unit.
     """
 
     channel: Channel

@@ -78,7 +78,7 @@ def prepare(
     Args:
         path: the .fmu file.
         step_size: Step size of the controller [s].
-        profile: which variable plays which part; None: the shipped FMUs' own, or a draft from
+        profile: Roles of the FMU's variables; None: the shipped FMUs' own, or a draft from
             names and units if it leaves no doubt.
         start_values: further start values by variable name.
 

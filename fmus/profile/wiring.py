@@ -82,7 +82,7 @@ def wire(
 
     Args:
         model: Model of the FMU.
-        profile: which variable plays which part.
+        profile: Roles of the FMU's variables.
         start_values: Start values by variable name; they come after the profile's ``parameters``.
 
     Raises:

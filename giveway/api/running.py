@@ -51,7 +51,7 @@ def run(
         force: replace the results that are there.
         parquet: also write the tables as Parquet.
         pictures: also draw the state figure and the top view.
-        watcher: called with a ``Progress`` at every control step.
+        watcher: Function that is called with a ``Progress`` at every control step.
 
     Returns:
         The result. A run that was interrupted (Ctrl-C) returns too; see its ``ending``.

@@ -35,7 +35,7 @@ class Net:
 
     Attributes:
         file: File of the network.
-        offset: (2,) [m] that netconvert has added to projected coordinates.
+        offset: Offset (2,) [m] that netconvert has added to projected coordinates.
         projection: PROJ's parameters; "!" where there is none.
     """
 

@@ -13,7 +13,8 @@ def rectangles_overlap(one: Array, other: Array, deeper_than: float = TOUCH) -> 
     """Return whether rectangles overlap, pair by pair: no axis of either separates the two.
 
     Args:
-        one: (..., 5) x and y [m] of the front's middle, heading [rad], length and width [m].
+        one: Rectangles (..., 5): x and y [m] of the front's middle, heading [rad], length and width
+            [m].
         other: Rectangles in the same form; the leading axes of both are broadcast.
         deeper_than: Depth [m] by which they have to reach into each other.
     """

@@ -35,9 +35,9 @@ class EgoPath:
     """A polyline with its stations and headings.
 
     Attributes:
-        vertices: (k + 1, 2) [m].
-        stations: (k + 1,) [m] arc length at each vertex, from 0.
-        headings: (k,) [rad] of each segment.
+        vertices: Vertices (k + 1, 2) [m].
+        stations: Arc length (k + 1,) [m] at each vertex, from 0.
+        headings: Headings (k,) [rad] of each segment.
     """
 
     vertices: Array

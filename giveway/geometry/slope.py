@@ -18,8 +18,8 @@ class Slope:
     """The heights along a path, interpolated linearly.
 
     Attributes:
-        stations: (k,) [m] along the path, which is laid out in the plane.
-        heights: (k,) [m] at the stations.
+        stations: Stations (k,) [m] along the path, which is laid out in the plane.
+        heights: Heights (k,) [m] at the stations.
     """
 
     stations: Array

@@ -17,7 +17,7 @@ class DensityMap:
     """Mean density on a grid.
 
     Attributes:
-        density: (rows, columns) [1/m^2], the northern row first.
+        density: Density (rows, columns) [1/m^2], the northern row first.
         left, bottom, right, top: [m] the grid's edges.
     """
 

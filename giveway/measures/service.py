@@ -44,7 +44,7 @@ def level_of_service(
 
     Args:
         levels: Limits, Fruin's or the manual's.
-        density: [1/m^2] of people.
+        density: Density [1/m^2] of people.
         specific_flow: Flow [1/(m s)] over a line.
     """
     if density is not None:

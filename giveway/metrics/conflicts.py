@@ -25,15 +25,15 @@ class Proximity(NamedTuple):
     """The proximity of pedestrian and ego for each of R crowd records; all are (R,).
 
     Attributes:
-        clearance: [m] distance between the pedestrian's skin and the ego's bodywork; negative where
+        clearance: Distance [m] between the pedestrian's skin and the ego's bodywork; negative where
             the circle overlaps the rectangle.
-        time_to_collision: [s] until the first contact if both kept their velocity: 0 when they
+        time_to_collision: Time [s] until the first contact if both kept their velocity: 0 when they
             touch already, inf when they never do on these courses. The usual surrogate (Hayward
             1972) without its usual shortcut of one line of travel: the rectangle moves along its
             heading at its present speed, the circle along its present velocity, and the first
             contact of the two shapes is solved exactly. A pedestrian walking into the side of a
             standing ego therefore has a finite time to collision too.
-        deceleration: [m/s^2] the deceleration to avoid a crash (DRAC, Cooper & Ferguson 1976), the
+        deceleration: Deceleration [m/s^2] to avoid a crash (DRAC, Cooper & Ferguson 1976), the
             constant braking that would just spare a pedestrian ahead: c^2 / (2 d) with the closing
             speed c and the distance d to be closed. Here c is along the ego's heading and
             d = c * (time to collision): braking by it, the ego has matched the pedestrian's speed

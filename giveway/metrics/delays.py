@@ -121,7 +121,7 @@ def gave_way(
     Args:
         run: Road user (n,) who was first in the run, as in :class:`Encroachment`.
         twin: Road user (n,) who was first in the twin.
-        crossed: (n,) Whether the person counts.
+        crossed: Mask (n,) of the persons who count.
     """
     met = crossed & (run != "")
     yielded = met & (run == EGO) & ((twin == PERSON) | (twin == CONTACT))
@@ -135,7 +135,7 @@ def summarise_delays(
 
     Args:
         delay: Delay (n,) [s] of each person; nan if not counted.
-        gave_way: (n,) Whether each person did: "yes", "no" or "".
+        gave_way: Answer (n,) whether each person gave way: "yes", "no" or "".
         differs: True if lights or background vehicles behaved differently in the twin.
         traffic: Delay [s] of the background vehicles; nan if unknown.
     """

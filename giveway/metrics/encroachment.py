@@ -33,8 +33,8 @@ class Encroachment(NamedTuple):
     """The post-encroachment times of the ego and n pedestrians.
 
     Attributes:
-        time: (n,) [s] post-encroachment time; nan where the paths never cross.
-        first: (n,) who was first: ``PERSON``, ``EGO`` or ``CONTACT``; empty: they never cross.
+        time: Post-encroachment time (n,) [s]; nan where the paths never cross.
+        first: Road user (n,) who was first: ``PERSON``, ``EGO`` or ``CONTACT``; empty if never.
     """
 
     time: NDArray[np.float64]
@@ -67,7 +67,7 @@ def encroachment(
         crowd: Track of the crowd, R records of n pedestrians.
         shape: Rectangle of the ego.
         body_radius: Radius of a pedestrian [m].
-        clock: (K,) [s] control instants to which the crowd's records belong, the first T of them
+        clock: Control instants (K,) [s] to which the crowd's records belong, the first T of them
             the ego's; None: the ego's.
 
     Returns:

@@ -49,9 +49,9 @@ class Verdict:
         crashed: it ended without having told so; what it had recorded is in the journal.
         interrupted: it ended by a signal that the user sent us, or after one.
         cause: "SIGSEGV", "no progress for 120 s", ...; empty unless crashed.
-        pulse: where it stood.
-        traceback: where Python stood, if it could tell, as faulthandler prints it.
-        last_words: what native code had printed on the standard error of the child, if kept.
+        pulse: Last state of its heartbeat.
+        traceback: Traceback of Python by faulthandler; empty without one.
+        last_words: Output of native code on the standard error of the child, if kept.
     """
 
     code: int
@@ -209,7 +209,7 @@ class _Relay(SignalHandler):
 
     Attributes:
         first: the first such signal.
-        killed: whether a second one had to kill the child.
+        killed: True if a second one had to kill the child.
     """
 
     def __init__(self) -> None:

@@ -45,7 +45,7 @@ class ScenarioFiles:
         end: last instant [s]; None if the scenario ends when nobody is left.
         step_length: SUMO's step [s].
         seed: Seed that the scenario names; None: SUMO's own.
-        random: whether SUMO is to seed itself with the clock.
+        random: True if SUMO is to seed itself with the clock.
         pedestrian_model: one of SUMO's, ``striping`` where none is named.
         outputs: each output option set, to the file or files as the scenario names them.
     """

@@ -56,7 +56,7 @@ class Copies:
 
     Attributes:
         config_file: File as given.
-        has_ssm: whether a type or vehicle in the prepared files carries an SSM device.
+        has_ssm: True if a type or vehicle in the prepared files carries an SSM device.
     """
 
     def __init__(self, config_file: Path, scratch: Path, outputs: OutputFolder) -> None:

@@ -26,7 +26,7 @@ class StartOptions:
         fallback_seed: the seed of a scenario that wants a random one, where neither ``seed`` nor
             the scenario names one.
         step_length: SUMO's step [s]; None keeps the scenario's.
-        interact: whether persons or vehicles are to be moved; if not, SUMO simulates the scenario
+        interact: True if persons or vehicles are to be moved; if not, SUMO simulates the scenario
             exactly as without giveway.
         outputs: the folder for SUMO's output files; None drops them.
         fcd, tripinfo, summary, ssm: write this output even if the scenario does not.

@@ -61,7 +61,7 @@ class Lanes:
             edges: the route.
             lane: index of the lane to start on; None: the best one.
             kind: SUMO's vehicle class.
-            start: where on the first lane the vehicle starts [m]; it changes lanes after that.
+            start: Station [m] on the first lane at which the vehicle starts, before lane changes.
             by: the lane on which to leave an edge, by the edge's place in the route, as far as the
                 way can go on from there.
 
@@ -324,8 +324,8 @@ def lane_area(centre_line: Array, width: float) -> Array:
     """The closed outline (2k + 1, 2) [m] of a lane.
 
     Args:
-        centre_line: (k, 2) [m], k >= 2.
-        width: [m].
+        centre_line: Centre line (k, 2) [m], k >= 2.
+        width: Width [m].
     """
     along = np.gradient(centre_line, axis=0)
     length = np.maximum(np.hypot(along[:, 0], along[:, 1]), 1e-12)

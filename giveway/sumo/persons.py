@@ -220,8 +220,8 @@ class ScenarioPersons:
 
         Args:
             name: the person's id.
-            x: where it is [m].
-            y: where it is [m].
+            x: Coordinate x of its place [m].
+            y: Coordinate y of its place [m].
             place: the nearest edge for pedestrians, and the position [m] on it. If an edge of the
                 person's route is hardly farther away, it goes on there; else it gets a new route.
 

@@ -229,8 +229,8 @@ class SumoSession:
         """Move egos and persons, make one SUMO step, and check that SUMO stands where we do.
 
         Args:
-            egos: id and front bumper's pose after the step, of each ego.
-            ids: the persons' ids.
+            egos: Id of each ego, and pose of its front bumper after the step.
+            ids: Ids of the persons.
             x: Coordinate x of each person [m], finite.
             y: Coordinate y of each person [m], finite.
             angles: Angles of each person [deg, 0 = north, clockwise], finite.

@@ -66,8 +66,8 @@ def passages(gates: Array, start: tuple[float, float]) -> Array:
     them along it.
 
     Args:
-        gates: (k, 7).
-        start: where the person comes from [m].
+        gates: Gates (k, 7).
+        start: Place [m] that the person comes from.
     """
     rows = np.empty((len(gates), 3))
     rows[:, :2] = gates[:, 4:6]

@@ -60,7 +60,7 @@ class WalkGraph:
     """Portals, and the gates of the routes between them; built when asked for, and kept.
 
     Args:
-        survey: what the network file says.
+        survey: Contents of the network file.
     """
 
     def __init__(self, survey: Survey) -> None:

@@ -44,7 +44,7 @@ class Pieces:
     """Pieces of routes, each built when first asked for, and kept.
 
     Args:
-        survey: what the network file says.
+        survey: Contents of the network file.
         graph: its walkingareas and crossings.
     """
 

@@ -31,8 +31,8 @@ class WalkNetwork:
 
     Attributes:
         signals: the traffic-light links that govern crossings.
-        has_walkingareas: whether the network has any.
-        has_sidewalks: whether there is a lane that pedestrians may use and cars may not.
+        has_walkingareas: True if the network has any.
+        has_sidewalks: True if there is a lane that pedestrians may use and cars may not.
         boundary: x_min, y_min, x_max, y_max [m] of the network.
     """
 
@@ -73,7 +73,7 @@ class WalkNetwork:
         Args:
             edges: the remaining edges, the present one first; for somebody in a walkingarea or on
                 a crossing the first is the edge that was left, as SUMO lists them.
-            position: where the person is [m].
+            position: Place of the person [m].
             lane: SUMO's id of the present lane, maybe a walkingarea's or crossing's.
             arrival_position: the end of the walk on the last edge, in SUMO's metres; a negative
                 one counts from the edge's end.

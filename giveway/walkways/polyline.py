@@ -25,7 +25,7 @@ class Polyline:
     """A centre line in the direction of its lane.
 
     Attributes:
-        points: (k, 2) [m], k >= 2.
+        points: Points (k, 2) [m], k >= 2.
         stations: arc length [m] at each point, from 0; plain numbers, since every person asks.
     """
 

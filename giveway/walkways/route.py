@@ -23,10 +23,10 @@ class WalkRoute:
     """The route ahead of one person; the last of its way-points is the walk's end.
 
     Attributes:
-        waypoints: (k, 2) [m] in the middle of the walkway, without the present place.
-        passages: (k, 3) unit direction in which a way-point's line is crossed, and how far [m]
+        waypoints: Way-points (k, 2) [m] in the middle of the walkway, without the present place.
+        passages: Unit direction (k, 3) in which a way-point's line is crossed, and how far [m]
             beside the way-point a crossing of the line still counts as a passage.
-        signals: (k,) index into ``WalkNetwork.signals`` where people wait for green, else -1.
+        signals: Index (k,) into ``WalkNetwork.signals`` where people wait for green, else -1.
         gaps: number of missing connections and the route goes straight on.
     """
 
@@ -49,7 +49,7 @@ class Router:
     """Puts routes together from pieces that it builds once.
 
     Args:
-        survey: what the network file says.
+        survey: Contents of the network file.
         graph: its walkingareas and crossings.
     """
 

@@ -30,7 +30,7 @@ class Starts:
     """Finds routes out of junctions.
 
     Args:
-        survey: what the network file says.
+        survey: Contents of the network file.
         graph: its walkingareas and crossings.
     """
 
