@@ -189,7 +189,7 @@ def _tiny_run() -> None:
 
 
 def _call_the_rest() -> None:
-    """Return what no tiny run calls."""
+    """Call the kernels that no tiny run calls."""
     _solve_without_solution()
     _branch_off()
     _come_and_go()

@@ -42,7 +42,7 @@ CHUNK: Final = 1 << 20  # [bytes] size of one read
 READABLE: Final = frozenset({zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED})
 DRIVE: Final = re.compile(r"[A-Za-z]:")
 TWICE: Final = "twice in the archive (capitals and how accents are coded do not count)"
-LOCAL_HEADER: Final = 30  # [bytes] before the name of a member in the archive
+LOCAL_HEADER: Final = 30  # [bytes] size of the header before the name of a member
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Archive:
     path: Path
     members: Mapping[str, zipfile.ZipInfo]  # files only, by their name
     description: bytes = field(repr=False)  # modelDescription.xml
-    sha256: str  # of the whole file
+    sha256: str  # SHA-256 of the whole file
 
 
 def open_archive(path: Path) -> Archive:

@@ -16,7 +16,7 @@ from fmus.checking.actuator import mean_force
 from fmus.checking.manoeuvres import Trace
 
 STANDSTILL = 0.05  # [m/s] speed below which steps are not fitted: brakes may hold the vehicle
-SETTLING = 1.0  # [s] at the start that are not fitted: earlier forces are unknown
+SETTLING = 1.0  # [s] first part of a drive that is not fitted: earlier forces are unknown
 LONGEST_LAG = 2.0  # [s] upper bound of the search
 LONGEST_DELAY = 1.0  # [s] upper bound of the search
 FINENESS = 1e-3  # resolution of lag and dead time, as a share of a step

@@ -26,7 +26,7 @@ from fmus.profile.tables import Axis
 from fmus.profile.vehicle_profile import FittedModel, VehicleProfile
 
 LEVELS = (0.1, 0.25, 0.5, 1.0)  # shares of the largest force of the tests
-SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] at the start of the tests
+SPEEDS = (0.0, 2.0, 4.0, 8.0, 12.0)  # [m/s] speeds at the start of the tests
 HARDEST = 8.0  # [m/s2] largest deceleration or acceleration of a test
 LEAD_IN, STEP, PAUSE = SETTLING + 1.0, 1.5, 1.0  # [s] durations of the phases
 NO_FIT = 0.3  # R squared below which there is no model

@@ -68,7 +68,7 @@ class Phase:
     """A constant force, held for a time or until the speed reaches a bound."""
 
     force: float  # [N]
-    duration: float  # [s] at most
+    duration: float  # [s] longest duration
     above: float = -np.inf  # [m/s] ends when the speed falls below
     below: float = np.inf  # [m/s] ends when the speed rises above
 

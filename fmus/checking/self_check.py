@@ -92,7 +92,7 @@ def require_converged(
 
 
 def remedy(result: Convergence) -> str:
-    """Return what to do about steps that are too coarse."""
+    """Return the advice about steps that are too coarse."""
     if result.advised is None:
         finest = milliseconds(result.step / DIVISORS[-1])
         return (
@@ -141,7 +141,7 @@ def convergence(
 class _Drives:
     """The manoeuvres driven with steps of one size."""
 
-    traces: tuple[Trace, ...]  # as far as they went
+    traces: tuple[Trace, ...]  # traces up to the end or the failure
     error: FmuError | None
 
     @property
@@ -151,7 +151,7 @@ class _Drives:
 
     @property
     def steps_done(self) -> int:
-        """Return how many steps were done before the end or the failure."""
+        """Number of steps before the end or the failure."""
         return sum(trace.force.size for trace in self.traces)
 
 
@@ -262,7 +262,7 @@ def goes_the_wrong_way(trace: Trace) -> bool:
     """
     change = np.diff(trace.speed) / trace.step_size
     driven, braked = change[trace.force > 0.0], change[trace.force < 0.0]
-    rolling = change[trace.force == 0.0][-1]  # by then a slow actuator has released its force
+    rolling = change[trace.force == 0.0][-1]  # a slow actuator has released its force by then
     return bool(driven.mean() < min(0.0, rolling, braked.mean()) - _CLEARLY)
 
 

@@ -85,7 +85,7 @@ def _of_side(drive: Drive, sign: float) -> Drive:
 
 
 def side_remarks(sides: Sides, step: float, profile: VehicleProfile | None) -> list[str]:
-    """Return what the user should know of the two sides, one line each.
+    """Return remarks on the two sides for the user, one line each.
 
     Args:
         sides: Fits of both sides.

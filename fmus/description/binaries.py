@@ -136,7 +136,7 @@ def _header(start: bytes) -> tuple[str, tuple[str, ...], bool]:
     if start[:2] == b"MZ":
         (header,) = struct.unpack_from("<I", start, 0x3C)
         if header + 24 > len(start) and len(start) == START:
-            return "windows", tuple(PE_MACHINES.values()), True  # beyond what was read
+            return "windows", tuple(PE_MACHINES.values()), True  # header not among the bytes
         signature, machine = struct.unpack_from("<4sH", start, header)
         (flags,) = struct.unpack_from("<H", start, header + 22)
         if signature != b"PE\0\0":

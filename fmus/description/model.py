@@ -36,7 +36,7 @@ class FmuDescription:
     fmi_version: str  # e.g. "2.0"
     guid: str  # FMI 2's GUID, FMI 3's instantiation token
     generation_tool: str  # empty where the FMU does not say
-    sha256: str  # of the .fmu file
+    sha256: str  # SHA-256 of the .fmu file
 
 
 @dataclass(frozen=True)
@@ -63,13 +63,13 @@ class Variable:
     kind: str  # FMI's type: "Real", "Float64", "Boolean", ...
     causality: str  # "input", "output", "parameter", "local", ...
     variability: str = "continuous"
-    start: str = ""  # as it is written; empty without one
-    shape: tuple[int, ...] = ()  # of an FMI 3 array, from its dimensions' start values
+    start: str = ""  # start value as it is written; empty without one
+    shape: tuple[int, ...] = ()  # shape of an FMI 3 array, from its dimensions' start values
     unit: str = ""  # name of its unit; empty without one
     description: str = ""
-    minimum: float | None = None  # in its unit
+    minimum: float | None = None  # smallest value, in the variable's unit
     maximum: float | None = None
-    settable: bool = False  # before the start
+    settable: bool = False  # True if it can be set before the start
     negated: bool = False  # FMI 1's negatedAlias: what stands under the reference, times -1
 
     @property
@@ -106,7 +106,7 @@ class Channel:
     """One number that goes into, or comes out of, an FMU at every step."""
 
     variable: Variable
-    element: int = 0  # of an array, row by row from 0
+    element: int = 0  # index in an array, row by row from 0
 
     @property
     def name(self) -> str:
@@ -153,7 +153,7 @@ class Model:
     platforms: tuple[str, ...]  # folders of the archive that hold binaries
     states: int  # continuous ones
     event_indicators: int
-    default_step: float | None  # [s] of its default experiment
+    default_step: float | None  # [s] step of its default experiment
     default_tolerance: float | None
 
     def unit_of(self, variable: Variable) -> Unit | None:

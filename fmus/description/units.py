@@ -22,9 +22,9 @@ ANGLE: Final[Dimension] = (0, 0, 0, 0, 0, 0, 0, 1)
 SPEED: Final[Dimension] = (0, 1, -1, 0, 0, 0, 0, 0)
 ACCELERATION: Final[Dimension] = (0, 1, -2, 0, 0, 0, 0, 0)
 FORCE: Final[Dimension] = (1, 1, -2, 0, 0, 0, 0, 0)
-TORQUE: Final[Dimension] = (1, 2, -2, 0, 0, 0, 0, 0)  # and energy
+TORQUE: Final[Dimension] = (1, 2, -2, 0, 0, 0, 0, 0)  # torque and energy
 POWER: Final[Dimension] = (1, 2, -3, 0, 0, 0, 0, 0)
-FRICTION: Final[Dimension] = (1, 0, -1, 0, 0, 0, 0, 0)  # of speed
+FRICTION: Final[Dimension] = (1, 0, -1, 0, 0, 0, 0, 0)  # force per speed
 TURNING: Final[Dimension] = (0, 0, -1, 0, 0, 0, 0, 1)
 TEMPERATURE: Final[Dimension] = (0, 0, 0, 0, 1, 0, 0, 0)
 CURRENT: Final[Dimension] = (0, 0, 0, 1, 0, 0, 0, 0)
@@ -51,7 +51,7 @@ WORDS: Final[dict[Dimension, str]] = {
     PRESSURE: "a pressure",
     FREQUENCY: "a frequency",
 }
-COMMON: Final[dict[Dimension, str]] = {  # what a user may have meant
+COMMON: Final[dict[Dimension, str]] = {  # units that a user may have meant
     NONE: "1, %",
     LENGTH: "m, km, ft",
     SPEED: "m/s, km/h, mph",

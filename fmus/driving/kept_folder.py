@@ -12,7 +12,7 @@ from fmus.archive.archive_check import open_archive
 from fmus.profile.preparation import Prepared, unpack
 
 PREFIX: Final = "vehicle-fmu-"
-_folders: Final[dict[str, Path]] = {}  # by the FMU's content
+_folders: Final[dict[str, Path]] = {}  # folders by the SHA-256 of the FMU
 _keeping: Final[set[bool]] = set()
 
 

@@ -10,7 +10,7 @@ from fmus.errors import FmuOutputError
 from fmus.profile.preparation import Prepared
 from fmus.profile.wiring import Wiring
 
-_STILL = 1e-9  # [m/s] or [m] change in a step up to which it is rounding
+_STILL = 1e-9  # [m/s] or [m] change in a step that is mere rounding
 _REVERSING = -0.05  # [m/s] speed beyond the overshoot of a stop within a step
 
 
@@ -43,7 +43,7 @@ class Motion:
         self._guard = Guard(limits, self.names)
         self._trusted = prepared.ours
         self._last_effective = 0.0  # [N] force under which the speed last changed
-        self._origin = 0.0  # [m] where the FMU's own position is 0
+        self._origin = 0.0  # [m] position at which the FMU's own is 0
         self._agreement = Agreement(limits.position_jump)
 
     @property

@@ -7,7 +7,7 @@ from fmus.errors import FmuOutputError, FmuStartError, FmuStepError
 from fmus.interfaces.vehicle import Drivable
 from fmus.profile.preparation import Prepared
 
-_FIT = 0.02  # [m/s] or [m], and relative: largest difference of the first state from the wanted one
+_FIT = 0.02  # [m/s] or [m], and relative: largest error of the first state
 
 
 def start_values(prepared: Prepared, position: float, speed: float) -> dict[Channel, Value]:

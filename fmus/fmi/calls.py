@@ -65,7 +65,7 @@ class EventInfo:
     again: bool = False
     ended: bool = False
     nominals_changed: bool = False
-    next_time: float | None = None  # [s] of its next time event
+    next_time: float | None = None  # [s] time of its next time event
 
 
 class Calls(ABC):
@@ -83,7 +83,7 @@ class Calls(ABC):
     """
 
     types: ClassVar[Mapping[str, CType]]
-    state_word: ClassVar = "FMUstate"  # as the standard spells it in the names of functions
+    state_word: ClassVar = "FMUstate"  # the standard's spelling in the names of functions
     exchange: ClassVar[dict[str, str]] = {  # functions that Model Exchange calls often, by purpose
         "set_time": "SetTime",
         "set_states": "SetContinuousStates",
@@ -109,7 +109,7 @@ class Calls(ABC):
         self.component: c_void_p | None = None
         self.stop_time: float | None = None  # [s] told to the FMU; None: it has none
         self.event_mode = False  # FMI 3's Co-Simulation: of the instances that are made
-        self.prefix = f"fmi{model.fmi_version[0]}"  # of all functions' names
+        self.prefix = f"fmi{model.fmi_version[0]}"  # beginning of all functions' names
         self.exchanges = interface.kind == Kind.MODEL_EXCHANGE
         self._functions: dict[str, Function] = {}
         self._free: Function
@@ -276,7 +276,7 @@ class Stepper:
     final: Any  # .value may be changed between two steps
     flags: Any  # indexable
     event: Any  # .value may be read after a step
-    progress: Callable[[], Progress]  # after a step that was not completed
+    progress: Callable[[], Progress]  # function to call after an incomplete step
 
 
 if sys.platform == "win32":

@@ -37,7 +37,7 @@ class CoSimulation(Instance):
         self._rewinds = rewinds and calls.interface.saves_state
         self._start, self._step = c_double(), c_double()
         self._before: c_void_p | None = None  # state before the last step
-        self._before_time = 0.0  # [s] of that state
+        self._before_time = 0.0  # [s] time of that state
         calls.function(calls.name("DoStep"))
         self._past: list[tuple[float, float, bytes]] | None = (
             None  # steps, as long as it may matter

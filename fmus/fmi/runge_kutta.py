@@ -14,7 +14,7 @@ from fmus.fmi.continuous import (
 )
 
 FIRST_STEP = 1e-5  # [s] short: another event may follow soon
-SAFETY, LEAST, MOST = 0.9, 0.1, 4.0  # of the next step's length: Hairer, Norsett, Wanner, II.4
+SAFETY, LEAST, MOST = 0.9, 0.1, 4.0  # factors of a step's length: Hairer, Norsett, Wanner, II.4
 
 
 class RungeKutta:

@@ -40,10 +40,10 @@ class Instance(ABC):
         self.inputs = self.outputs = memoryview(bytearray()).cast("d")
         self.tick: Tick = _not_started
         self._before_start: list[Setting] = []
-        self._at_start: list[Setting] = []  # of inputs
+        self._at_start: list[Setting] = []  # start values of the inputs
         self._initialised = False
         self._worst = 0  # highest status since the instance was made
-        self._untouchable = False  # after a fatal error
+        self._untouchable = False  # True after a fatal error
 
     def start(
         self,
@@ -122,7 +122,7 @@ class Instance(ABC):
     def stop(self) -> None:
         """End and free the instance, if there is one; the library stays loaded."""
         self.tick = _not_started
-        self._untouchable |= self._worst == FATAL  # after a fatal error no function may be called
+        self._untouchable |= self._worst == FATAL  # no function may be called after a fatal error
         if self.calls.component and self._worst != FATAL:
             with suppress(Exception):  # an FMU that cannot be ended properly does no harm
                 if self._initialised and self._worst < ERROR:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from fmus.profile.controller_preparation import PreparedController
     from fmus.profile.preparation import Prepared
 
-_END_TIMEOUT = 5.0  # [s] for an FMU to end by itself
+_END_TIMEOUT = 5.0  # [s] time for an FMU to end by itself
 _END_PATIENCE = 1.0  # [s] between the end of the connection and that of the process
 
 

@@ -32,7 +32,7 @@ class Hosted(Protocol):
 
     @staticmethod
     def numbers(prepared: Any, /) -> tuple[int, int]:
-        """Return how many numbers each request and each reply has."""
+        """Return the numbers of values in each request and in each reply."""
 
     def start(self, numbers: Sequence[float]) -> None:
         """Begin at time 0."""

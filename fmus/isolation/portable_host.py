@@ -13,7 +13,7 @@ from typing import Final
 from fmus.isolation.exit_report import ExitReport, PrintedTail
 from fmus.isolation.spawning import IMPORT_TIMEOUT, kill_group, no_process, spawn
 
-_READ_TIMEOUT: Final = 1.0  # [s] for the last output: a process left behind may hold the pipe open
+_READ_TIMEOUT: Final = 1.0  # [s] wait for the last output: a process left behind may hold the pipe
 
 
 class PortableHost:

@@ -40,7 +40,7 @@ class WatchdogProcess:
 
     def __init__(self, path: Path, folder: Path) -> None:
         self.has_answered = False
-        self._number = 0  # of the last request
+        self._number = 0  # number of the last request
         self._owner, self._setting = os.getpid(), _setting()
         self._folders = [folder]  # one whose TMPDIR it was started with, and the present one
         self._control, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

@@ -20,7 +20,7 @@ from fmus.profile.controller_profile import (
 from fmus.profile.draft import toml_value
 from fmus.text import listed, printable
 
-_NAMES: Final = {  # of variables, in small letters and without separators and brackets
+_NAMES: Final = {  # names of variables, in small letters, without separators and brackets
     "speed": "speed egospeed velocity egovelocity v vego vx",
     "acceleration": "acceleration egoacceleration a aego ax",
     "position": "position egoposition station s",

@@ -28,13 +28,13 @@ class ControllerInputs(Table):
     speed: Axis | None = None  # [m/s]
     acceleration: Axis | None = None  # [m/s2]
     position: Axis | None = None  # [m] station of the point that keeps the safe distance
-    last_force: Axis | None = None  # [N] that acted in the step before
-    gap: Axis | None = None  # [m] from there to whoever or whatever is closest in front
-    person_gap: Axis | None = None  # [m] to the closest person in front
-    leader_gap: Axis | None = None  # [m] to the vehicle in front
-    leader_speed: Axis | None = None  # [m/s] of it
+    last_force: Axis | None = None  # [N] force that acted in the step before
+    gap: Axis | None = None  # [m] gap to the closest person, vehicle or stop ahead
+    person_gap: Axis | None = None  # [m] gap to the closest person in front
+    leader_gap: Axis | None = None  # [m] gap to the vehicle in front
+    leader_speed: Axis | None = None  # [m/s] speed of that vehicle
     speed_limit: Axis | None = None  # [m/s]
-    stop_gap: Axis | None = None  # [m] from the front bumper to where lights or priority want it
+    stop_gap: Axis | None = None  # [m] gap from the front bumper to the stop of lights or priority
     obstacle_positions: Axis | None = None  # [m] stations of whoever will be in front: a series
     obstacle_gaps: Axis | None = None  # [m] the same from where ``position`` is now: a series
     nothing: float = Field(1e9, gt=0, le=1e300)  # [SI] told for infinity: nobody, no limit

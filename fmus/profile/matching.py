@@ -167,7 +167,7 @@ class Guess:
     channel: Channel
     name_score: float
     fits: bool | None
-    found: Dimension | None  # of its unit
+    found: Dimension | None  # dimension of its unit
 
     @property
     def score(self) -> float:

@@ -29,7 +29,7 @@ from fmus.profile.wiring import Wiring, wire
 class Bound:
     """The range that an FMU declares for an input, in the FMU's unit."""
 
-    index: int  # of the input
+    index: int  # index of the input
     low: float
     high: float
 

@@ -10,13 +10,13 @@ from fmus.profile.draft import Line
 from fmus.profile.matching import FORCES, OTHER_PARTS, ROLES, Guess, words_of
 from fmus.text import printable
 
-PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}  # [N] of a car of 1000 kg
+PEDAL_FORCE: Final = {"throttle": 4000.0, "brake": 8000.0}  # [N] for a car of 1000 kg
 DRIVES_ONLY: Final = frozenset(["drive", "driving", "propulsion", "propulsive", "accelerating"])
-MISSING: Final = {  # what an FMU needs besides
+MISSING: Final = {  # further inputs that an FMU needs
     "drive_force": "brake_force", "brake_force": "drive_force",
     "throttle": "brake", "brake": "throttle",
 }  # fmt: skip
-LEAD: Final = 0.5  # [s] of a speed controller, where nothing is known
+LEAD: Final = 0.5  # [s] assumed lead of a speed controller
 POWERED: Final = frozenset(["wheel", "wheels", "engine", "motor", "rear", "front"])  # they drive
 
 

@@ -35,7 +35,7 @@ class Axis(Table):
     """
 
     variable: str = Field(min_length=1)
-    unit: str | None = None  # where the FMU declares none, or a wrong one
+    unit: str | None = None  # unit, where the FMU declares none or a wrong one
     gain: float | None = None  # None: 1, and the unit must be of the right dimension
     offset: float = 0.0
 
@@ -52,7 +52,7 @@ class Stepping(Table):
     kind: Literal["co-simulation", "model-exchange"] | None = None  # None: the former if it can
     step: float | None = Field(None, gt=0, le=10)  # [s] the FMU's own; None: the control step
     stop_time: float | None = Field(None, gt=0, le=1e9)  # [s] told to the FMU; None: no stop time
-    solver: Literal["cvode", "rk4"] | None = None  # of Model Exchange; None: cvode where it runs
+    solver: Literal["cvode", "rk4"] | None = None  # Model Exchange; None: cvode where it runs
     tolerance: float | None = Field(None, gt=0, le=0.1)  # relative, of Model Exchange
     start_timeout: float = Field(60.0, gt=0, le=3600)  # [s] wall clock
     step_timeout: float = Field(10.0, gt=0, le=3600)  # [s] wall clock

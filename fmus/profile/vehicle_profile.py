@@ -114,11 +114,11 @@ class FittedModel(Table):
     friction: float = Field(ge=0, le=1e6)  # alpha [N.s/m]
     lag: float = Field(0.0, ge=0, le=3)  # [s] first-order time constant of the actuator
     delay: float = Field(0.0, ge=0, le=2)  # [s] dead time; who answers later cannot be driven
-    r_squared: float = Field(le=1)  # of the speed's change per step
+    r_squared: float = Field(le=1)  # share of the variation of speed changes that is explained
     speed_error: float = Field(ge=0)  # [m/s] root mean square, one step ahead
     position_error: float = Field(ge=0, le=1e4)  # [m] 95 % of the errors at the horizon are smaller
-    horizon: float = Field(ge=1e-3, le=1e3)  # [s] of position_error
-    time_step: float = Field(gt=0)  # [s] of the fit
+    horizon: float = Field(ge=1e-3, le=1e3)  # [s] horizon of position_error
+    time_step: float = Field(gt=0)  # [s] time step of the fit
 
 
 class VehicleProfile(Table):

@@ -57,7 +57,7 @@ class Wire:
     channel: Channel
     scale: float
     shift: float
-    unit: str  # as shown to the user; empty if it has none
+    unit: str  # unit as shown to the user; empty without one
 
     def to_si(self, raw: float) -> float:
         """The quantity in SI units."""

@@ -33,7 +33,7 @@ class _Variable:
     description: str
     unit: str | None = None
     start: float | bool | None = None
-    elements: int = 0  # of an array; 0: a scalar
+    elements: int = 0  # number of elements of an array; 0: a scalar
     low: float | None = None
     high: float | None = None
 
@@ -160,7 +160,7 @@ def _attributes(values: Mapping[str, object]) -> str:
 def _text(value: object) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, float):  # as short as it can be written without loss
+    if isinstance(value, float):  # shortest text without loss
         return f"{value:g}" if float(f"{value:g}") == value else repr(value)
     return str(value)
 

@@ -39,7 +39,7 @@ from fmus.sources.parameters import (
 
 SOURCE: Final = Path(__file__).parent / "vehicle"
 FRONT_ENDS: Final[dict[FmiVersion, str]] = {"2.0": "fmi2.c", "3.0": "fmi3.c"}
-SHARED: Final[dict[FmiVersion, tuple[str, ...]]] = {  # in SOURCE
+SHARED: Final[dict[FmiVersion, tuple[str, ...]]] = {  # shared files, in SOURCE
     "2.0": ("fmi2_begin.h", "fmi2_rest.h"),
     "3.0": ("fmi3_begin.h", "fmi3_rest.h"),
 }

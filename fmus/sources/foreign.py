@@ -24,9 +24,9 @@ from fmus.sources.compiler import Compiler, find_compiler, fmi_headers
 from fmus.text import printable
 
 SOURCES: Final = "sources/"
-BUILD: Final = "sources/buildDescription.xml"  # of FMI 3
+BUILD: Final = "sources/buildDescription.xml"  # FMI 3's build description
 C_SUFFIXES: Final = (".c", ".cc", ".cpp", ".cxx")
-LARGEST: Final = 1 << 30  # [bytes] of an FMU that is packed again in memory
+LARGEST: Final = 1 << 30  # [bytes] largest FMU that is packed again in memory
 ENTRIES: Final = {"1.0": "{0}_fmi", "2.0": "fmi2Instantiate", "3.0": "fmi3Instantiate"}
 
 

@@ -149,7 +149,7 @@ class _Kernels(caching.FunctionCache):
 _rebuild_as_ever: Any = environment._rebuild_env
 
 
-@functools.wraps(_rebuild_as_ever)  # by whose name numba's pickles call it
+@functools.wraps(_rebuild_as_ever)  # numba's pickles call it by this name
 def _environment(module: str, constants: list[Any], name: str) -> Any:
     """Rebuild the environment of a compiled function without importing numba's module of it.
 

@@ -42,10 +42,10 @@ _INLINED = {"reduce", "stencil", "array"}  # what numba searches for beside clos
 _OF_ARRAYS = ("unary", "binop", "call")
 _INHERITED = ("nrt", "fastmath", "error_model", "forceinline")  # flags from the caller
 
-_sizes: dict[tuple[str, str], int] = {}  # by the data layout and the type
-_kinds: dict[type, type] = {}  # what holds variables, and how
-_signatures: dict[tuple[int, int], Any] = {}  # by the function and the context, which are kept
-_counted: dict[Any, bool] = {}  # by the type
+_sizes: dict[tuple[str, str], int] = {}  # sizes by the data layout and the type
+_kinds: dict[type, type] = {}  # node types that hold variables, and how
+_signatures: dict[tuple[int, int], Any] = {}  # by function and context, which are kept
+_counted: dict[Any, bool] = {}  # flags by the type
 
 
 def _optimize_functions(library: Any, module: Any) -> None:

@@ -26,7 +26,7 @@ _address_as_ever: Any = _JitLibrary.get_pointer_to_function
 _translate_as_ever: Any = _JitLibrary._finalize_specific
 _set_environment_as_ever: Any = _Codegen.set_env
 
-_environments: dict[str, Any] = {}  # of functions that no machine code refers to yet
+_environments: dict[str, Any] = {}  # environments of functions that no machine code refers to yet
 
 
 def _defined(module: Any) -> set[str]:

@@ -20,9 +20,9 @@ from giveway._environment import check_rooms
 from giveway.doctor.finding import Finding, error, note, ok, warning
 from giveway.errors import InstallationError
 
-_ENOUGH_SPACE = 1e9  # [bytes] for the results of a study
+_ENOUGH_SPACE = 1e9  # [bytes] space for the results of a study
 _OLDEST_PYTHON = (3, 11)
-_PATIENCE = 60.0  # [s] for a child process
+_PATIENCE = 60.0  # [s] time limit of a child process
 _CHARACTERS = "Özgüner – m/s² ± µs"  # characters that our summaries print
 _IMPORT_SUMO = "from giveway.sumo.library import version; print(version())"
 

@@ -8,7 +8,7 @@ from giveway.config.files.layers import read_toml
 from giveway.doctor.finding import Finding, note
 from sumo_scenarios import find
 
-_RADIUS = 50  # [m] of the zone round an ego: the default
+_RADIUS = 50  # [m] default radius of the zone round an ego
 _WITHIN = "within 10 m of the moving vehicle"
 
 

@@ -16,7 +16,7 @@ from giveway.errors import GivewayError
 from giveway.processes.causes import cause_of_end
 from giveway.walkways import WalkNetwork, beside
 
-PATIENCE: Final = 120.0  # [s] for loading and a short run
+PATIENCE: Final = 120.0  # [s] time limit for loading and a short run
 _HOUSE: Final = Path(__file__).resolve().parents[2]
 _SHOWN: Final = 12  # largest number of edges shown of a route
 

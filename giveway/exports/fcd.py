@@ -106,7 +106,7 @@ def _write_config(file: Path, net: Net, types: Path, fcd: Path, sampled: Sampled
         "end": f"{end:g}",
         "step-length": f"{sampled.step:g}",
         "ignore-route-errors": "true",
-        "insertion-checks": "none",  # who enters a step late would stay late
+        "insertion-checks": "none",  # an object that enters a step late would stay late
         "pedestrian.model": "striping",  # the only one that can be moved
         "no-warnings": "true",  # SUMO judges a motion that is not its own
         "collision.action": "none",

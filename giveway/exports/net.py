@@ -26,7 +26,7 @@ class Place:
 
     edge: str
     lane: str
-    position: float  # [m] from its beginning
+    position: float  # [m] distance from the lane's beginning
     distance: float  # [m] beside its middle
 
 

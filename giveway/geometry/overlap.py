@@ -21,7 +21,7 @@ def rectangles_overlap(one: Array, other: Array, deeper_than: float = TOUCH) -> 
     x, y, psi, length, width = np.moveaxis(one, -1, 0)
     x_2, y_2, psi_2, length_2, width_2 = np.moveaxis(other, -1, 0)
     c, s, c_2, s_2 = np.cos(psi), np.sin(psi), np.cos(psi_2), np.sin(psi_2)
-    d_x = x_2 - length_2 / 2 * c_2 - x + length / 2 * c  # from centre to centre
+    d_x = x_2 - length_2 / 2 * c_2 - x + length / 2 * c  # vector from centre to centre
     d_y = y_2 - length_2 / 2 * s_2 - y + length / 2 * s
     along, across = np.abs(np.cos(psi_2 - psi)), np.abs(np.sin(psi_2 - psi))
 

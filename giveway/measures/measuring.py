@@ -53,7 +53,7 @@ def measure_table(
         return pd.DataFrame(columns=names)
     table = walks(crowd)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of PedPy: that nobody crosses a line is a result
+        warnings.simplefilter("ignore")  # PedPy warns if nobody crosses a line, which is a result
         rows = [
             row
             for measure in measures

@@ -26,7 +26,7 @@ def walks(crowd: CrowdTrack) -> "pd.DataFrame":
     number = np.concatenate([[0], np.cumsum(new)]) if len(order) else np.empty(0, dtype=np.int64)
     data = {"id": number, "frame": frame, "x": crowd.x[order], "y": crowd.y[order]}
     table = pd.DataFrame(data)
-    lasting = table.groupby("id")["frame"].transform("size") > 1  # of one record nobody knows more
+    lasting = table.groupby("id")["frame"].transform("size") > 1  # a single record tells no speed
     return table[lasting].reset_index(drop=True)
 
 

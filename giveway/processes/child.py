@@ -79,7 +79,7 @@ class Supervised:
 
 
 def _exit_code(error: BaseException | None) -> int:
-    """Return what Python will make of ``error`` when it ends the process."""
+    """Return the exit code that Python will give for ``error``."""
     if error is None:
         return 0
     if isinstance(error, SystemExit):

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from types import FrameType
 from typing import Any, Self
 
-PATIENCE = 10.0  # [s] after which a second interrupt acts at once
+PATIENCE = 10.0  # [s] time after which a second interrupt acts at once
 ENDING = frozenset(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )

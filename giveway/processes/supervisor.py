@@ -29,7 +29,7 @@ from giveway.processes.heartbeat import LOOP, Heartbeat, Phase, Pulse, Stillness
 from giveway.processes.interrupts import ENDING, SignalHandler
 from giveway.processes.locks import in_use, locked
 
-HANG_LIMIT = 120.0  # [s] of wall clock without a sign of life from the loop
+HANG_LIMIT = 120.0  # [s] wall-clock limit without a sign of life from the loop
 _PREFIX = "giveway-journal-"
 _KEPT = 7 * 86400.0  # [s] time that a killed supervisor's journal is kept for "giveway recover"
 _PATIENCE = 10.0  # [s] a child gets to write its rows before a second signal kills it

@@ -75,7 +75,7 @@ def _is_due(flow: dict[str, str], after: float, until: float, begin: float) -> b
         return True  # like "triggered": at any time
     if not period > 0.0:
         return True
-    number = max(0, math.ceil((after + _ROUNDING - first) / period))  # of the next to depart
+    number = max(0, math.ceil((after + _ROUNDING - first) / period))  # number of the next vehicle
     if number >= float(flow.get("number", math.inf)):
         return False
     return first + number * period <= min(until, last) + _ROUNDING

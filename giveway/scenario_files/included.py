@@ -26,7 +26,7 @@ def with_included(files: Iterable[Path]) -> list[Path]:
     """
     found = list(files)
     known = {file.resolve() for file in found}
-    for file in found:  # which grows
+    for file in found:  # the list grows meanwhile
         for there in _referred(file):
             if there.is_file() and there.resolve() not in known:
                 known.add(there.resolve())

@@ -23,8 +23,8 @@ class JunctionLogic(NamedTuple):
     """The priorities at one junction."""
 
     incoming: tuple[str, ...]  # lanes that lead to it
-    inside: tuple[str, ...]  # of each link, its last lane inside the junction; or a crossing
-    requests: tuple[Request, ...]  # of each link
+    inside: tuple[str, ...]  # last lane of each link inside the junction; or a crossing
+    requests: tuple[Request, ...]  # priorities of each link
 
 
 def right_of_way(net_file: Path) -> dict[str, JunctionLogic]:

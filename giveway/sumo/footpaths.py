@@ -20,8 +20,8 @@ class Foot:
 
     lane: str
     position: float  # [m] along the lane, in SUMO's metres
-    lateral: float  # [m] to the left of the centre line, at most half the usable width
-    distance: float  # [m] from the lane's centre line
+    lateral: float  # [m] offset to the left of the centre line, at most half the usable width
+    distance: float  # [m] distance from the lane's centre line
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +31,8 @@ class _Lane:
     name: str
     shape: Sequence[tuple[float, float]]
     length: float  # [m] SUMO's: nominal
-    metres: float  # [m] of the polyline
-    half_width: float  # [m] from the centre line, that a body's centre can use
+    metres: float  # [m] length of the polyline
+    half_width: float  # [m] largest distance of a body's centre from the centre line
 
 
 class FootPaths:
@@ -84,7 +84,7 @@ class FootPaths:
         return Foot(lane.name, _inside(lane, position), lateral, abs(lateral))
 
     def index(self, person: str, edges: Sequence[str], lane: str, arrival: float) -> int:
-        """Return which of the ``edges`` of its route a person on ``lane`` is on.
+        """Return the index in ``edges`` (of its route) of the edge of a person on ``lane``.
 
         Of a person inside a junction it is the edge before the junction.
         """

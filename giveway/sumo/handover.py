@@ -30,10 +30,10 @@ class Route:
     """The remembered route of a held person: the rest of its present walk in SUMO."""
 
     edges: tuple[str, ...]  # remaining, the current one first
-    arrival_position: float  # [m] on the last edge
-    stages_left: int  # after this route
+    arrival_position: float  # [m] arrival position on the last edge
+    stages_left: int  # number of stages after this route
     type: str
-    own_speed: float | None  # [m/s] that the scenario gives to this walk alone
+    own_speed: float | None  # [m/s] speed that the scenario gives to this walk alone
     was_inside: bool  # taken over inside a junction
 
 
@@ -68,7 +68,7 @@ class Handover:
             self._approach(name, route, foot)
             return
         present = tuple(self._person.getStage(name).edges)
-        rerouted = present[-len(route.edges) :] != route.edges  # by one of SUMO's devices
+        rerouted = present[-len(route.edges) :] != route.edges  # by a device of SUMO
         if rerouted or route.was_inside or edges[0] in edges[1:] + route.edges[:step]:
             self._restart(name, route, edges)
         self._person.moveTo(name, foot.lane, foot.position, foot.lateral)

@@ -13,13 +13,13 @@ class Movement(NamedTuple):
     """A link through a junction, from one lane to another."""
 
     junction: str  # SUMO's id
-    number: int  # of the link among the junction's
+    number: int  # index of the link among the junction's
     source: str  # lane
     target: str  # lane
     inside: tuple[str, ...]  # lanes in between, in order; a vehicle may wait where one ends
     state: str  # SUMO's letter of the link where no light governs it
     direction: str  # SUMO's letter: "s" straight on, "l", "L" left, "r", "R" right, "t" turn
-    speed: float  # [m/s] that the lanes inside allow
+    speed: float  # [m/s] speed limit of the lanes inside
     system: str  # SUMO's id of the traffic light; empty: none
     link: int  # index of the movement in the light's state
     yields_to: frozenset[int]  # numbers of links whose vehicles go first

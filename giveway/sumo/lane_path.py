@@ -10,7 +10,7 @@ from giveway.sumo.heights import Height
 class Light(NamedTuple):
     """The traffic light at the end of a lane, for vehicles that go on to the path's next lane."""
 
-    station: float  # [m] of the stop line along the lane path
+    station: float  # [m] station of the stop line along the lane path
     system: str  # SUMO's id of the traffic light
     link: int  # index of the movement in the system's state
 
@@ -44,7 +44,7 @@ class LanePath:
     lights: tuple[Light, ...]
     first: str  # the lane that it begins on
     edges: tuple[float, ...]  # station [m] at which each edge of the route begins
-    limits: tuple[SpeedLimit, ...]  # of each lane, in order; the first holds from the beginning
+    limits: tuple[SpeedLimit, ...]  # limits of the lanes in order; the first holds from the start
     passages: tuple[Passage, ...]  # through junctions whose lanes inside the network has
-    lanes: tuple[tuple[str, str], ...]  # on which it enters and leaves each edge
-    heights: tuple[Height, ...] = ()  # of the lanes' vertices, in order
+    lanes: tuple[tuple[str, str], ...]  # lanes on which it enters and leaves each edge
+    heights: tuple[Height, ...] = ()  # heights of the lanes' vertices, in order

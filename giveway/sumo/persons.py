@@ -49,8 +49,8 @@ class Person:
     desired_speed: float  # [m/s] > 0
     edges: tuple[str, ...]  # the present walk's remaining normal edges, the current one first
     lane: str  # SUMO's present lane, may lie inside a junction
-    arrival_position: float  # [m] on the last edge
-    stages_left: int  # after this walk
+    arrival_position: float  # [m] arrival position on the last edge
+    stages_left: int  # number of stages after this walk
 
 
 class ScenarioPersons:
@@ -77,7 +77,7 @@ class ScenarioPersons:
         self._free: dict[str, None] = {}  # departed and SUMO's, in order of departure
         self._seen_until = -math.inf  # [s] SUMO's clock when `_free` was brought up to date
         self._routes: dict[str, Route] = {}
-        self._leaving: dict[str, tuple[int, float]] = {}  # at their walk's end: see `arrive`
+        self._leaving: dict[str, tuple[int, float]] = {}  # at their walks' ends: see `arrive`
         self._put_back: set[str] = set()  # since SUMO's last step
         self._paths = FootPaths(sumo)
         self._speeds = WalkSpeeds.of_running(sumo)
@@ -264,7 +264,7 @@ class ScenarioPersons:
         """
         route = self._routes[name]
         end = self._paths.lane(route.edges[-1])
-        with contextlib.suppress(*self._handover.refusals):  # else it is ended after the step
+        with contextlib.suppress(*self._handover.refusals):  # otherwise it is ended after the step
             self._handover.finish(name, end or "", route)
         self._leaving[name] = route.stages_left, self._sumo.person.getStage(name).depart
         arrival = Arrival.CONTINUED if route.stages_left else Arrival.ARRIVED

@@ -105,7 +105,7 @@ class SumoSession:
         self.step_length = float(self._sumo.simulation.getDeltaT())
         self._added: set[str] = set()
         self._just_added: dict[str, tuple[float, str | None]] = {}  # when, on which lane
-        self._host_lanes: dict[str, str | None] = {}  # by edge
+        self._host_lanes: dict[str, str | None] = {}  # host lanes by edge
 
     def _load(self) -> None:
         self._stderr = NativeStderr(self._native_log)

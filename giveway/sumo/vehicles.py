@@ -35,18 +35,18 @@ class VehicleState:
     speed: float  # [m/s]
     length: float  # [m]
     width: float  # [m]
-    fastest: float  # [m/s] that its type is capable of
+    fastest: float  # [m/s] largest speed of its type
 
 
 class PlannedStop(NamedTuple):
     """A stop of one of SUMO's vehicles."""
 
     lane: str
-    start: float  # [m] on the lane
-    end: float  # [m] where the front bumper is to be
+    start: float  # [m] begin on the lane
+    end: float  # [m] place of the front bumper at the stop
     duration: float  # [s]; at most 0: not given
-    until: float  # [s] on SUMO's clock; negative: not given
-    beside: bool  # in a parking area, off the lane
+    until: float  # [s] end of the stop on SUMO's clock; negative: not given
+    beside: bool  # True in a parking area, off the lane
 
 
 class SumoVehicles:

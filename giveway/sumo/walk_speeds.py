@@ -24,7 +24,7 @@ class _Step:
     """An element of a person's plan. Without speed and duration the own speed counts."""
 
     speed: float | None = None  # [m/s]
-    duration: float | None = None  # [s] for the whole walk
+    duration: float | None = None  # [s] duration of the whole walk
     end: str = ""  # the edge or stopping place to which it leads; empty if not known
 
 

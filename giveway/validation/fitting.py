@@ -141,7 +141,7 @@ class Search:
             parameters = self._parameters(x)
             require_steady(parameters, LONGEST_STEP)  # a camera's frames are shorter than that
             error = self._objective(parameters)
-        except ParameterError:  # beyond the model's own bounds
+        except ParameterError:  # the parameters are beyond the model's own bounds
             error = math.inf
         self.done += 1
         self._least = min(self._least, error)

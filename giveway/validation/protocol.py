@@ -28,9 +28,9 @@ class Protocol:
     skip: int = 15  # frames at the start, in which the dataset's filter settles
     stride: int = 15  # frames from window to window
     horizons: tuple[int, ...] = (22, 60, 120)  # frames ahead: 0.75, 2 and 4 s
-    near: float = 2.0  # [m] from a pedestrian's centre to the vehicle's body
-    front: float = CITR.vehicle.front  # [m] from the tracked point to the front
-    rear: float = CITR.vehicle.rear  # [m] from the tracked point to the rear
+    near: float = 2.0  # [m] largest distance of a near pedestrian from the vehicle's body
+    front: float = CITR.vehicle.front  # [m] front of the body, from the tracked point
+    rear: float = CITR.vehicle.rear  # [m] rear of the body, from the tracked point
     width: float = CITR.vehicle.width  # [m]
 
     @classmethod

@@ -51,7 +51,7 @@ def track_of(side: float) -> int:
 
 
 def places(gates: Array, side: float) -> Array:
-    """Return where (k, 2) [m] somebody on ``side`` [-1, 1] walks through each gate."""
+    """Return the places (k, 2) [m] of a person on ``side`` [-1, 1] in each gate."""
     return gates[:, 0:2] + side * gates[:, 2:4]
 
 

@@ -18,14 +18,14 @@ from giveway.walkways.inside import Interior
 from giveway.walkways.polyline import Polyline, usable_half_width
 from giveway.walkways.reading import Link, PedLane, Signal, Survey
 
-_KERB = 0.4  # [m] from the roadway, where people wait for green
+_KERB = 0.4  # [m] distance from the roadway at which people wait for green
 
 
 class End(NamedTuple):
     """One end of a lane or crossing, given by its edge."""
 
     edge: str
-    last: bool  # where its shape ends, not where it begins
+    last: bool  # True for the end of its shape, False for its beginning
 
 
 @dataclass(frozen=True)
@@ -52,8 +52,8 @@ class Tree:
     or leave it.
     """
 
-    coming: dict[int, Step]  # by portal; next is the portal at which the area is left
-    leaving: dict[int, Step]  # by portal; next is the portal at the crossing's other end
+    coming: dict[int, Step]  # steps by portal; next is the portal at which the area is left
+    leaving: dict[int, Step]  # steps by portal; next is the portal at the crossing's other end
 
 
 class WalkGraph:

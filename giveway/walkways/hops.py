@@ -35,7 +35,7 @@ class Stretch(NamedTuple):
 class Hop(NamedTuple):
     """The route over a junction from one lane's end to another's."""
 
-    portal: int | None  # where it begins; None if it goes straight across
+    portal: int | None  # portal at its beginning; None if it goes straight across
     length: float  # [m]
     connected: bool
 
@@ -147,7 +147,7 @@ class Pieces:
         return self._edges[end.edge].junctions[end.last]
 
     def station(self, end: End) -> float:
-        """Return where [m] on its edge's centre line an end is."""
+        """Return the station [m] of an end on its edge's centre line."""
         return self._graph.lines[end.edge].length if end.last else 0.0
 
     def bends(self, stretch: Stretch) -> Array:

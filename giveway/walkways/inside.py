@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from giveway.walkways.gates import BODY_RADIUS, NO_GATES, Array, places
 from giveway.walkways.reading import PedLane
 
-_TOLERANCE = 0.05  # [m] that a route may lie outside of the area
+_TOLERANCE = 0.05  # [m] largest distance of a route outside of the area
 _SLIGHT = math.sin(math.radians(0.5))  # a corner that juts in by less is none
-_INSET = 0.02  # [m] from a corner to the place through which routes round it are sought
+_INSET = 0.02  # [m] distance of a route's corner from the area's corner
 
 
 def polygon_of(area: PedLane) -> shapely.Polygon | shapely.MultiPolygon:

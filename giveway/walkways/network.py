@@ -23,7 +23,7 @@ class NearestLane(NamedTuple):
     edge: str
     lane: str
     position: float  # [m] along the lane, as SUMO counts
-    distance: float  # [m] from the lane's centre line
+    distance: float  # [m] distance from the lane's centre line
 
 
 class WalkNetwork:

@@ -44,7 +44,7 @@ class WalkEdge:
     """An edge between two junctions and the lane people walk on."""
 
     id: str
-    junctions: tuple[str, str]  # where its lane begins and where it ends
+    junctions: tuple[str, str]  # junctions at the beginning and the end of its lane
     lane: PedLane
     sidewalk: bool = False  # nothing that has an engine uses the lane
 

@@ -41,7 +41,7 @@ class _Candidate(NamedTuple):
 
     gaps: int
     length: float  # [m]
-    side: float  # [-1, 1] on which the person is now, seen in walking direction
+    side: float  # [-1, 1] present side of the person, seen in walking direction
     gates: Callable[[float], list[Array]]  # function of the side that the person keeps to
 
 

@@ -22,8 +22,8 @@ class Start(NamedTuple):
 
     length: float  # [m]
     connected: bool
-    side: float  # [-1, 1] on which the person is now, seen in walking direction
-    gates: Callable[[float], Array]  # by the side that the person keeps to
+    side: float  # [-1, 1] present side of the person, seen in walking direction
+    gates: Callable[[float], Array]  # function of the side that the person keeps to
 
 
 class Starts:

@@ -132,7 +132,7 @@ def _causes(drive: Drive, stand: _Stand, owed: Sequence[Owed]) -> Iterator[tuple
             yield ~np.isin(drive.letters(line.system, line.link, time), _GO), 0.0
     for place in drive.way.junctions:
         if place.stop_sign and place.entry - _AT_LINE <= front <= place.entry + _OVER_LINE:
-            yield np.arange(len(time)) == stand.begin, 0.0  # then it has stood there
+            yield np.arange(len(time)) == stand.begin, 0.0  # the ego has stood there then
     if any(halt.start - _HALT <= front <= halt.end + _HALT for halt in drive.way.halts):
         yield np.ones(len(time), dtype=np.bool_), 0.0
     yield _people_ahead(drive, stand), AHEAD

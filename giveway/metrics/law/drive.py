@@ -22,7 +22,7 @@ class Undisturbed(NamedTuple):
     """The positions of the people in the run's twin, in which they did not feel the ego."""
 
     step: NDArray[np.int64]  # (R,) control instants, counted from the ego's first one
-    pedestrian: NDArray[np.int64]  # (R,) as in the run's crowd
+    pedestrian: NDArray[np.int64]  # (R,) index of the person, as in the run's crowd
     x: Array  # (R,) [m]
     y: Array  # (R,) [m]
 

@@ -121,7 +121,7 @@ class _Route(NamedTuple):
     pedestrian: int
     begin: int  # first control instant at which it holds
     end: int  # first control instant at which the next one holds
-    onwards: bool  # from the crossing's first end to its second
+    onwards: bool  # True from the crossing's first end to its second
     desired_speed: float  # [m/s]
 
 
